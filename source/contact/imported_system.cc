@@ -131,15 +131,18 @@ namespace Squeal
 
   std::optional<double> definite_shift(const CoupledSystem &system, const double largest_circular_frequency)
   {
-    constexpr double parts[] = {0., 0.02, 1.};
-    for (const double part : parts)
-      {
-        const double shift  = part * largest_circular_frequency;
-        const auto   A      = shift == 0. ? system.stiffness : add(1., *system.stiffness, shift * shift, *system.mass);
-        int          n_null = 0;
-        if (count_negative_eigenvalues(*A, "symmetric part of the stiffness", &n_null) + n_null == 0)
-          return shift;
-      }
-    return {};
+    constexpr double part_of_band = 0.02;
+    const auto       is_definite  = [&](const double square) {
+      int n_null = 0;
+      return count_negative_eigenvalues(square == 0. ? *system.stiffness : *add(1., *system.stiffness, square, *system.mass),
+                                        "symmetric part of the stiffness", &n_null) +
+               n_null ==
+             0;
+    };
+    if (is_definite(0.))
+      return 0.;
+    const double shift = part_of_band * largest_circular_frequency;
+    // Rigid-body motions have eigenvalues that are rounding errors; those below them would grow
+    return is_definite(std::min(shift * shift, system.hidden_square)) && is_definite(shift * shift) ? std::optional(shift) : std::nullopt;
   }
 } // namespace Squeal

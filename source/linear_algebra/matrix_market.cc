@@ -5,57 +5,146 @@
 
 #include <deal.II/base/mpi.h>
 
-#include <suitesparse/cholmod.h>
+#include <boost/algorithm/string.hpp>
 
 #include <cerrno>
+#include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <limits>
-#include <memory>
 #include <sstream>
+#include <type_traits>
 
 namespace Squeal
 {
+  namespace
+  {
+    /// The words of a text, line by line, with errors that name the line.
+    class WordReader
+    {
+    public:
+      explicit WordReader(const std::string &path)
+        : path(path)
+        , stream(path)
+      {
+        if (!stream)
+          refuse(text("the file cannot be opened: ", std::strerror(errno)));
+      }
+
+      [[noreturn]] void refuse(const std::string &what) const
+      {
+        throw FileError(what, text("file ", path, n_lines > 0 ? text(", line ", n_lines) : ""),
+                        "write the matrix in Matrix Market form: coordinate or array, real or integer, with finite entries");
+      }
+
+      /// The words of the next line that is neither empty nor a comment; nothing at the end.
+      const std::vector<std::string> &next(const bool with_comments = false)
+      {
+        words.clear();
+        for (std::string line; words.empty() && std::getline(stream, line);)
+          {
+            ++n_lines;
+            if (with_comments || line.front() != '%')
+              boost::split(words, boost::trim_copy(line), boost::is_space(), boost::token_compress_on);
+            if (words.size() == 1 && words.front().empty())
+              words.clear();
+          }
+        return words;
+      }
+
+      template <typename Number>
+      Number number(const std::string &word) const
+      {
+        Number            result{};
+        const char *const end  = word.data() + word.size();
+        const auto        read = std::from_chars(word.front() == '+' ? word.data() + 1 : word.data(), end, result);
+        if (read.ec != std::errc() || read.ptr != end)
+          refuse(in_quotes(word) + (std::is_integral_v<Number> ? " is not an integer" : " is not a number"));
+        return result;
+      }
+
+    private:
+      const std::string        path;
+      std::ifstream            stream;
+      std::vector<std::string> words;
+      long                     n_lines = 0;
+    };
+  } // namespace
+
   SparseRows read_matrix_market(const std::string &path)
   {
-    const auto refuse = [&path](const std::string &what) {
-      throw FileError(what, "file " + path, "write the matrix in Matrix Market form: coordinate or array, real, with finite entries");
-    };
-    const std::unique_ptr<std::FILE, int (*)(std::FILE *)> file(std::fopen(path.c_str(), "r"), std::fclose);
-    if (!file)
-      refuse(text("the file cannot be opened: ", std::strerror(errno)));
-    std::string header;
-    std::getline(std::ifstream(path), header);
-    if (header.rfind("%%MatrixMarket", 0) != 0)
-      refuse("the first line is no header of the Matrix Market");
-    for (const char *kind : {"complex", "pattern", "hermitian"})
-      if (header.find(kind) != std::string::npos)
-        refuse(text("the matrix is ", kind, ", not real"));
+    WordReader reader(path);
+    auto       header = reader.next(true);
+    for (std::string &word : header)
+      boost::to_lower(word);
+    const auto is = [&header](const std::size_t i, const char *name) { return header[i] == name; };
+    if (header.size() != 5 || !is(0, "%%matrixmarket") || !is(1, "matrix") || !(is(2, "coordinate") || is(2, "array")))
+      reader.refuse("the first line is no header of the Matrix Market");
+    if (!is(3, "real") && !is(3, "integer"))
+      reader.refuse(text("the matrix is ", header[3], ", not real"));
+    const bool is_array = is(2, "array"), is_general = is(4, "general"), is_skew = is(4, "skew-symmetric");
+    if (!is_general && !is_skew && !is(4, "symmetric"))
+      reader.refuse(in_quotes(header[4]) + " is none of general, symmetric, skew-symmetric");
 
-    cholmod_common common;
-    cholmod_start(&common);
-    common.print                   = 0;
-    constexpr int   both_triangles = 1;
-    int             type           = 0;
-    void           *found          = cholmod_read_matrix(file.get(), both_triangles, &type, &common);
-    cholmod_dense  *dense          = found != nullptr && type == CHOLMOD_DENSE ? static_cast<cholmod_dense *>(found) : nullptr;
-    cholmod_sparse *A              = dense != nullptr ? cholmod_dense_to_sparse(dense, 1, &common) : static_cast<cholmod_sparse *>(found);
-    cholmod_free_dense(&dense, &common);
-    SparseRows result;
-    if (A != nullptr)
-      result = Eigen::Map<const Eigen::SparseMatrix<double>>(A->nrow, A->ncol, cholmod_nnz(A, &common), static_cast<const int *>(A->p),
-                                                             static_cast<const int *>(A->i), static_cast<const double *>(A->x));
-    const bool is_read = A != nullptr;
-    cholmod_free_sparse(&A, &common);
-    cholmod_finish(&common);
-    if (!is_read)
-      refuse("CHOLMOD cannot read the matrix: the number of entries, or a row or column number, is wrong, or the memory does not suffice");
-    for (int i = 0; i < result.rows(); ++i)
-      for (SparseRows::InnerIterator entry(result, i); entry; ++entry)
-        if (!(std::abs(entry.value()) <= std::numeric_limits<double>::max()))
-          refuse(text("the entry in row ", i + 1, " and column ", entry.col() + 1, " is not finite"));
+    const std::vector<std::string> sizes = reader.next();
+    if (sizes.size() != (is_array ? 2 : 3))
+      reader.refuse("the line of the sizes has not " + std::string(is_array ? "two" : "three") + " numbers");
+    const int n_rows = reader.number<int>(sizes[0]), n_columns = reader.number<int>(sizes[1]);
+    if (n_rows < 1 || n_columns < 1 || (!is_general && n_rows != n_columns))
+      reader.refuse(text("a matrix of size ", n_rows, " x ", n_columns, is_general ? "" : " is not square"));
+
+    std::vector<Eigen::Triplet<double>> entries;
+    const auto                          add = [&](const int row, const int column, const std::string &word) {
+      const double value = reader.number<double>(word);
+      if (!std::isfinite(value))
+        reader.refuse(text("the entry in row ", row, " and column ", column, " is not finite"));
+      if (row < 1 || row > n_rows || column < 1 || column > n_columns)
+        reader.refuse(text("row ", row, " and column ", column, " are not those of a matrix of size ", n_rows, " x ", n_columns));
+      if (!is_general && (row < column || (is_skew && row == column)))
+        reader.refuse(text("the entry in row ", row, " and column ", column, " is not below the diagonal of a ", header[4], " matrix"));
+      if (value == 0.)
+        return;
+      entries.emplace_back(row - 1, column - 1, value);
+      if (!is_general && row != column)
+        entries.emplace_back(column - 1, row - 1, is_skew ? -value : value);
+    };
+    if (is_array)
+      {
+        std::vector<std::string> words;
+        std::size_t              used = 0;
+        for (int column = 1; column <= n_columns; ++column)
+          for (int row = is_general ? 1 : is_skew ? column + 1 : column; row <= n_rows; ++row)
+            {
+              if (used == words.size())
+                {
+                  words = reader.next();
+                  used  = 0;
+                }
+              if (words.empty())
+                reader.refuse("there are fewer entries than the sizes say");
+              add(row, column, words[used++]);
+            }
+        if (used < words.size() || !reader.next().empty())
+          reader.refuse("there are more entries than the sizes say");
+      }
+    else
+      {
+        const auto n = reader.number<long>(sizes[2]);
+        for (long k = 0; k < n; ++k)
+          {
+            const std::vector<std::string> &words = reader.next();
+            if (words.empty())
+              reader.refuse(text("there are ", k, " entries, not ", n));
+            if (words.size() != 3)
+              reader.refuse("an entry is not a row, a column and a value");
+            add(reader.number<int>(words[0]), reader.number<int>(words[1]), words[2]);
+          }
+        if (!reader.next().empty())
+          reader.refuse(text("there are more than ", n, " entries"));
+      }
+    SparseRows result(n_rows, n_columns);
+    result.setFromTriplets(entries.begin(), entries.end());
     return result;
   }
 

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <mutex>
 #include <optional>
 #include <regex>
@@ -16,6 +17,10 @@ namespace Squeal
 {
   namespace
   {
+    /// Steps of differences, each a tenth of the one before, and the relative difference of two of them up to which they agree.
+    constexpr int    n_steps              = 10;
+    constexpr double largest_disagreement = 1e-6;
+
     /// An expression of muParser.
     class Expression : public ParameterFunction
     {
@@ -26,9 +31,13 @@ namespace Squeal
         parser.SetExpr(expression);
         for (const std::string &name : parameters)
           parser.DefineVar(name, &variables[name]); // elements of a map stay where they are
+        int n_results = 0;
+        parser.Eval(n_results);
+        if (n_results != 1)
+          throw ParameterError(Squeal::text(in_quotes(expression), " are ", n_results, " expressions"), "",
+                               "write one, with decimal points");
         for (const auto &[name, place] : parser.GetUsedVar())
           used.push_back(name);
-        parser.Eval();
       }
 
       double at(const ParameterValues &values) const override
@@ -46,12 +55,31 @@ namespace Squeal
           return 0.;
         ParameterValues others = values;
         double         &value  = others.at(parameter).front();
-        return boost::math::differentiation::finite_difference_derivative(
-          [&](const double x) {
-            value = x;
-            return at(others);
-          },
-          values.at(parameter).front());
+        const double    x = value, largest = x == 0. ? 1. : std::abs(x);
+        // The steps of which two in a row agree best: how fast the expression varies is not known
+        double best = 0., disagreement = std::numeric_limits<double>::infinity(), before = std::numeric_limits<double>::quiet_NaN();
+        for (int k = 0; k < n_steps; ++k)
+          {
+            const double scale = largest * std::pow(0.1, k);
+            const double now   = boost::math::differentiation::finite_difference_derivative(
+                                 [&](const double t) {
+                                   value = x + scale * t;
+                                   return at(others);
+                                 },
+                                 0.) /
+                               scale;
+            if (const double difference = std::abs(now - before); difference < disagreement)
+              {
+                best         = now;
+                disagreement = difference;
+              }
+            before = now;
+          }
+        if (!(disagreement <= largest_disagreement * std::abs(best)))
+          throw ParameterError(Squeal::text("the derivative of ", in_quotes(expression), " with respect to ", parameter, " at ", parameter,
+                                            " = ", exact_text(x), " cannot be determined"),
+                               "coefficient of a term", "choose another value, or an expression that is smooth there");
+        return best;
       }
 
       bool contains(const std::string &parameter) const override
@@ -80,7 +108,8 @@ namespace Squeal
     /// The same expression where it is a product of numbers and of integer powers of parameters.
     std::optional<Coefficient> monomial(const std::string &expression, const std::vector<std::string> &parameters)
     {
-      static const std::regex    factor_pattern(R"(\s*([*/]?)\s*(?:(\d+\.?\d*(?:[eE][-+]?\d+)?)|([A-Za-z_]\w*)(?:\s*\^\s*(\d+))?)\s*)");
+      static const std::regex factor_pattern(
+        R"(\s*([*/]?)\s*(?:(\d{1,15}(?:\.\d{0,30})?(?:[eE][-+]?\d{1,2})?)|([A-Za-z_]\w*)(?:\s*\^\s*(\d{1,3})(?!\d))?)\s*)");
       double                     factor = 1.;
       std::map<std::string, int> powers;
       auto                       at = expression.cbegin();
@@ -110,6 +139,10 @@ namespace Squeal
 
   Coefficient parsed_coefficient(const std::string &expression, const std::vector<std::string> &parameters)
   {
+    // muParser would assign
+    static const std::regex assignment(R"((^|[^<>=!])=([^=]|$))");
+    if (std::regex_search(expression, assignment))
+      throw ParameterError(text("the expression ", in_quotes(expression), " assigns a value"), "", "write == to compare");
     try
       {
         const auto parsed = std::make_shared<Expression>(expression, parameters);
@@ -124,7 +157,7 @@ namespace Squeal
 
   bool is_parameter_name(const std::string &text)
   {
-    static const std::regex name(R"([A-Za-z_]\w*)");
+    static const std::regex name(R"([A-Za-z]\w*)");
     return std::regex_match(text, name);
   }
 } // namespace Squeal

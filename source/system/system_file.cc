@@ -12,6 +12,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <set>
 
 namespace Squeal
@@ -81,6 +82,13 @@ namespace Squeal
           }
       }
 
+      int integer() const
+      {
+        if (!json.is_number_integer() || json.get<double>() < 0. || json.get<double>() > std::numeric_limits<int>::max())
+          refuse(in_quotes(json.dump()) + " is not an integer", "write an integer");
+        return json.get<int>();
+      }
+
       double number() const
       {
         const double value = json.is_number() ? json.get<double>() : NAN;
@@ -129,6 +137,21 @@ namespace Squeal
       std::string file, place;
     };
 
+    /// Refuses a key that an object has twice, of which only one would count.
+    Json parsed(std::istream &stream, const std::string &file)
+    {
+      std::vector<std::set<std::string>> keys; // of the objects that are open
+      return Json::parse(stream, [&](int, const Json::parse_event_t event, const Json &value) {
+        if (event == Json::parse_event_t::object_start)
+          keys.emplace_back();
+        else if (event == Json::parse_event_t::object_end)
+          keys.pop_back();
+        else if (event == Json::parse_event_t::key && !keys.back().insert(value.get<std::string>()).second)
+          throw FileError(text("an object has ", in_quotes(value.get<std::string>()), " twice"), "file " + file, "remove one of them");
+        return true;
+      });
+    }
+
     std::vector<FileParameter> read_parameters(const JsonEntry &entries)
     {
       std::vector<FileParameter> result;
@@ -170,7 +193,7 @@ namespace Squeal
         Term term;
         term.name  = entry.has("name") ? entry["name"].as<std::string>("a text") :
                                          entry[entry.has("matrix") ? "matrix" : "left"].as<std::string>("a text");
-        term.power = entry["power"].as<int>("an integer");
+        term.power = entry["power"].integer();
         if (term.power < 0 || term.power > 2)
           entry["power"].refuse("the power of lambda is " + std::to_string(term.power), "write 0, 1 or 2");
         const std::string kind = entry.text_or("kind", "body");
@@ -178,6 +201,10 @@ namespace Squeal
           entry["kind"].refuse("unknown kind " + in_quotes(kind), "leave it out");
         term.kind        = enum_value<TermKind>(kind);
         term.coefficient = coefficient(entry);
+        if (entry.has("matrix"))
+          for (const char *of_factors : {"left", "right", "weights"})
+            if (entry.has(of_factors))
+              entry[of_factors].refuse("a term has a matrix or factors, not both", "remove one of them");
         if (entry.has("matrix"))
           read_matrix(entry, term);
         else
@@ -209,6 +236,7 @@ namespace Squeal
                                       "change the ranges of the parameters, or the expression");
         };
         const ParameterValues values = system.values();
+        check(values);
         for (const FileParameter &parameter : system.parameters)
           {
             ParameterValues sample = values;
@@ -227,16 +255,21 @@ namespace Squeal
         return result;
       }
 
+      SparseRows read_file(const JsonEntry &entry, const std::string &name) const
+      {
+        const std::filesystem::path path = folder / name;
+        if (!std::filesystem::is_regular_file(path))
+          entry.refuse("there is no file " + in_quotes(path.string()), "write the matrix there, or change the name");
+        return read_matrix_market(path.string());
+      }
+
       /// All entries of a matrix; known ones are not read again.
       const SparseRows &entries_of(const JsonEntry &file)
       {
         const std::string name = file.as<std::string>("the name of a file");
         if (const auto known = read_files.find(name); known != read_files.end())
           return known->second;
-        const std::filesystem::path path = folder / name;
-        if (!std::filesystem::is_regular_file(path))
-          file.refuse("there is no file " + in_quotes(path.string()), "write the matrix there, or change the name");
-        const SparseRows &result = read_files.emplace(name, read_matrix_market(path.string())).first->second;
+        const SparseRows &result = read_files.emplace(name, read_file(file, name)).first->second;
         if (system.map.n() == 0 && result.rows() > 0)
           {
             system.map = RowMap::even(static_cast<int>(result.rows()), communicator);
@@ -298,7 +331,7 @@ namespace Squeal
           {
             const JsonEntry   file = entry["weights"];
             const std::string name = file.as<std::string>("the name of a file");
-            const SparseRows  d    = read_matrix_market((folder / name).string());
+            const SparseRows  d    = read_file(file, name);
             if (d.rows() != term.left->rank() || d.cols() != 1)
               file.refuse(text("the weights are ", d.rows(), " x ", d.cols(), ", not ", term.left->rank(), " x 1"),
                           "give one for each column of the factors");
@@ -328,7 +361,9 @@ namespace Squeal
           result.push_back({name, {}});
           for (const auto &[number, range] : entry.members(false))
             {
-              const auto ends = range.as<std::vector<int>>("a range of dofs such as [1, 300]");
+              std::vector<int> ends;
+              for (const auto &[place, end] : range.members(false))
+                ends.push_back(end.integer());
               if (ends.size() != 2 || ends[0] < 1 || ends[0] > ends[1] || ends[1] > n)
                 range.refuse(text("not a range of dofs from 1 to ", n), "write [first, last]");
               result.back().ranges.emplace_back(ends[0] - 1, ends[1] - 1);
@@ -426,7 +461,7 @@ namespace Squeal
     Json json;
     try
       {
-        json = Json::parse(stream);
+        json = parsed(stream, file.string());
       }
     catch (const nlohmann::json::exception &error)
       {
@@ -434,7 +469,7 @@ namespace Squeal
       }
     const JsonEntry root(json, file.string(), "");
     root.check_keys({"format", "version", "description", "parameters", "terms", "groups", "dofs", "reduction"});
-    if (root["format"].as<std::string>("a text") != format || root["version"].as<int>("an integer") != format_version)
+    if (root["format"].as<std::string>("a text") != format || root["version"].integer() != format_version)
       root.refuse("not a system file of this version", text("write \"format\": \"", format, "\", \"version\": ", format_version));
 
     SystemFile system;

@@ -215,6 +215,9 @@ namespace Squeal
 
   std::optional<MultiVector> ChartModel::new_vectors(const std::vector<ModesAt> &sets) const
   {
+    const int n_missing = system.map().n() - model.size(); // to a basis of all
+    if (n_missing <= 0)
+      return {};
     std::vector<ProjectedResiduals::ModesAt> modes;
     for (const ModesAt &set : sets)
       {
@@ -249,7 +252,11 @@ namespace Squeal
       return {};
     // First, so that what is left is not compared with what they have in the basis
     remove_basis(*system.mass, model, *responses);
-    return orthonormalize_if_any(*system.mass, &model.basis(), std::move(*responses), dependence_tolerance, nullptr, FirstProjection::done);
+    auto result =
+      orthonormalize_if_any(*system.mass, &model.basis(), std::move(*responses), dependence_tolerance, nullptr, FirstProjection::done);
+    if (result && result->n_columns() > n_missing)
+      return MultiVector(view(*result, 0, n_missing));
+    return result;
   }
 
   void ChartModel::extend(MultiVector vectors)

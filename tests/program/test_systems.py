@@ -142,15 +142,53 @@ class Flutter(SystemTest):
             self.write("study.prm", STUDY.format(study=study, band=BAND))
             self.assert_message(self.call("study.prm", "--output", "refused", "--set", override), mentions)
 
+    def test_derivatives_of_expressions(self):
+        """Fast, huge and tiny: the step of differences follows the expression."""
+        for expression, value, theta, rate in (("exp(-t/1e-3)", 1e-3, 1. / math.e, -1e3 / math.e), ("sqrt(t)", 1e12, 1e6, 0.5e-6),
+                                               ("1e-6/(t+1e-6)", 1e-6, 0.5, -0.25e6), ("t^1.5", 1e-5, 1e-5 ** 1.5, 1.5 * 1e-5 ** 0.5)):
+            self.write_system({"t": (value, 0.5 * value, 2. * value)},
+                              [(2, "1", [[1.]], "symmetric"), (0, "1", [[100.]], "symmetric"), (0, expression, [[1. / theta]], "symmetric")])
+            row = self.rows(self.study("sensitivity", band=1e3), "sensitivities")[0]
+            omega = 2. * math.pi * row["frequency [Hz]"]
+            expected = rate / theta / (2. * omega)
+            self.assertAlmostEqual(2. * math.pi * row["frequency per unit [Hz]"], expected, delta=1e-6 * abs(expected))
+
+    def test_complete_basis(self):
+        """All modes in the band: a sweep needs no more vectors than dofs."""
+        n = 6
+        K = [[200. if i == j else -90. if abs(i - j) == 1 else 0. for j in range(n)] for i in range(n)]
+        F = [[40. if j == i + 1 else -25. if j == i - 2 else 0. for j in range(n)] for i in range(n)]
+        self.write_system({"d": (0.5, 0., 1.)}, [(2, "1", [[float(i == j) for j in range(n)] for i in range(n)], "symmetric"), (0, "1", K, "symmetric"),
+                                                (0, "d", F, "none")])
+        results = self.study("sweep", "Sweep/Parameter=d, 0, 1, 21", band=5.)
+        self.assertEqual({row["modes [-]"] for row in self.rows(results, "counts")}, {float(n)})
+
+    def test_strict_files(self):
+        """Numbers that lenient readers take for others."""
+        self.write("study.prm", STUDY.format(study="stability", band=BAND))
+        head = "%%MatrixMarket matrix coordinate real "
+        for text, mentions in ((head + "general\n2 2 2\n1 1 1.5D2\n2 2 1\n", ["line 3", "1.5D2"]), (head + "general\n2 2 1\n1 1 3,5\n", ["3,5"]),
+                               (head + "general\n2 2 1\n1.5 1 3\n", ["1.5"]), (head + "general\n2 2 1\n1 1 3 4\n", ["value"]),
+                               (head + "general\n2 2 1\n1 1 3\n2 2 1\n", ["more than 1"]), (head + "general\n2 2 3\n1 1 3\n2 2 1\n", ["2 entries, not 3"]),
+                               (head + "symmetric\n2 2 1\n1 2 3\n", ["below the diagonal"]), (head + "general\n2 2 1\n0 1 3\n", ["row 0"]),
+                               (head.replace("real", "pattern") + "general\n2 2 1\n1 1\n", ["pattern"])):
+            self.write("system/A0.mtx", text)
+            self.assert_message(self.call("study.prm", "--output", "refused"), ["A0.mtx", *mentions])
+
     def test_broken_description(self):
         self.write("study.prm", STUDY.format(study="stability", band=BAND))
         good = self.write_system({"mu": (0.6, 0., 1.)}, flutter_terms()[:2])
         for change, mentions in (({"terms": None}, ["terms"]), ({"format": "other"}, ["version"]), ({"Terms": []}, ["`Terms`"]),
                                  ({"groups": {"all": [[1, 3]]}}, ["groups.all"]),
                                  ({"parameters": {"mu": {"value": 2, "lower": 0, "upper": 1}}}, ["parameters.mu"]),
-                                 ({"parameters": {"2mu": {"value": 2}}}, ["2mu"])):
+                                 ({"parameters": {"2mu": {"value": 2}}}, ["2mu"]), ({"version": 1.5}, ["version"]),
+                                 *(({"terms": [{**good["terms"][1], **entry}]}, mentions) for entry, mentions in (
+                                     ({"power": 1.5}, ["terms[1].power"]), ({"coefficient": "0,5"}, ["terms[1].coefficient"]),
+                                     ({"coefficient": "mu=0.5"}, ["assigns"]), ({"coefficient": "10^400"}, ["not finite"]), ({"left": "A0.mtx"}, ["terms[1].left"])))):
             self.write("system/system.json", json.dumps({**good, **change}))
             self.assert_message(self.call("study.prm", "--output", "refused"), mentions)
+        self.write("system/system.json", json.dumps(good).replace('"power"', '"power": 1, "power"', 1))
+        self.assert_message(self.call("study.prm", "--output", "refused"), ["`power`", "twice"])
         self.write("system/system.json", "{")
         self.assert_message(self.call("study.prm", "--output", "refused"), ["JSON"])
         self.write("system/system.json", json.dumps(good))

@@ -29,6 +29,6 @@ namespace Squeal
                                 const std::string     &varied,
                                 double                 largest_circular_frequency);
 
-  /// The smallest of three shifts s with which K + s² M is positive definite: 0, a part of ω, ω; nothing if none is.
+  /// A shift s with which K + s² M is positive definite: 0, or 2 % of ω where K is semidefinite to rounding; nothing if it is not.
   std::optional<double> definite_shift(const CoupledSystem &system, double largest_circular_frequency);
 } // namespace Squeal

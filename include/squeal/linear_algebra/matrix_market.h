@@ -8,9 +8,9 @@ namespace Squeal
 {
   /**
    * All entries of a matrix in a file of the Matrix Market, coordinate or array, real or integer, general, symmetric or skew-symmetric
-   * (both triangles are returned). Read by CHOLMOD.
+   * (both triangles are returned); entries of one place are added. Strict, unlike CHOLMOD's reader, which takes 1.5D2 for 1.5.
    *
-   * Throws FileError, naming the file, if it cannot be read, is complex or a pattern, or has an entry that is not finite.
+   * Throws FileError with file and line.
    */
   SparseRows read_matrix_market(const std::string &path);
 

@@ -50,9 +50,9 @@ namespace Squeal
     const auto  &solvers   = run.parameters.solvers;
     const auto   shift     = definite_shift(system, omega_max);
     if (!shift)
-      throw SolverError("K + s^2 M of the symmetric terms is not positive definite for any shift s up to the end of the band",
-                        "symmetric part of the stiffness",
-                        "eliminate constraints, raise Band/Maximum frequency, or check the signs of the terms");
+      throw SolverError(
+        "the symmetric part of the stiffness has negative eigenvalues, or it and the mass are singular for the same motion", "system file",
+        "mark terms that may destabilise by \"kind\": \"friction\", eliminate constraints, and check the signs of the terms");
     const auto count = number_of_modes(system, (1. + margin) * omega_max, solvers, run.progress);
 
     FrictionlessModes result;

@@ -1,3 +1,4 @@
+#include <squeal/base/exceptions.h>
 #include <squeal/studies/sweep/sweep_charts.h>
 
 namespace Squeal
@@ -113,6 +114,9 @@ namespace Squeal
     const NamedRange       varied = sweep.varied_parameter();
     const auto             second = sweep.second_varied_parameter();
     SystemFile             file   = read_system(run);
+    if (sweep.parameter.empty() && file.find(varied.name) == nullptr)
+      throw ParameterError("the sweep has no parameter: the system has none that is called mu", "parameter Sweep/Parameter",
+                           "name the one that varies: omega, 6.28, 25.1, 31");
     // Names and ends of ranges are checked before anything is computed
     std::map<std::string, double> given = run.parameters.system.values;
     if (second)

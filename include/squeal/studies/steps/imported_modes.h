@@ -24,7 +24,7 @@ namespace Squeal
    *
    * @param system @p whole or a part of it, such as that without damping, which modes and factor are made from
    *
-   * Throws SolverError if K + s² M is positive definite for no shift s up to the end of the band.
+   * Throws SolverError if K is not positive semidefinite.
    */
   FrictionlessModes imported_modes(const CoupledSystem &system, const CoupledSystem &whole, Run &run, double margin = 0.);
 
