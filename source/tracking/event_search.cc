@@ -208,7 +208,11 @@ namespace Squeal
       // Im λ = √|f| changes by the error: f by 2 √|f| times as much, away from the axis
       if (search.kind == EventSearch::real_axis)
         error *= 2. * modes.lambda(search.branch, search.upward ? search.interval + 1 : search.interval).imag();
-      return error == 0. ? 0. : error / slope(modes, search);
+      if (error == 0.)
+        return 0.;
+      // Without a slope, as where a mode leaves zero, the number of modes says that the event lies in the interval
+      const double change = slope(modes, search);
+      return change > 0. ? error / change : modes.width(search.interval);
     }
 
     Complex lambda_at(const TrackedModes &modes, const EventSearch &search, const double threshold)

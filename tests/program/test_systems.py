@@ -8,6 +8,8 @@ import unittest
 
 from program import SAME, ProgramTest
 
+import squeal
+
 HAS_NUMPY = importlib.util.find_spec("numpy") is not None
 if HAS_NUMPY:
     import numpy as np
@@ -304,6 +306,15 @@ class RoundTrip(SystemTest):
         for row, other in zip(found, expected):
             self.assertEqual((row["event"], row["mechanism"]), (other["event"], other["mechanism"]))
             self.assertLess(abs(row["mu [-]"] - other["mu [-]"]), row["uncertainty [-]"] + other["uncertainty [-]"])
+
+    @unittest.skipUnless(importlib.util.find_spec("scipy"), "needs SciPy")
+    def test_independent_solver(self):
+        """SciPy on the files that a mesh writes, read by the Python module."""
+        results = self.run_scene("mesh", "Output/Write system=full", "Operation/Radial dissipation=consistent")
+        system = squeal.System.read(results / "system")
+        for value in self.lambdas(results)[::9]:
+            found = system.solve(number=1, shift=1.0001 * value).eigenvalues
+            self.assertLess(min(abs(value - other) for other in found), SAME * abs(value))
 
     def test_reduced(self):
         mesh = self.run_scene("mesh", "Study=sweep", "Output/Write system=reduced", "Sweep/Number of friction coefficients=10",
