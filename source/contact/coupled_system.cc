@@ -36,7 +36,7 @@ namespace Squeal
 
   const RowMap &CoupledSystem::map() const
   {
-    return stiffness->rows();
+    return stiffness ? stiffness->rows() : kernel->columns();
   }
 
   ParameterValues CoupledSystem::at(const double value, const ParameterValues &others) const

@@ -37,9 +37,8 @@ namespace Squeal
     }
 
     /// √ of the diagonal of K + ω² M, rounded to a power of two, and inverted: for the rows of this process.
-    std::vector<double> dof_scales(const CoupledSystem &system, const double omega)
+    std::vector<double> dof_scales(const SparseMatrix &K, const SparseMatrix &M, const double omega)
     {
-      const SparseMatrix &K = *system.stiffness, &M = *system.mass;
       std::vector<double> result(K.rows().n_local());
       SparseMatrix::Row   row;
       for (int i = 0; i < K.rows().n_local(); ++i)
@@ -59,14 +58,18 @@ namespace Squeal
         }
       return result;
     }
-    /// Throws if there is no symmetric mass or stiffness.
-    void check_parts(const CoupledSystem &system, const SystemFile &file)
+
+    /// Mass and stiffness of the symmetric terms without friction, or none if either has no such term.
+    void set_symmetric_parts(CoupledSystem &system)
     {
-      for (const auto &[power, what] : {std::make_pair(0, "stiffness"), {2, "mass"}})
-        if (std::none_of(system.terms.begin(), system.terms.end(),
-                         [power = power](const Term &term) { return term.matrix && term.is_frictionless() && term.power == power; }))
-          throw ParameterError(std::string("the ") + what + " has no symmetric part", "file " + file.path,
-                               "only systems with a positive definite part of the stiffness and a symmetric mass are solved");
+      const auto has_part = [&](const int power) {
+        return std::any_of(system.terms.begin(), system.terms.end(),
+                           [power](const Term &term) { return term.matrix && term.is_frictionless() && term.power == power; });
+      };
+      if (has_part(0) && has_part(2))
+        set_frictionless_matrices(system);
+      else
+        system.mass = system.stiffness = nullptr;
     }
   } // namespace
 
@@ -92,11 +95,16 @@ namespace Squeal
       else
         for (Term &part : multiplied_out(term, values))
           result.terms.push_back(std::move(part));
-    check_parts(result, file);
-    set_frictionless_matrices(result);
+    set_symmetric_parts(result);
 
-    const RowMap             &map = file.map;
-    const std::vector<double> d   = dof_scales(result, largest_circular_frequency);
+    const RowMap           &map   = file.map;
+    const SecondOrderSystem whole = result.stiffness ? SecondOrderSystem() : sparse_matrices(result.terms, values);
+    const auto             &M = result.stiffness ? result.mass : whole.mass, &K = result.stiffness ? result.stiffness : whole.stiffness;
+    for (const auto &[matrix, name] : {std::make_pair(&M, "mass"), {&K, "stiffness"}})
+      if (!*matrix)
+        throw ParameterError(std::string("the ") + name + " has no terms", "file " + file.path,
+                             "give terms of power 0 and 2 that do not vanish at the values of the parameters");
+    const std::vector<double> d = dof_scales(*K, *M, largest_circular_frequency);
     const auto                D =
       std::make_shared<SparseMatrix>(map, map, [&](const int i, SparseMatrix::Row &row) { row.emplace_back(map.number(i), d[i]); });
     std::map<const LowRankFactor *, std::shared_ptr<const LowRankFactor>> scaled;
@@ -117,14 +125,16 @@ namespace Squeal
                                                       std::make_shared<LowRankFactor>(std::make_shared<SparseMatrix>(
                                                         RowMap::even(0, map.communicator()), map, [](int, SparseMatrix::Row &) {}));
     result.kernel          = D;
-    set_frictionless_matrices(result);
-    if (!definite_shift(result, largest_circular_frequency))
+    set_symmetric_parts(result);
+    const auto is_definite = [&] { return result.stiffness && definite_shift(result, largest_circular_frequency); };
+    if (!is_definite())
       {
         for (Term &term : result.terms)
           if (term.kind == TermKind::circulatory)
             term.kind = TermKind::friction;
-        check_parts(result, file);
-        set_frictionless_matrices(result);
+        set_symmetric_parts(result);
+        if (!is_definite())
+          result.mass = result.stiffness = nullptr;
       }
     return result;
   }

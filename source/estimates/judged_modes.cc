@@ -65,6 +65,17 @@ namespace Squeal
     return result;
   }
 
+  JudgedModes judged_by_errors(ComplexModes modes, Conditioning conditioning, const bool has_damping)
+  {
+    JudgedModes result;
+    result.modes        = std::move(modes);
+    result.conditioning = std::move(conditioning);
+    result.verdicts     = verdicts_of(result.modes, result.conditioning.errors, has_damping);
+    for (const Verdict one : result.verdicts)
+      result.unstable.push_back(one == Verdict::unstable);
+    return result;
+  }
+
   JudgedModes judged_modes(const CoupledSystem &system, const SystemModes &frictionless, ComplexModes modes)
   {
     JudgedModes result;

@@ -220,17 +220,23 @@ namespace Squeal
       std::vector<ContourCount> results;
       for (const double friction : mu)
         {
-          const SecondOrderSystem matrices = with_friction(system, friction);
-          const SparseDeterminant determinant(*matrices.mass, matrices.damping.get(), *matrices.stiffness);
-          FollowedSparse          followed(determinant, options.largest_phase_step);
-          ContourCount            count;
+          ContourCount count   = count_by_sparse_lu(with_friction(system, friction), options, progress);
           count.n_frictionless = n_frictionless;
-          count.n_modes        = turns(followed, contour, options, count, progress);
           results.push_back(count);
         }
       return results;
     }
   } // namespace
+
+  ContourCount count_by_sparse_lu(const SecondOrderSystem &matrices, const ContourOptions &options, Progress &progress)
+  {
+    const Contour           contour(options, matrices.damping != nullptr);
+    const SparseDeterminant determinant(*matrices.mass, matrices.damping.get(), *matrices.stiffness);
+    FollowedSparse          followed(determinant, options.largest_phase_step);
+    ContourCount            count;
+    count.n_modes = turns(followed, contour, options, count, progress);
+    return count;
+  }
 
   ContourMethod contour_method(const CoupledSystem &system)
   {

@@ -144,6 +144,40 @@ class Flutter(SystemTest):
             self.write("study.prm", STUDY.format(study=study, band=BAND))
             self.assert_message(self.call("study.prm", "--output", "refused", "--set", override), mentions)
 
+    def test_no_definite_part(self):
+        """Lagrange multipliers, follower forces and a stiffness without a sign, against the QZ algorithm."""
+        n, rng = 12, np.random.default_rng(1)
+        stiffness = 200. * np.eye(n) - 100. * (np.eye(n, k=1) + np.eye(n, k=-1))
+        follower = 20. * np.triu(rng.uniform(-1., 1., (n, n)), 1)
+        mass, damping, constraint = np.eye(n), 0.002 * stiffness, np.zeros((1, n))
+        constraint[0, [3, 8]] = 1., -0.5
+        multipliers = [np.pad(A, (0, 1)) for A in (mass, damping, stiffness + follower)]
+        multipliers[2][n, :n], multipliers[2][:n, n] = constraint, constraint[0]
+        for name, (M, C, K) in (("multipliers", multipliers), ("negative", (mass, damping, stiffness - 50. * np.eye(n)))):
+            with self.subTest(name):
+                self.write_system({"p": (1., 0.5, 2.)}, [(2, "1", M, "none"), (1, "1", C, "none"), (0, "p", K, "none")],
+                                  groups={"all": [[1, len(M)]]})
+                found = self.study("stability", "Band/Maximum frequency=3")
+                system = squeal.System.read(self.folder / "system")
+                expected = [value for value in system.solve().eigenvalues
+                            if 1e-6 < value.imag < 6. * math.pi and abs(value.real) < 0.6 * math.pi]
+                rows = self.rows(found, "complex_modes")
+                self.assertEqual(len(rows), len(expected))
+                self.assertGreater(len(rows), 5)
+                for row, value in zip(rows, self.lambdas(found)):
+                    self.assertLess(min(abs(value - other) for other in expected), 1e-10 * abs(value))
+                    self.assertLess(row["backward error [-]"], 1e-12)
+                    self.assertLess(row["error of lambda [-]"], 1e-10)
+                    self.assertAlmostEqual(row["kinetic energy of all [%]"], 100., places=6)
+                step, rates = 1e-4, self.rows(self.study("sensitivity", "Band/Maximum frequency=3"), "sensitivities")
+                ends = [self.lambdas(self.study("stability", "Band/Maximum frequency=3", f"System values=p = {1. + sign * step!r}"))
+                        for sign in (-1., 1.)]
+                for row, below, above in zip(rates, *ends):
+                    rate = complex(row["growth rate per unit [1/s]"], 2. * math.pi * row["frequency per unit [Hz]"])
+                    self.assertLess(abs(rate - (above - below) / (2. * step)), 1e-5 * abs(rate))
+        self.write("study.prm", STUDY.format(study="sweep", band=BAND))
+        self.assert_message(self.call("study.prm", "--output", "refused", "--set", "Sweep/Parameter=p, 0.5, 2, 4"), ["negative eigenvalues", "stability"])
+
     def test_derivatives_of_expressions(self):
         """Fast, huge and tiny: the step of differences follows the expression."""
         for expression, value, theta, rate in (("exp(-t/1e-3)", 1e-3, 1. / math.e, -1e3 / math.e), ("sqrt(t)", 1e12, 1e6, 0.5e-6),

@@ -18,7 +18,7 @@ namespace Squeal
    * symmetric ones in λ. Other terms of low rank are multiplied out.
    *
    * Symmetric parts of unsymmetric matrices (TermKind::circulatory) belong to mass and stiffness if these are definite then, else they
-   * count as friction.
+   * count as friction. Where there is no definite part either way, mass and stiffness are null: direct_modes() is for these.
    *
    * @param values  of all parameters, at which mass and stiffness are taken
    * @param varied  parameter of charts

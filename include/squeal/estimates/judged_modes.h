@@ -39,6 +39,9 @@ namespace Squeal
   /// small by chance; but a slow mode, of which cancellation in the stiffness takes many digits, has its own.
   std::vector<double> uncertainties(const CoupledSystem &system, const ComplexModes &modes, const Conditioning &conditioning);
 
+  /// Decides which of @p modes grow, each by its own error in @p conditioning.
+  JudgedModes judged_by_errors(ComplexModes modes, Conditioning conditioning, bool has_damping);
+
   /// Decides which of @p modes grow, however they were found.
   JudgedModes judged_modes(const CoupledSystem &system, const SystemModes &frictionless, ComplexModes modes);
 

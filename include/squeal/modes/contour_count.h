@@ -86,4 +86,7 @@ namespace Squeal
                                              const std::vector<double> &mu,
                                              const ContourOptions      &options,
                                              Progress                  &progress);
+
+  /// The same by sparse LU of matrices none of which need be symmetric or definite; n_frictionless stays zero.
+  ContourCount count_by_sparse_lu(const SecondOrderSystem &matrices, const ContourOptions &options, Progress &progress);
 } // namespace Squeal

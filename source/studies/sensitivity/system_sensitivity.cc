@@ -11,25 +11,30 @@ namespace Squeal
   {
     /// Estimated relative error of λ to which left and right vectors are found: their own errors are about the root of it.
     constexpr double tolerance_of_vectors = 1e-12;
+
+    FrictionModes left_and_right_modes(const GivenSystem &given, Run &run)
+    {
+      const FrictionlessModes frictionless = imported_modes(given.coupled, given.coupled, run);
+      run.progress.begin("Left and right modes");
+      SolverParameters solvers    = run.parameters.solvers;
+      solvers.complex_solver      = ComplexSolver::residual_iteration;
+      solvers.iteration_tolerance = tolerance_of_vectors;
+      FrictionModes result        = named_modes(
+               frictionless, modes_with_friction(given.coupled, frictionless, given.value,
+                                                 circular_frequency(run.parameters.discretization.maximum_frequency), solvers, run.progress));
+      run.progress.finish(text(result.modes.lambda.size(), " found"));
+      return result;
+    }
   } // namespace
 
   void run_sensitivity_of_system(Run &run)
   {
-    const GivenSystem       given        = given_system(run);
-    const SystemFile       &file         = given.file;
-    const CoupledSystem    &system       = given.coupled;
-    const double            value        = given.value;
-    const FrictionlessModes frictionless = imported_modes(system, system, run);
-
-    run.progress.begin("Left and right modes");
-    SolverParameters solvers     = run.parameters.solvers;
-    solvers.complex_solver       = ComplexSolver::residual_iteration;
-    solvers.iteration_tolerance  = tolerance_of_vectors;
-    const FrictionModes friction = named_modes(
-      frictionless, modes_with_friction(system, frictionless, value, circular_frequency(run.parameters.discretization.maximum_frequency),
-                                        solvers, run.progress));
-    const ComplexModes &modes = friction.modes;
-    run.progress.finish(text(modes.lambda.size(), " found"));
+    const GivenSystem    given    = given_system(run);
+    const SystemFile    &file     = given.file;
+    const CoupledSystem &system   = given.coupled;
+    const double         value    = given.value;
+    const FrictionModes  friction = system.stiffness ? left_and_right_modes(given, run) : direct_solution(given, run).friction;
+    const ComplexModes  &modes    = friction.modes;
 
     const TermProducts       products(system.terms, {modes.lambda, join({modes.real_part.get(), modes.imaginary_part.get()}),
                                                      join({modes.left_real_part.get(), modes.left_imaginary_part.get()})});

@@ -46,9 +46,10 @@ namespace Squeal
                                      column_of(friction, "growth rate", "1/s", &ModalQuantities::growth_rate, 4),
                                      column_of(friction, "divergence rate", "%", &ModalQuantities::divergence_rate, 4),
                                      column_of(friction, "effective damping ratio -2R/omega", "%", &ModalQuantities::damping_ratio, 4),
-                                     {"residual", "-", [&](const int j) { return modes.residuals[j]; }, 1, true},
-                                     {"eps_res", "-", [&](const int j) { return modes.energy_residuals[j]; }, 1, true},
-                                     {"unstable", "-", [&](const int j) { return bool(friction.unstable[j]); }}};
+                                     {"residual", "-", [&](const int j) { return modes.residuals[j]; }, 1, true}};
+      if (!modes.energy_residuals.empty())
+        columns.push_back({"eps_res", "-", [&](const int j) { return modes.energy_residuals[j]; }, 1, true});
+      columns.push_back({"unstable", "-", [&](const int j) { return bool(friction.unstable[j]); }});
       columns.insert(columns.end(), energies.begin(), energies.end());
       if (!modes.estimated_errors.empty())
         columns.push_back({"estimated error of lambda", "-", [&](const int j) { return modes.estimated_errors[j]; }, 1, true});
@@ -90,8 +91,9 @@ namespace Squeal
   void record_modes(const FrictionlessModes &frictionless, const FrictionModes &friction, Run &run)
   {
     const SolverParameters &solvers = run.parameters.solvers;
-    record_conditioning(frictionless.linearisation.coupled, friction.modes, friction.conditioning,
-                        solvers.complex_solver == ComplexSolver::krylov ? solvers.complex_tolerance : solvers.iteration_tolerance, run);
+    if (!frictionless.labels.empty())
+      record_conditioning(frictionless.linearisation.coupled, friction.modes, friction.conditioning,
+                          solvers.complex_solver == ComplexSolver::krylov ? solvers.complex_tolerance : solvers.iteration_tolerance, run);
     run.count("complex modes", friction.modes.lambda.size());
     run.count("unstable modes", friction.n_unstable());
     run.count("undecided modes", friction.n_of(Verdict::undecided));
@@ -121,7 +123,8 @@ namespace Squeal
           run.progress.note(text("    and ", friction.n_unstable() - n_shown_modes, " more, see complex_modes.csv"));
       }
     run.screen << '\n';
-    if (const std::string note = note_on_count(friction, frictionless.real.eigenvalues.size()); !note.empty())
+    if (const std::string note = note_on_count(friction, frictionless.real.eigenvalues.size());
+        !note.empty() && !frictionless.labels.empty())
       run.progress.note(note);
     if (const std::string note = note_on_weak_damping(frictionless.linearisation.coupled, friction); !note.empty())
       run.progress.note(note);
@@ -134,7 +137,8 @@ namespace Squeal
                          Run                     &run)
   {
     run.store_table("complex_modes", complex_table(friction, energies, more));
-    run.store_table("real_modes", real_table(frictionless));
+    if (!frictionless.labels.empty())
+      run.store_table("real_modes", real_table(frictionless));
     if (!friction.modes.real_values.empty())
       run.store_table("real_eigenvalues", real_eigenvalue_table(friction.modes.real_values));
   }

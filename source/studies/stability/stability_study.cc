@@ -268,12 +268,22 @@ namespace Squeal
   /// The same for a system file: no fields, and groups of dofs in the place of bodies.
   static void run_stability_of_system(Run &run)
   {
-    const GivenSystem       given        = given_system(run);
-    const FrictionlessModes frictionless = imported_modes(given.coupled, given.coupled, run);
-    const FrictionModes     friction     = friction_modes(frictionless, given.value, run);
+    const GivenSystem given = given_system(run);
+    DirectSolution    solution;
+    if (given.coupled.stiffness)
+      {
+        solution.frictionless = imported_modes(given.coupled, given.coupled, run);
+        solution.friction     = friction_modes(solution.frictionless, given.value, run);
+      }
+    else
+      solution = direct_solution(given, run);
+    const auto &[frictionless, friction, errors] = solution;
     record_modes(frictionless, friction, run);
     report_modes(frictionless, friction, {}, run);
-    store_mode_tables(frictionless, friction, group_columns(given.file, given.coupled, friction.modes), {}, run);
+    Columns<int>       columns = errors;
+    const Columns<int> groups  = group_columns(given, friction.modes);
+    columns.insert(columns.end(), groups.begin(), groups.end());
+    store_mode_tables(frictionless, friction, columns, {}, run);
     if (run.parameters.output.write_system != SystemOutput::none)
       write_full_system(given.file, run);
     run.finish();

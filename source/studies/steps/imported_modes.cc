@@ -18,6 +18,16 @@ namespace Squeal
       run.progress.finish(text(terms.size(), " terms"));
     }
 
+    ModeLabel numbered_label(const int number)
+    {
+      ModeLabel label;
+      label.family        = ModeFamily::body;
+      label.body          = "mode";
+      label.rank          = number;
+      label.participation = 1.;
+      return label;
+    }
+
     /// Vectors of a block of the eigensolver.
     constexpr int block_size_of_modes = 8;
   } // namespace
@@ -48,11 +58,12 @@ namespace Squeal
   {
     const double omega_max = circular_frequency(run.parameters.discretization.maximum_frequency);
     const auto  &solvers   = run.parameters.solvers;
-    const auto   shift     = definite_shift(system, omega_max);
+    const auto   shift     = system.stiffness ? definite_shift(system, omega_max) : std::nullopt;
     if (!shift)
       throw SolverError(
         "the symmetric part of the stiffness has negative eigenvalues, or it and the mass are singular for the same motion", "system file",
-        "mark terms that may destabilise by \"kind\": \"friction\", eliminate constraints, and check the signs of the terms");
+        "mark terms that may destabilise by \"kind\": \"friction\", eliminate constraints, and check the signs of the terms; Study = "
+        "stability and sensitivity solve such systems");
     const auto count = number_of_modes(system, (1. + margin) * omega_max, solvers, run.progress);
 
     FrictionlessModes result;
@@ -61,35 +72,59 @@ namespace Squeal
     run.measure("entries of the Cholesky factor", result.inverse->frictionless().n_factor_entries());
     run.count("real modes", n_in_band(result.real.eigenvalues, omega_max * omega_max));
     for (int j = 0; j < result.real.vectors->n_columns(); ++j)
-      {
-        ModeLabel label;
-        label.family        = ModeFamily::body;
-        label.body          = "mode";
-        label.rank          = j + 1;
-        label.participation = 1.;
-        result.labels.push_back(label);
-      }
+      result.labels.push_back(numbered_label(j + 1));
     result.disc = {result.labels, result.real.eigenvalues, result.real.residuals, result.real.vectors};
     return result;
   }
 
-  Columns<int> group_columns(const SystemFile &file, const CoupledSystem &system, const ComplexModes &modes)
+  DirectSolution direct_solution(const GivenSystem &given, Run &run)
   {
+    const Parameters &parameters = run.parameters;
+    run.progress.begin("Complex modes");
+    run.progress.note("  no definite part: Q is factorised as it is, and modes are named by their numbers");
+    const DirectModes modes = direct_modes(given.coupled, given.value, circular_frequency(parameters.discretization.maximum_frequency),
+                                           parameters.solvers, run.progress);
+    DirectSolution    result;
+    result.frictionless.linearisation.coupled   = given.coupled;
+    static_cast<JudgedModes &>(result.friction) = modes;
+    for (std::size_t j = 0; j < modes.modes.lambda.size(); ++j)
+      result.friction.labels.push_back(numbered_label(static_cast<int>(j) + 1));
+    if (!given.coupled.varied.empty())
+      result.friction.at = text(" at ", given.coupled.varied, " = ", exact_text(given.value));
+    result.friction.cost = run.progress.finish(
+      text(modes.modes.lambda.size(), " found, ",
+           modes.n_counted ? text(*modes.n_counted, " counted by the argument principle") : "not counted on several processes", ", ",
+           modes.n_unstable(), " unstable", result.friction.at, "; ", modes.modes.summary));
+    if (modes.n_counted)
+      run.count("complex modes counted by the argument principle", *modes.n_counted);
+    result.columns = {{"backward error", "-", [errors = modes.backward_errors](const int j) { return errors[j]; }, 1, true},
+                      {"condition number", "-", [numbers = modes.conditioning.modes](const int j) { return numbers[j]; }, 1, true},
+                      {"error of lambda", "-", [errors = modes.conditioning.errors](const int j) { return errors[j]; }, 1, true}};
+    return result;
+  }
+
+  Columns<int> group_columns(const GivenSystem &given, const ComplexModes &modes)
+  {
+    const SystemFile  &file = given.file;
     const MultiVector &re = *modes.real_part, &im = *modes.imaginary_part;
-    const MultiVector  M_re = *system.mass * re, M_im = *system.mass * im;
-    const DenseMatrix  energies = re.local().cwiseProduct(M_re.local()) + im.local().cwiseProduct(M_im.local()); // of each dof
-    DenseMatrix        shares   = DenseMatrix::Zero(static_cast<Eigen::Index>(file.groups.size()), energies.cols());
+    const auto mass = given.coupled.mass ? given.coupled.mass : sparse_matrices(given.coupled.terms, given.coupled.at(given.value)).mass;
+    const MultiVector M_re = *mass * re, M_im = *mass * im;
+    const DenseMatrix energies = re.local().cwiseProduct(M_re.local()) + im.local().cwiseProduct(M_im.local()); // of each dof
+    DenseMatrix       shares   = DenseMatrix::Zero(static_cast<Eigen::Index>(file.groups.size()), energies.cols());
     for (std::size_t g = 0; g < file.groups.size(); ++g)
       for (const auto &[first, last] : file.groups[g].ranges)
         for (int dof = first; dof <= last; ++dof)
           if (const int place = re.map().place(dof); place >= 0)
             shares.row(static_cast<Eigen::Index>(g)) += energies.row(place);
     sum_over_processes(re.map().communicator(), shares.data(), static_cast<std::size_t>(shares.size()));
+    Eigen::RowVectorXd all = energies.colwise().sum();
+    sum_over_processes(re.map().communicator(), all.data(), static_cast<std::size_t>(all.size()));
+    shares = shares * all.cwiseInverse().asDiagonal();
     Columns<int> result;
     for (std::size_t g = 0; g < file.groups.size(); ++g)
       result.push_back({"kinetic energy of " + file.groups[g].name, "%",
                         [shares, g](const int j) { return 100. * shares(static_cast<Eigen::Index>(g), j); }, 1});
-    return result; // modes have unit φᴴMφ
+    return result;
   }
 
   FileParameter friction_parameter(const Parameters &parameters)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <squeal/contact/imported_system.h>
+#include <squeal/estimates/direct_modes.h>
 #include <squeal/studies/steps/friction_modes.h>
 
 namespace Squeal
@@ -24,12 +25,21 @@ namespace Squeal
    *
    * @param system @p whole or a part of it, such as that without damping, which modes and factor are made from
    *
-   * Throws SolverError if K is not positive semidefinite.
+   * Throws SolverError if the system has no definite part.
    */
   FrictionlessModes imported_modes(const CoupledSystem &system, const CoupledSystem &whole, Run &run, double margin = 0.);
 
+  /// Modes of a system without a definite part by LU factors of Q(s), as a step of the run; named by their numbers.
+  struct DirectSolution
+  {
+    FrictionlessModes frictionless; ///< the system, without real modes
+    FrictionModes     friction;
+    Columns<int>      columns; ///< backward errors, condition numbers, digits
+  };
+  DirectSolution direct_solution(const GivenSystem &given, Run &run);
+
   /// Columns of a table of modes, known by their numbers: shares of the kinetic energy of the groups of dofs, φ_gᴴ (M φ)_g / φᴴ M φ [%].
-  Columns<int> group_columns(const SystemFile &file, const CoupledSystem &system, const ComplexModes &modes);
+  Columns<int> group_columns(const GivenSystem &given, const ComplexModes &modes);
 
   /// μ of a mesh as the parameter of a system file: its range is all that is swept, or its value where contact nodes or damping depend on it.
   FileParameter friction_parameter(const Parameters &parameters);
