@@ -1,0 +1,111 @@
+#!/usr/bin/python3
+"""Times a sweep over a parameter of a system on one core beside full-order solutions by SLEPc at every one of its values.
+
+    scripts/benchmark_system.py PRM [--set "Section/Name=value"]... [--runs 3] [--core 0] [--eigenvalues N] [--basis N] [--tolerance 1e-12]
+
+PRM is a parameter file with Study = sweep, System and one parameter in the section Sweep; the settings are handed to squeal. SLEPc takes
+TOAR about zero and is told the smallest number of eigenvalues, in steps of two, that reach beyond the band at both ends and in the
+middle of the sweep.
+
+Processor seconds: of squeal, the whole run from the files to branches and thresholds; of SLEPc, the solutions from M, C and K in memory. Both
+run in turn. The modes of the sweep are compared with SLEPc's: those of the band with Re lambda of at least -0.1 times the circular frequency
+at its end. Needs Debian's python3-slepc4py (scripts/setup.sh peers).
+"""
+
+import argparse
+import os
+import pathlib
+import tempfile
+
+import benchmarking
+
+os.environ.update(benchmarking.environment())  # before NumPy loads OpenBLAS
+
+import numpy as np
+
+import slepc_modes
+from squeal import exported_matrices
+from squeal.command_line import exit_on_error
+from squeal.errors import Error
+from squeal.results import Table
+from squeal.system import System
+
+
+def swept(directory):
+    """Name of the parameter of a sweep and its values."""
+    words = [word.strip() for word in benchmarking.parameter(directory, "Sweep/Parameter").split(",")]
+    if len(words) != 4:
+        raise Error("the sweep has no parameter of a system", str(directory), "set Sweep/Parameter = NAME, FIRST, LAST, NUMBER")
+    return words[0], np.linspace(float(words[1]), float(words[2]), int(words[3]))
+
+
+def modes_by_value(directory, values):
+    """The eigenvalues of the sweep at each of its values, without those of refinements between them."""
+    table = Table(pathlib.Path(directory) / "branches.csv")
+    at, planned = np.array(table.numbers(table.parameter)), ~np.array(table.flags("refinement [-]"), dtype=bool)
+    eigenvalues = np.array(table.eigenvalues(), dtype=complex)
+    close = 1e-9 * abs(values).max()
+    return [eigenvalues[planned & (abs(at - value) <= close)] for value in values]
+
+
+def listed(eigenvalues, end):
+    """Those of the band that decay no faster than within a period."""
+    return eigenvalues[(eigenvalues.imag > 0) & (eigenvalues.imag < end) & (eigenvalues.real >= -0.1 * end)]
+
+
+def smallest_number(problems, end, first):
+    """The smallest number of eigenvalues with which SLEPc's reach beyond the band."""
+    number = first
+    while not all(slepc_modes.Solution(problem, number, "toar").covers(end / (2 * np.pi)) for problem in problems):
+        number += 2
+    return number
+
+
+@exit_on_error()
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("parameter_file", metavar="PRM", type=pathlib.Path)
+    parser.add_argument("--set", action="append", default=[], dest="settings", metavar="Section/Name=value")
+    parser.add_argument("--runs", type=int, default=3, help="repetitions (default: %(default)s)")
+    parser.add_argument("--core", type=int, default=0, help="the core to run on (default: %(default)s)")
+    parser.add_argument("--eigenvalues", type=int, help="how many SLEPc is asked for (default: the smallest number that covers the band)")
+    parser.add_argument("--basis", type=int, help="vectors of its basis (default: twice as many)")
+    parser.add_argument("--tolerance", type=float, default=1e-12, help="SLEPc's tolerance (default: %(default)s)")
+    arguments = parser.parse_args()
+    if not slepc_modes.available():
+        raise slepc_modes.missing()
+    os.sched_setaffinity(0, {arguments.core})
+    print(benchmarking.describe_machine(arguments.core), flush=True)
+
+    sweeps, sums, solutions, ratios = [], [], [], []
+    with tempfile.TemporaryDirectory() as directory:
+        problems, number = [], arguments.eigenvalues
+        for run in range(1, arguments.runs + 1):
+            sweeps.append(benchmarking.cpu_seconds(benchmarking.run_squeal(arguments.core, arguments.parameter_file, directory, arguments.settings)))
+            if not problems:
+                name, values = swept(directory)
+                end = 2 * np.pi * float(benchmarking.parameter(directory, "Band/Maximum frequency"))
+                system = System.read(arguments.parameter_file.parent / benchmarking.parameter(directory, "System"))
+                problems = [exported_matrices.QuadraticProblem(*system.matrices({name: float(value)})) for value in values]
+                expected = [listed(found, end) for found in modes_by_value(directory, values)]
+                number = number or smallest_number([problems[0], problems[len(problems) // 2], problems[-1]], end, 2 * max(map(len, expected)) + 4)
+                print(f"{system.size} dofs, {len(values)} values of {name}; SLEPc is asked for {number} eigenvalues", flush=True)
+            found = [slepc_modes.Solution(problem, number, "toar", tolerance=arguments.tolerance, basis=arguments.basis, seed=run)
+                     for problem in problems]
+            solutions += [solution.cpu for solution in found]
+            sums.append(sum(solution.cpu for solution in found))
+            ratios.append(sums[-1] / sweeps[-1])
+            eigenvalues = [listed(solution.eigenvalues, end) for solution in found]
+            uncovered = sum(not solution.covers(end / (2 * np.pi)) for solution in found)
+            unequal = sum(len(of_slepc) != len(of_sweep) for of_slepc, of_sweep in zip(eigenvalues, expected))
+            distance = max((abs(of_slepc - value).min(initial=np.inf) / abs(value)
+                            for of_slepc, of_sweep in zip(eigenvalues, expected) for value in of_sweep), default=0.0)
+            print(f"run {run}: squeal {sweeps[-1]:.2f} s, SLEPc {sums[-1]:.2f} s; {min(map(len, expected))} to {max(map(len, expected))} modes, "
+                  f"other numbers of them at {unequal} values, band not covered at {uncovered}, largest relative difference {distance:.1e}", flush=True)
+    print(f"\nmedian CPU [s]: sweep {benchmarking.spread(sweeps, 2)}; {len(values)} solutions by SLEPc {benchmarking.spread(sums, 2)}, "
+          f"one of them {benchmarking.spread(solutions, 2)}")
+    print(f"{len(values)} solutions take {benchmarking.spread(ratios, 2)} times as long as the sweep")
+
+
+if __name__ == "__main__":
+    main()
