@@ -11,7 +11,6 @@ friction coefficients spread over the sweep, of which the mean stands for all. B
 Where the sweep makes the chart without dissipation besides, that is counted to squeal alone.
 """
 
-import argparse
 import pathlib
 import statistics
 import tempfile
@@ -31,11 +30,7 @@ def coefficients(directory):
 
 @exit_on_error()
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("parameter_file", metavar="PRM", type=pathlib.Path)
-    parser.add_argument("--set", action="append", default=[], dest="settings", metavar="Section/Name=value")
-    parser.add_argument("--runs", type=int, default=3, help="repetitions (default: %(default)s)")
-    parser.add_argument("--core", type=int, default=0, help="the core to run on (default: %(default)s)")
+    parser = benchmarking.sweep_parser(__doc__)
     arguments = parser.parse_args()
 
     print(benchmarking.describe_machine(arguments.core), flush=True)

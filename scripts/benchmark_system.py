@@ -12,7 +12,6 @@ run in turn. The modes of the sweep are compared with SLEPc's: those of the band
 at its end. Needs Debian's python3-slepc4py (scripts/setup.sh peers).
 """
 
-import argparse
 import os
 import pathlib
 import tempfile
@@ -63,11 +62,7 @@ def smallest_number(problems, end, first):
 
 @exit_on_error()
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("parameter_file", metavar="PRM", type=pathlib.Path)
-    parser.add_argument("--set", action="append", default=[], dest="settings", metavar="Section/Name=value")
-    parser.add_argument("--runs", type=int, default=3, help="repetitions (default: %(default)s)")
-    parser.add_argument("--core", type=int, default=0, help="the core to run on (default: %(default)s)")
+    parser = benchmarking.sweep_parser(__doc__)
     parser.add_argument("--eigenvalues", type=int, help="how many SLEPc is asked for (default: the smallest number that covers the band)")
     parser.add_argument("--basis", type=int, help="vectors of its basis (default: twice as many)")
     parser.add_argument("--tolerance", type=float, default=1e-12, help="SLEPc's tolerance (default: %(default)s)")

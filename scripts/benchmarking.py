@@ -1,5 +1,6 @@
 """What the benchmarks share: the machine, runs of squeal and of SLEPc on one core with the same BLAS kernels, medians."""
 
+import argparse
 import json
 import os
 import pathlib
@@ -49,6 +50,16 @@ def describe_machine(core):
     load = os.getloadavg()[0]
     return (f"{name}, core {core} of {os.cpu_count()}, OpenBLAS kernels {kernels() or 'as OpenBLAS chooses'}, "
             f"load of the machine {load:.1f}")
+
+
+def sweep_parser(description):
+    """The command line of a benchmark of one sweep: parameter file, settings, repetitions, core."""
+    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("parameter_file", metavar="PRM", type=pathlib.Path)
+    parser.add_argument("--set", action="append", default=[], dest="settings", metavar="Section/Name=value")
+    parser.add_argument("--runs", type=int, default=3, help="repetitions (default: %(default)s)")
+    parser.add_argument("--core", type=int, default=0, help="the core to run on (default: %(default)s)")
+    return parser
 
 
 def run_on_core(core, command):

@@ -187,23 +187,21 @@ namespace Squeal
 
     DirectModes    result{judged_by_errors(std::move(modes), std::move(conditioning), matrices.damping != nullptr),
                        std::move(backward_errors),
-                       {},
-                       0};
+                       {}};
     ContourOptions contour;
     contour.largest_circular_frequency = largest_circular_frequency;
     contour.lowest_frequency           = 1e-3 * largest_circular_frequency;
     contour.largest_growth             = largest_rate_of_band * largest_circular_frequency;
-    result.n_in_rectangle =
-      static_cast<int>(std::count_if(right.values.begin(), right.values.end(), [&](const std::complex<double> &lambda) {
-        return std::abs(lambda.real()) <= contour.largest_growth && lambda.imag() >= contour.lowest_frequency;
-      }));
     if (n_processes(matrices.mass->communicator()) == 1)
       {
         progress.update("count by the argument principle");
-        result.n_counted = count_by_sparse_lu(matrices, contour, progress).n_modes;
-        if (*result.n_counted != result.n_in_rectangle)
-          throw SolverError(text(result.n_in_rectangle, " complex modes were found in the band, ", *result.n_counted, " are counted"),
-                            "complex modes", "lower Complex modes/Tolerance, or move Band/Maximum frequency");
+        result.n_counted   = count_by_sparse_lu(matrices, contour, progress).n_modes;
+        const auto n_found = std::count_if(right.values.begin(), right.values.end(), [&](const std::complex<double> &lambda) {
+          return std::abs(lambda.real()) <= contour.largest_growth && lambda.imag() >= contour.lowest_frequency;
+        });
+        if (*result.n_counted != n_found)
+          throw SolverError(text(n_found, " complex modes were found in the band, ", *result.n_counted, " are counted"), "complex modes",
+                            "lower Complex modes/Tolerance, or move Band/Maximum frequency");
       }
     return result;
   }

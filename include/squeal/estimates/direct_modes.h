@@ -11,7 +11,6 @@ namespace Squeal
   {
     std::vector<double> backward_errors; ///< η = ‖Q(λ)φ‖ / (w ‖φ‖),  w = |λ|² ‖M‖ + |λ| ‖C‖ + ‖K‖ [-]
     std::optional<int>  n_counted;       ///< by the argument principle in the rectangle of ContourOptions; nothing on several processes
-    int                 n_in_rectangle;  ///< of those found
   };
 
   /**

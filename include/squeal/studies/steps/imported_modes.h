@@ -34,7 +34,7 @@ namespace Squeal
   {
     FrictionlessModes frictionless; ///< the system, without real modes
     FrictionModes     friction;
-    Columns<int>      columns; ///< backward errors, condition numbers, digits
+    Columns<int>      columns; ///< backward errors, condition numbers, errors of λ
   };
   DirectSolution direct_solution(const GivenSystem &given, Run &run);
 
