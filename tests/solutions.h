@@ -85,8 +85,8 @@ namespace Squeal::Testing
   {
     UpdatedInverse           inverse(system, 0., FactorizationLibrary::automatic);
     ResidualIterationOptions options;
-    options.largest_circular_frequency = omega_max;
-    options.tolerance                  = tolerance;
+    options.band      = omega_max;
+    options.tolerance = tolerance;
     Progress progress;
     return residual_iteration(system, inverse, *real_modes(system).vectors, friction, options, progress);
   }
@@ -102,9 +102,9 @@ namespace Squeal::Testing
     const auto krylov         = krylov_modes(system, inverse, 0., mu, 10., n, solvers, progress);
 
     ResidualIterationOptions options;
-    options.largest_circular_frequency = 10.;
-    options.tolerance                  = 1e-12;
-    const auto iterated                = residual_iteration(system, inverse, unit_vectors(system.map()), mu, options, progress);
+    options.band        = 10.;
+    options.tolerance   = 1e-12;
+    const auto iterated = residual_iteration(system, inverse, unit_vectors(system.map()), mu, options, progress);
 
     const SecondOrderSystem matrices = with_friction(system, mu);
     DenseMatrix             C;

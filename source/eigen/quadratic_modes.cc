@@ -108,7 +108,7 @@ namespace Squeal
               if (transformation.degree == 1)
                 modes.real_values.push_back(-lambda.real());
             }
-          else if (lambda.imag() > 0. && lambda.imag() <= options.largest_circular_frequency)
+          else if (lambda.imag() > 0. && lambda.imag() <= options.largest_circular_frequency && lambda.real() >= -options.largest_decay)
             {
               // The members of a conjugate pair ν share two columns; of degree
               // one both have a λ with Im λ > 0, of degree two only one.
@@ -116,6 +116,8 @@ namespace Squeal
             }
         }
       std::sort(modes.real_values.begin(), modes.real_values.end());
+      modes.real_values.erase(modes.real_values.begin(),
+                              std::lower_bound(modes.real_values.begin(), modes.real_values.end(), -options.largest_decay));
       std::stable_sort(candidates.begin(), candidates.end(), [](const Candidate &a, const Candidate &b) {
         return a.value.imag() != b.value.imag() ? a.value.imag() < b.value.imag() : a.value.real() < b.value.real();
       });

@@ -194,6 +194,38 @@ namespace Squeal
     }
   } // namespace
 
+  std::vector<double> complex_norms(const MultiVector &real_part, const MultiVector &imaginary_part)
+  {
+    std::vector<double>       result    = column_norms(real_part);
+    const std::vector<double> imaginary = column_norms(imaginary_part);
+    for (std::size_t j = 0; j < result.size(); ++j)
+      result[j] = std::hypot(result[j], imaginary[j]);
+    return result;
+  }
+
+  std::vector<double> pencil_norms(const CoupledSystem                     &system,
+                                   const ParameterValues                   &values,
+                                   const std::vector<std::complex<double>> &lambda)
+  {
+    const double M = norm_bound(system.terms, values, 2), C = norm_bound(system.terms, values, 1), K = norm_bound(system.terms, values, 0);
+    std::vector<double> result;
+    for (const std::complex<double> &value : lambda)
+      result.push_back(std::abs(value) * (std::abs(value) * M + C) + K);
+    return result;
+  }
+
+  std::vector<double> backward_errors(const CoupledSystem &system, const ParameterValues &values, const ComplexModes &modes)
+  {
+    const int                 n      = static_cast<int>(modes.lambda.size());
+    const MultiVector         forces = force_residuals(system, values, modes.lambda, *modes.real_part, *modes.imaginary_part);
+    std::vector<double>       result = complex_norms(view(forces, 0, n), view(forces, n, n));
+    const std::vector<double> w      = pencil_norms(system, values, modes.lambda),
+                              norms  = complex_norms(*modes.real_part, *modes.imaginary_part);
+    for (int j = 0; j < n; ++j)
+      result[j] /= w[j] * norms[j];
+    return result;
+  }
+
   double Conditioning::largest_error() const
   {
     return errors.empty() ? 0. : *std::max_element(errors.begin(), errors.end());

@@ -4,9 +4,7 @@
 #include <squeal/bases/rigid_body.h>
 #include <squeal/eigen/quadratic_modes.h>
 #include <squeal/estimates/direct_modes.h>
-#include <squeal/linear_algebra/communication.h>
 #include <squeal/linear_algebra/factorization.h>
-#include <squeal/modes/contour_count.h>
 
 #include <algorithm>
 #include <cmath>
@@ -16,8 +14,6 @@ namespace Squeal
 {
   namespace
   {
-    const char *const what = "Q(s) at a real shift";
-
     /// A⁻ᵀ by the factors of A.
     struct TransposedInverse : LinearOperator
     {
@@ -52,18 +48,12 @@ namespace Squeal
       return result;
     }
 
-    /// √(‖A‖_1 ‖A‖_∞) ≥ ‖A‖_2.
-    double norm_of(const SparseMatrix *A, const SparseMatrix *transpose)
-    {
-      return A ? std::sqrt(row_sum_norm(*A) * row_sum_norm(*transpose)) : 0.;
-    }
-
     /// Columns of @p modes in the order of @p lambda, each taken once.
     QuadraticModes in_order_of(const std::vector<std::complex<double>> &lambda, const QuadraticModes &modes)
     {
       if (modes.values.size() != lambda.size())
         throw SolverError(text(lambda.size(), " right and ", modes.values.size(), " left modes were found"), "complex modes",
-                          "move Band/Maximum frequency off the mode next to it, or lower Complex modes/Tolerance");
+                          "change Band/Maximum frequency or Band/Maximum rate, or lower Complex modes/Tolerance");
       std::vector<int> rest(lambda.size()), order;
       for (std::size_t j = 0; j < rest.size(); ++j)
         rest[j] = static_cast<int>(j);
@@ -78,15 +68,6 @@ namespace Squeal
       QuadraticModes result;
       result.real_part      = std::make_shared<MultiVector>(selected(*modes.real_part, order));
       result.imaginary_part = std::make_shared<MultiVector>(selected(*modes.imaginary_part, order));
-      return result;
-    }
-
-    std::vector<double> complex_norms(const MultiVector &real_part, const MultiVector &imaginary_part)
-    {
-      std::vector<double>       result    = column_norms(real_part);
-      const std::vector<double> imaginary = column_norms(imaginary_part);
-      for (std::size_t j = 0; j < result.size(); ++j)
-        result[j] = std::hypot(result[j], imaginary[j]);
       return result;
     }
 
@@ -126,30 +107,52 @@ namespace Squeal
     }
   } // namespace
 
-  DirectModes direct_modes(const CoupledSystem    &system,
+  /// Factors of Q(s). Throws SolverError naming @p source if Q is singular at another shift, too: then it is for all λ.
+  static std::unique_ptr<Factorization> factors_at(const SecondOrderSystem &matrices, const double shift, const std::string &source)
+  {
+    constexpr double other  = 1.3;
+    const auto       factor = [&](const double s) { return factorize_general(*pencil_at(matrices, s), "Q(s) at a real shift, " + source); };
+    try
+      {
+        return factor(shift);
+      }
+    catch (const SolverError &)
+      {
+        try
+          {
+            factor(other * shift);
+          }
+        catch (const SolverError &)
+          {
+            throw SolverError(
+              "det Q(lambda) vanishes for all lambda: some motion or combination of equations has neither mass, damping nor stiffness",
+              source, "remove dependent rows and columns from all matrices, such as redundant constraints");
+          }
+        throw;
+      }
+  }
+
+  JudgedModes direct_modes(const CoupledSystem    &system,
                            const double            value,
-                           const double            largest_circular_frequency,
+                           const Band             &band,
                            const SolverParameters &solvers,
+                           const std::string      &source,
                            Progress               &progress)
   {
     const ParameterValues   values   = system.at(value);
     const SecondOrderSystem matrices = sparse_matrices(system.terms, values), transpose = transposed(matrices);
-    const auto              norm = [&](const std::shared_ptr<const SparseMatrix> SecondOrderSystem::*member) {
-      return norm_of((matrices.*member).get(), (transpose.*member).get());
-    };
-    const double norm_M = norm(&SecondOrderSystem::mass), norm_C = norm(&SecondOrderSystem::damping),
-                 norm_K = norm(&SecondOrderSystem::stiffness);
 
     QuadraticModesOptions options;
-    options.shift                      = largest_circular_frequency / band_per_stabilizing_shift;
-    options.largest_circular_frequency = largest_circular_frequency;
-    options.largest_damping            = largest_rate_of_band;
+    options.shift                      = band.end / band_per_stabilizing_shift;
+    options.largest_circular_frequency = band.end;
+    options.largest_damping            = band.largest_damping;
+    options.largest_decay              = band.largest_decay;
     options.tolerance                  = solvers.complex_tolerance;
-    options.stiffness_norm             = norm_K;
-    options.damping_norm               = norm_C;
+    options.stiffness_norm             = norm_bound(system.terms, values, 0);
+    options.damping_norm               = norm_bound(system.terms, values, 1);
     options.report                     = [&](const std::string &state) { progress.update(state); };
 
-    const auto           factor = factorize_general(*pencil_at(matrices, options.shift), what);
+    const auto           factor = factors_at(matrices, options.shift, source);
     const QuadraticModes right = quadratic_modes({matrices.mass.get(), matrices.damping.get(), matrices.stiffness.get()}, *factor, options);
     if (right.values.empty())
       throw SolverError("no oscillating mode lies in the band", "complex modes", "raise Band/Maximum frequency");
@@ -170,39 +173,15 @@ namespace Squeal
 
     make_dual(modes, products_by_lambda(matrices, modes));
 
-    const MultiVector forces    = force_residuals(system, values, modes.lambda, *modes.real_part, *modes.imaginary_part);
-    const int         n         = static_cast<int>(modes.lambda.size());
-    const auto        residuals = complex_norms(view(forces, 0, n), view(forces, n, n)),
-               right_norms      = complex_norms(*modes.real_part, *modes.imaginary_part),
-               left_norms       = complex_norms(*modes.left_real_part, *modes.left_imaginary_part);
-    Conditioning        conditioning{};
-    std::vector<double> backward_errors;
-    for (int j = 0; j < n; ++j)
+    const auto weights = pencil_norms(system, values, modes.lambda), backward = backward_errors(system, values, modes),
+               right_norms = complex_norms(*modes.real_part, *modes.imaginary_part),
+               left_norms  = complex_norms(*modes.left_real_part, *modes.left_imaginary_part);
+    Conditioning conditioning{};
+    for (std::size_t j = 0; j < modes.lambda.size(); ++j)
       {
-        const double modulus = std::abs(modes.lambda[j]), weight = modulus * (modulus * norm_M + norm_C) + norm_K;
-        backward_errors.push_back(residuals[j] / (weight * right_norms[j]));
-        conditioning.modes.push_back(weight * left_norms[j] * right_norms[j] / modulus);
-        conditioning.errors.push_back(conditioning.modes.back() * std::max(backward_errors.back(), std::numeric_limits<double>::epsilon()));
+        conditioning.modes.push_back(weights[j] * left_norms[j] * right_norms[j] / std::abs(modes.lambda[j]));
+        conditioning.errors.push_back(conditioning.modes.back() * std::max(backward[j], std::numeric_limits<double>::epsilon()));
       }
-
-    DirectModes    result{judged_by_errors(std::move(modes), std::move(conditioning), matrices.damping != nullptr),
-                       std::move(backward_errors),
-                       {}};
-    ContourOptions contour;
-    contour.largest_circular_frequency = largest_circular_frequency;
-    contour.lowest_frequency           = 1e-3 * largest_circular_frequency;
-    contour.largest_growth             = largest_rate_of_band * largest_circular_frequency;
-    if (n_processes(matrices.mass->communicator()) == 1)
-      {
-        progress.update("count by the argument principle");
-        result.n_counted   = count_by_sparse_lu(matrices, contour, progress).n_modes;
-        const auto n_found = std::count_if(right.values.begin(), right.values.end(), [&](const std::complex<double> &lambda) {
-          return std::abs(lambda.real()) <= contour.largest_growth && lambda.imag() >= contour.lowest_frequency;
-        });
-        if (*result.n_counted != n_found)
-          throw SolverError(text(n_found, " complex modes were found in the band, ", *result.n_counted, " are counted"), "complex modes",
-                            "lower Complex modes/Tolerance, or move Band/Maximum frequency");
-      }
-    return result;
+    return judged_by_errors(std::move(modes), std::move(conditioning), matrices.damping != nullptr);
   }
 } // namespace Squeal

@@ -94,22 +94,22 @@ namespace Squeal
   JudgedModes modes_with_friction(const CoupledSystem    &system,
                                   const SystemModes      &frictionless,
                                   const double            mu,
-                                  const double            largest_circular_frequency,
+                                  const Band             &band,
                                   const SolverParameters &solvers,
                                   Progress               &progress)
   {
     const SymmetricModes &real = frictionless.real;
     ComplexModes          modes;
     if (solvers.complex_solver == ComplexSolver::krylov)
-      modes = krylov_modes(system, *frictionless.inverse, frictionless.shift, mu, largest_circular_frequency, real.eigenvalues.size(),
-                           solvers, progress, real.vectors.get());
+      modes = krylov_modes(system, *frictionless.inverse, frictionless.shift, mu, band, real.eigenvalues.size(), solvers, progress,
+                           real.vectors.get());
     else
       {
         ResidualIterationOptions iteration;
-        iteration.largest_circular_frequency = largest_circular_frequency;
-        iteration.tolerance                  = solvers.iteration_tolerance;
-        iteration.maximum_basis              = solvers.maximum_basis;
-        modes                                = residual_iteration(system, *frictionless.inverse, *real.vectors, mu, iteration, progress);
+        iteration.band          = band;
+        iteration.tolerance     = solvers.iteration_tolerance;
+        iteration.maximum_basis = solvers.maximum_basis;
+        modes                   = residual_iteration(system, *frictionless.inverse, *real.vectors, mu, iteration, progress);
       }
     if (modes.lambda.empty())
       throw SolverError("no oscillating mode lies in the band", "complex modes", "raise Band/Maximum frequency");

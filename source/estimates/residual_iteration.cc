@@ -71,13 +71,13 @@ namespace Squeal
       return parts;
     }
 
-    /// Oscillating modes inside the radius of the band.
-    ReducedModes modes_in_band(const ReducedModel &model, const double mu, const double largest_circular_frequency)
+    /// Oscillating modes that the band lists.
+    ReducedModes modes_in_band(const ReducedModel &model, const double mu, const Band &band)
     {
-      const ReducedModes modes = reduced_modes(model, mu, largest_circular_frequency);
+      const ReducedModes modes = reduced_modes(model, mu, band.end);
       std::vector<int>   inside;
       for (std::size_t j = 0; j < modes.lambda.size(); ++j)
-        if (std::abs(modes.lambda[j]) <= band_radius(largest_circular_frequency))
+        if (band.lists(modes.lambda[j]))
           inside.push_back(static_cast<int>(j));
       if (inside.empty())
         throw SolverError("no oscillating mode lies in the band", "complex modes", "raise Band/Maximum frequency");
@@ -89,18 +89,17 @@ namespace Squeal
                       const UpdatedInverse      &inverse,
                       const ReducedModel        &model,
                       const std::vector<double> &friction_coefficients,
-                      const double               largest_circular_frequency)
+                      const Band                &band)
     {
-      const double         radius = band_radius(largest_circular_frequency);
       std::optional<State> result;
       for (const double mu : friction_coefficients)
         {
           State state;
           state.reserve(2);
-          state.emplace_back(system, inverse, model, modes_in_band(model, mu, largest_circular_frequency));
+          state.emplace_back(system, inverse, model, modes_in_band(model, mu, band));
           const auto &values = state.front().modes.real_values;
-          if (std::any_of(values.begin(), values.end(), [radius](const double l) { return std::abs(l) <= radius; }))
-            state.emplace_back(system, inverse, model, real_eigenvalue_modes(model, mu, largest_circular_frequency));
+          if (std::any_of(values.begin(), values.end(), [&band](const double l) { return band.lists(l); }))
+            state.emplace_back(system, inverse, model, real_eigenvalue_modes(model, mu, band));
           if (!result || !(worst_error(state) <= worst_error(*result)))
             result.emplace(std::move(state));
         }
@@ -188,7 +187,7 @@ namespace Squeal
 
     for (int step = 0;; ++step)
       {
-        State        state = worst_state(system, inverse, model, friction_coefficients, options.largest_circular_frequency);
+        State        state = worst_state(system, inverse, model, friction_coefficients, options.band);
         const double worst = worst_error(state);
 
         progress.update(text(model.size(), " vectors, estimated error ", worst));
@@ -215,7 +214,7 @@ namespace Squeal
     const GrownBasis grown = grow_residual_basis(system, inverse, real_modes, {mu}, options, progress);
     ComplexModes     modes = full_order_modes(system, inverse, grown.model, grown.modes, &grown.estimates);
     for (const double l : grown.modes.real_values)
-      if (std::abs(l) <= band_radius(options.largest_circular_frequency))
+      if (options.band.lists(l))
         modes.real_values.push_back(l);
     modes.summary = text(grown.model.size(), " vectors, estimated error ", grown.worst_error, ", ", grown.n_growths, " growths");
     return modes;

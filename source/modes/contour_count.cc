@@ -50,9 +50,7 @@ namespace Squeal
       {
         throw SolverError(text("the count is refused: ", why, " at ", decimal_text(hertz(lambda.imag())), " Hz with a growth rate of ",
                                lambda.real(), " 1/s"),
-                          place,
-                          std::abs(lambda.real()) < width ? "move the end of the band off the mode, or allow more points" :
-                                                            "choose another width of the contour, or allow more points");
+                          place, std::abs(lambda.real()) < width ? "change Band/Maximum frequency" : "change Band/Maximum rate");
       }
 
       double               high, low, width;
@@ -104,7 +102,7 @@ namespace Squeal
       const double turns = contour.multiplicity * phase / (2. * M_PI), whole = std::round(turns);
       if (!(std::abs(turns - whole) < 1e-3))
         throw SolverError("the determinant does not return to its phase: " + text(turns) + " turns", place,
-                          "choose another end of the band or another width of the contour");
+                          "change Band/Maximum frequency or Band/Maximum rate");
       return whole;
     }
 
@@ -131,7 +129,7 @@ namespace Squeal
         }
       if (n_inside != n_frictionless)
         throw SolverError(text(n_inside, " real modes were found in the band, ", n_frictionless, " exist"), place,
-                          "move the end of the band off the mode next to it");
+                          "change Band/Maximum frequency");
     }
 
     std::vector<ContourCount> count_condensed(const CoupledSystem       &system,
@@ -204,7 +202,7 @@ namespace Squeal
           if (!(request.tolerance >= least_tolerance))
             throw SolverError(
               "the count is refused: the determinant is not known well enough on the contour, which passes a mode too closely", place,
-              "move the end of the band, or choose another width of the contour");
+              "change Band/Maximum frequency or Band/Maximum rate");
           determinant.reset();
         }
       return results;
@@ -228,6 +226,31 @@ namespace Squeal
     }
   } // namespace
 
+  ContourOptions contour_of_band(const Band &band)
+  {
+    ContourOptions result;
+    result.largest_circular_frequency = band.end;
+    result.lowest_frequency           = 1e-3 * band.end;
+    result.largest_growth             = band.rate;
+    return result;
+  }
+
+  int n_in_rectangle(const std::vector<Complex> &lambda, const ContourOptions &contour)
+  {
+    return std::count_if(lambda.begin(), lambda.end(), [&](const Complex &value) {
+      return std::abs(value.real()) <= contour.largest_growth && value.imag() >= contour.lowest_frequency &&
+             value.imag() <= contour.largest_circular_frequency;
+    });
+  }
+
+  void check_count(const int n_counted, const std::vector<Complex> &lambda, const ContourOptions &contour)
+  {
+    if (const int n_found = n_in_rectangle(lambda, contour); n_found != n_counted)
+      throw SolverError(text(n_found, " complex modes were found in the band up to |Re lambda| = ", contour.largest_growth, " 1/s, ",
+                             n_counted, " are counted"),
+                        place, "lower Complex modes/Tolerance, or change Band/Maximum frequency or Band/Maximum rate");
+  }
+
   ContourCount count_by_sparse_lu(const SecondOrderSystem &matrices, const ContourOptions &options, Progress &progress)
   {
     const Contour           contour(options, matrices.damping != nullptr);
@@ -244,6 +267,11 @@ namespace Squeal
       return !term.matrix || term.matrix == system.mass || term.matrix == system.stiffness || term.vanishes(system.values);
     });
     return confined ? ContourMethod::condensed : ContourMethod::sparse_lu;
+  }
+
+  bool is_countable(const CoupledSystem &system)
+  {
+    return system.map().n_processes() == 1 || (system.stiffness && contour_method(system) == ContourMethod::condensed);
   }
 
   std::vector<ContourCount> count_by_contour(const CoupledSystem       &system,

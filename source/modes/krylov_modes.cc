@@ -76,7 +76,7 @@ namespace Squeal
                             UpdatedInverse         &inverse,
                             const double            shift,
                             const double            mu,
-                            const double            largest_circular_frequency,
+                            const Band             &band,
                             const int               n_expected,
                             const SolverParameters &parameters,
                             Progress               &progress,
@@ -98,8 +98,9 @@ namespace Squeal
 
     QuadraticModesOptions options;
     options.shift                      = shift;
-    options.largest_circular_frequency = largest_circular_frequency;
-    options.largest_damping            = largest_rate_of_band;
+    options.largest_circular_frequency = band.end;
+    options.largest_damping            = band.largest_damping;
+    options.largest_decay              = band.largest_decay;
     options.zero_modulus               = std::sqrt(system.hidden_square);
     options.expected                   = n_expected;
     options.close_vectors              = real_modes;
@@ -121,7 +122,7 @@ namespace Squeal
         // errors: a shift helps. If the reason was another one, the next attempt says so.
         if (shift != 0. || has_full_terms)
           throw;
-        options.shift = largest_circular_frequency / band_per_stabilizing_shift;
+        options.shift = band.end / band_per_stabilizing_shift;
         UpdatedInverse shifted(system, options.shift, parameters.library);
         modes = attempt(system, sparse, values, pencil, options, mu, parameters, shifted);
         modes.summary += ", shifted";

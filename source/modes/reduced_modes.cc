@@ -173,14 +173,13 @@ namespace Squeal
     return modes;
   }
 
-  ReducedModes real_eigenvalue_modes(const ReducedModel &model, const double mu, const double largest_circular_frequency)
+  ReducedModes real_eigenvalue_modes(const ReducedModel &model, const double mu, const Band &band)
   {
-    ReducedModes     modes = all_modes(model, model.full_order().at(mu), largest_circular_frequency, RealVectors::wanted);
+    ReducedModes     modes = all_modes(model, model.full_order().at(mu), band.end, RealVectors::wanted);
     std::vector<int> real;
     for (std::size_t j = 0; j < modes.lambda.size(); ++j)
-      if (const double size = std::abs(modes.lambda[j]); is_real(modes.lambda[j], largest_circular_frequency) &&
-                                                         size > zero_frequency * largest_circular_frequency &&
-                                                         size <= band_radius(largest_circular_frequency))
+      if (const double size = std::abs(modes.lambda[j]);
+          is_real(modes.lambda[j], band.end) && size > zero_frequency * band.end && band.lists(modes.lambda[j]))
         real.push_back(static_cast<int>(j));
     modes = selected(modes, real);
     agree_on_modes(model.basis().communicator(), modes);

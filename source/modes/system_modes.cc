@@ -79,16 +79,13 @@ namespace Squeal
 
   ContourOptions contour_of_band(const CoupledSystem    &system,
                                  const SystemModes      &frictionless,
-                                 const double            largest_circular_frequency,
+                                 const Band             &band,
                                  const SolverParameters &solvers)
   {
-    ContourOptions options;
-    options.largest_circular_frequency = largest_circular_frequency;
-    options.lowest_frequency           = 1e-3 * largest_circular_frequency;
-    options.largest_growth             = 0.1 * largest_circular_frequency;
-    options.method                     = contour_method(system);
-    options.real_modes                 = real_modes_options(solvers, "real modes beyond the band", frictionless.shift);
-    options.real_modes.inverse         = &frictionless.inverse->frictionless(); // of the undamped system
+    ContourOptions options     = contour_of_band(band);
+    options.method             = contour_method(system);
+    options.real_modes         = real_modes_options(solvers, "real modes beyond the band", frictionless.shift);
+    options.real_modes.inverse = &frictionless.inverse->frictionless(); // of the undamped system
     return options;
   }
 } // namespace Squeal

@@ -4,6 +4,12 @@
 
 namespace Squeal
 {
+  namespace
+  {
+    /// Rates of a band over the circular frequency of its end: counts resolve the least, and eigenvalues up to the greatest are found [-].
+    constexpr double least_rate = 1e-6, greatest_rate = 10.;
+  } // namespace
+
   void DiscretizationParameters::declare(Declarations &declarations)
   {
     declarations.enter("Discretization");
@@ -21,6 +27,13 @@ namespace Squeal
                      "Upper end of the band in which all modes are found. Coulomb friction is ill-posed in the limit of fine meshes: "
                      "results hold in a stated band.",
                      {0.});
+    declarations.add(
+      "Maximum rate", maximum_rate, "1/s",
+      "Largest |Re lambda| of the modes of the band. Modes that decay faster are not listed; modes that grow faster are. "
+      "Counts by the argument principle, of Sweep/Count modes at and of a stability run on a system file, are those of the "
+      "rectangle up to this rate; the stability run fails if it has found another number of modes there. 0: all modes with "
+      "|lambda| up to 1.005 times the circular frequency of the end of the band are listed, and counts use 0.1 times that frequency.",
+      {0.});
   }
 
   void DiscretizationParameters::check() const
@@ -28,6 +41,10 @@ namespace Squeal
     if (!(maximum_frequency > 0.))
       throw ParameterError("the band ends at " + exact_text(maximum_frequency) + " Hz", "parameter Band/Maximum frequency",
                            "give a positive frequency");
+    const double end = circular_frequency(maximum_frequency), least = least_rate * end, greatest = greatest_rate * end;
+    if (maximum_rate != 0. && !(maximum_rate >= least && maximum_rate <= greatest))
+      throw ParameterError("the rate " + exact_text(maximum_rate) + " 1/s does not fit the end of the band, " + exact_text(end) + " rad/s",
+                           "parameter Band/Maximum rate", text("give 0, or a rate from ", least, " to ", greatest, " 1/s"));
   }
 
   void SolverParameters::declare(Declarations &declarations)

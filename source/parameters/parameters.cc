@@ -311,7 +311,7 @@ namespace Squeal
   {
     // Waves with β ω > 2 are overdamped, and one of their two real λ tends to −1/β the faster they are: the finer the mesh, the
     // more eigenvalues lie there. The list of eigenvalues must end before.
-    const double radius = clear_of_accumulation * band_radius(circular_frequency(discretization.maximum_frequency));
+    const double radius = clear_of_accumulation * discretization.band().radius();
     for (const auto &[section, material] : materials.all())
       if (const double beta = material.rayleigh_beta; beta * radius >= 1.)
         throw ParameterError("the damping in proportion to the stiffness, " + exact_text(beta) +

@@ -97,7 +97,7 @@ TEST(ContourCount, AgreesWithBothSolversUnderStrongFriction)
 {
   // Modes diverge, and others grow faster than the band is wide
   const Scene  s      = scene(RadialDissipation::none);
-  const double radius = band_radius(omega_max);
+  const double radius = Band(omega_max).radius();
   int          n_real = 0;
   for (const double mu : {3., 10.})
     {

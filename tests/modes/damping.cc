@@ -106,8 +106,8 @@ TEST(RayleighDamping, ADiscThatMovesFreely)
   SolverParameters solvers;
   solvers.complex_tolerance = 1e-10;
   ResidualIterationOptions options;
-  options.largest_circular_frequency = omega_max;
-  options.tolerance                  = 1e-9;
+  options.band      = omega_max;
+  options.tolerance = 1e-9;
   UpdatedInverse inverse(s.coupled, shift, FactorizationLibrary::automatic);
   Progress       progress;
   for (const double friction : {0., friction_coefficient})
@@ -236,9 +236,9 @@ TEST(ModalDamping, OfADiscThatMovesFreely)
   Progress       progress;
 
   ResidualIterationOptions options;
-  options.largest_circular_frequency = omega_max;
-  options.tolerance                  = 1e-10;
-  const auto modes                   = residual_iteration(system, inverse, *real.vectors, 0., options, progress);
+  options.band      = omega_max;
+  options.tolerance = 1e-10;
+  const auto modes  = residual_iteration(system, inverse, *real.vectors, 0., options, progress);
   EXPECT_EQ(modes.n_rigid_body, 3);
   EXPECT_LT(largest(distances(modes.lambda, damped_oscillators(real, [](const double omega) { return 2. * ratio_at(omega) * omega; }))),
             1e-9);

@@ -247,6 +247,7 @@ TEST(ParameterChecks, RefuseWithNameAndReason)
   const std::string pins = "Materials/Volumes", orthotropic = "Materials/Orthotropic", mounts = "Mounts/Elastic mounts",
                     ratios = "Damping/Modal damping ratio";
   expect_refused({{"Band/Maximum frequency=0", {"give a positive frequency"}},
+                  {"Band/Maximum rate=1e6", {"does not fit the end of the band, 31415.9", "from 0.0314", "to 3.142e+05"}},
                   {"Output/Animation frames=-1", {"-1"}},
                   {"Disc material/Young modulus=0", {"positive"}},
                   {"Pin material/Poisson ratio=0.5", {"incompressible"}},

@@ -164,8 +164,8 @@ namespace
   {
     UpdatedInverse           inverse(system, 0., FactorizationLibrary::automatic);
     ResidualIterationOptions options;
-    options.largest_circular_frequency = 10.;
-    options.tolerance                  = 1e-12;
+    options.band      = 10.;
+    options.tolerance = 1e-12;
     Progress progress;
     return triples(residual_iteration(system, inverse, unit_vectors(system.map()), mu, options, progress));
   }

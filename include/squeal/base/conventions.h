@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <complex>
+#include <limits>
 
 namespace Squeal
 {
@@ -12,16 +13,35 @@ namespace Squeal
   inline constexpr double largest_rate_of_band = 0.1;
 
   /**
-   * Radius ρ [1/s] of a band that ends at ω_max [rad/s]: of its eigenvalues are listed all with |λ| ≤ ρ,
-   *
-   *   ρ = ω_max √(1 + 0.1²),
-   *
-   * among them all with 0 < Im λ ≤ ω_max and |Re λ| ≤ 0.1 ω_max. What grows or decays faster depends on the mesh.
+   * The band of a run. The argument principle counts the eigenvalues of its rectangle, Im λ ≤ end and |Re λ| ≤ rate. Those with
+   * |λ| ≤ radius(), which contains the rectangle, are listed, except those that decay faster than a given rate. What grows or decays faster
+   * than the radius depends on the mesh.
    */
-  inline double band_radius(const double largest_circular_frequency)
+  struct Band
   {
-    return std::hypot(1., largest_rate_of_band) * largest_circular_frequency;
-  }
+    /// @param given_rate largest |Re λ| [1/s]; 0: the part largest_rate_of_band of the end
+    Band(const double end, const double given_rate = 0.)
+      : end(end)
+      , rate(given_rate > 0. ? given_rate : largest_rate_of_band * end)
+      , largest_damping(given_rate > largest_rate_of_band * end ? given_rate / end : largest_rate_of_band)
+      , largest_decay(given_rate > 0. ? given_rate : std::numeric_limits<double>::infinity())
+    {}
+
+    double end;             ///< largest Im λ [rad/s]
+    double rate;            ///< largest |Re λ| of the rectangle [1/s]
+    double largest_damping; ///< |Re λ| over the end within reach of the radius [-]
+    double largest_decay;   ///< of listed modes [1/s]
+
+    double radius() const
+    {
+      return std::hypot(1., largest_damping) * end;
+    }
+
+    bool lists(const std::complex<double> &lambda) const
+    {
+      return std::abs(lambda) <= radius() && lambda.real() >= -largest_decay;
+    }
+  };
 
   /// Real eigenvalues below this part of the band's end creep, and are not listed [-].
   inline constexpr double zero_frequency = 1e-4;

@@ -4,6 +4,7 @@
 
 #include <complex>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -26,6 +27,8 @@ namespace Squeal
 
     /// ... that have |λ| ≤ ρ = hypot(1, this) largest_circular_frequency, among them all with |Re λ| ≤ this times largest_circular_frequency [-].
     double largest_damping = 0.1;
+
+    double largest_decay = std::numeric_limits<double>::infinity(); ///< λ with Re λ below minus this are left out [1/s]
 
     double zero_modulus = 0.; ///< |λ| up to this is zero [rad/s]; 0: the 10⁻⁴th part of the largest frequency
 
@@ -55,7 +58,7 @@ namespace Squeal
   /// Eigenpairs Q(λ) φ = 0 in a band, and what they cost.
   struct QuadraticModes
   {
-    std::vector<std::complex<double>> values; ///< λ with 0 < Im λ ≤ largest_circular_frequency, |λ| ≤ ρ [rad/s], ascending by Im, then Re
+    std::vector<std::complex<double>> values; ///< wanted λ with Im λ > 0 [rad/s], ascending by Im, then Re
 
     /// φ = real + i imaginary, n × k: ‖φ‖₂ = 1, the entry of largest modulus real and positive.
     std::shared_ptr<MultiVector> real_part, imaginary_part;

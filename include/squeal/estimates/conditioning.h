@@ -46,6 +46,17 @@ namespace Squeal
     double digits() const;
   };
 
+  /// ‖x + iy‖ of corresponding columns.
+  std::vector<double> complex_norms(const MultiVector &real_part, const MultiVector &imaginary_part);
+
+  /// w(λ) = Σ |θ_k λ^(p_k)| ‖A_k‖_∞ of the terms, at least ‖Q(λ)‖.
+  std::vector<double> pencil_norms(const CoupledSystem                     &system,
+                                   const ParameterValues                   &values,
+                                   const std::vector<std::complex<double>> &lambda);
+
+  /// η = ‖Q(λ)φ‖ / (w ‖φ‖) of each mode [-].
+  std::vector<double> backward_errors(const CoupledSystem &system, const ParameterValues &values, const ComplexModes &modes);
+
   /// [Re Φ, Im Φ]ᵀ A [Re Φ, Im Φ] of modes Φ and the frictionless A = K_c, M_c.
   struct ModalProducts
   {

@@ -45,12 +45,12 @@ namespace Squeal
   /// Decides which of @p modes grow, however they were found.
   JudgedModes judged_modes(const CoupledSystem &system, const SystemModes &frictionless, ComplexModes modes);
 
-  /// Complex modes of the system, up to the end of the band, by the solver that the parameters choose. Throws SolverError if none
+  /// Complex modes of the system, those that the band lists, by the solver that the parameters choose. Throws SolverError if none
   /// oscillates there.
   JudgedModes modes_with_friction(const CoupledSystem    &system,
                                   const SystemModes      &frictionless,
                                   double                  mu,
-                                  double                  largest_circular_frequency,
+                                  const Band             &band,
                                   const SolverParameters &solvers,
                                   Progress               &progress);
 } // namespace Squeal

@@ -12,10 +12,10 @@ namespace Squeal
   /// How far the basis of a residual iteration is grown.
   struct ResidualIterationOptions
   {
-    double largest_circular_frequency = 0.;   ///< end of the band [rad/s]
-    double tolerance                  = 1e-7; ///< on the estimated |δλ| / |λ| of every mode [-]
-    int    maximum_basis              = 1500; ///< vectors
-    int    maximum_steps              = 30;
+    Band   band          = 0.;
+    double tolerance     = 1e-7; ///< on the estimated |δλ| / |λ| of every mode [-]
+    int    maximum_basis = 1500; ///< vectors
+    int    maximum_steps = 30;
   };
 
   /// The model from which a residual iteration starts: the real modes Φ_R, with their responses of first order to damping and, if there is
@@ -46,8 +46,8 @@ namespace Squeal
 
   /**
    * Grows a basis by residuals (Bobillot; section 4.3 of the paper), made
-   * two-sided, until the estimated errors of all modes in the band and of all
-   * real eigenvalues within its radius are below the tolerance at every one of
+   * two-sided, until the estimated errors of all modes and real eigenvalues
+   * that the band lists are below the tolerance at every one of
    * the @p friction_coefficients. It starts from
    * the real modes Φ_R and their responses to friction and damping of first
    * order, right and left,

@@ -12,7 +12,7 @@
 namespace Squeal
 {
   /// Eigenvalues of the coupled system with friction in a band, however they were found: the complex modes, 0 < Im λ ≤ the band's end and
-  /// |λ| ≤ its radius (band_radius()), ascending in frequency, with coupled displacements φ_c, φᴴ M_c φ = 1; and the real eigenvalues up to
+  /// those that Band lists, ascending in frequency, with coupled displacements φ_c, φᴴ M_c φ = 1; and the real eigenvalues up to
   /// the same radius.
   struct ComplexModes
   {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <squeal/base/conventions.h>
 #include <squeal/base/enum_table.h>
 #include <squeal/base/progress.h>
 #include <squeal/contact/coupled_system.h>
@@ -23,6 +24,9 @@ namespace Squeal
   /// Condensed where all terms but K_c and M_c are of low rank.
   ContourMethod contour_method(const CoupledSystem &system);
 
+  /// Whether these processes can count the modes of the system: sparse LU takes one.
+  bool is_countable(const CoupledSystem &system);
+
   /// The rectangle −a ≤ Re λ ≤ a, ω_low ≤ Im λ ≤ ω_high, and how its boundary is followed.
   struct ContourOptions
   {
@@ -41,6 +45,15 @@ namespace Squeal
     /// How those are computed; shift and inverse are those of the condensed determinant, too.
     SymmetricModesOptions real_modes;
   };
+
+  /// The rectangle of a band, from a thousandth of its end on.
+  ContourOptions contour_of_band(const Band &band);
+
+  /// How many of these eigenvalues lie in the rectangle.
+  int n_in_rectangle(const std::vector<std::complex<double>> &lambda, const ContourOptions &contour);
+
+  /// Throws SolverError unless @p n_counted of these eigenvalues lie in the rectangle.
+  void check_count(int n_counted, const std::vector<std::complex<double>> &lambda, const ContourOptions &contour);
 
   /// Complex modes in the rectangle, and what the count rests on.
   struct ContourCount

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <squeal/base/conventions.h>
 #include <squeal/reduction/reduced_model.h>
 
 #include <complex>
@@ -52,9 +53,9 @@ namespace Squeal
                                                   const ParameterValues &values,
                                                   double                 largest_circular_frequency);
 
-  /// The real eigenvalues of @p model with their vectors, zeros excluded, up to the radius of the band: static divergence and overdamped
+  /// The real eigenvalues of @p model with their vectors, zeros excluded, that the band lists: static divergence and overdamped
   /// motions. Without damping that with λ > 0 stands for both of ±λ.
-  ReducedModes real_eigenvalue_modes(const ReducedModel &model, double mu, double largest_circular_frequency);
+  ReducedModes real_eigenvalue_modes(const ReducedModel &model, double mu, const Band &band);
 
   /// The same without friction and damping, λ = iω and ψ = φ, from the symmetric eigenproblem of TᵀK_cT and TᵀM_cT.
   ReducedModes reduced_real_modes(const ReducedModel &model, double largest_circular_frequency, BandEnd end = BandEnd::cut);

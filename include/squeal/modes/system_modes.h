@@ -51,7 +51,7 @@ namespace Squeal
   /// The rectangle of the band in which count_by_contour() counts modes of a system of which @p frictionless are modes without damping.
   ContourOptions contour_of_band(const CoupledSystem    &system,
                                  const SystemModes      &frictionless,
-                                 double                  largest_circular_frequency,
+                                 const Band             &band,
                                  const SolverParameters &solvers);
 
   /**
@@ -70,7 +70,7 @@ namespace Squeal
                             UpdatedInverse         &inverse,
                             double                  shift,
                             double                  mu,
-                            double                  largest_circular_frequency,
+                            const Band             &band,
                             int                     n_expected,
                             const SolverParameters &parameters,
                             Progress               &progress,

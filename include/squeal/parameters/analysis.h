@@ -2,6 +2,7 @@
 
 #include <squeal/base/enum_table.h>
 #include <squeal/base/choices.h>
+#include <squeal/base/conventions.h>
 #include <squeal/parameters/declarations.h>
 
 #include <string>
@@ -13,9 +14,15 @@ namespace Squeal
   {
     Element element           = Element::trilinear;
     double  maximum_frequency = 5000.; ///< upper end of the band [Hz]
+    double  maximum_rate      = 0.;    ///< largest |Re λ| [1/s]; 0: see Band
 
     /// Parameters of `Geometry` with the values of a coarser mesh, "disc_size = 0.012, ...", or its file; empty: no coarser mesh.
     std::string coarser_mesh;
+
+    Band band() const
+    {
+      return {circular_frequency(maximum_frequency), maximum_rate};
+    }
 
     bool coarser_mesh_is_file() const
     {

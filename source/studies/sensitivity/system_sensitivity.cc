@@ -1,4 +1,5 @@
 #include <squeal/base/conventions.h>
+#include <squeal/base/exceptions.h>
 #include <squeal/sensitivity/eigenvalue_derivatives.h>
 #include <squeal/studies/sensitivity/sensitivity_results.h>
 #include <squeal/studies/steps/imported_modes.h>
@@ -19,9 +20,8 @@ namespace Squeal
       SolverParameters solvers    = run.parameters.solvers;
       solvers.complex_solver      = ComplexSolver::residual_iteration;
       solvers.iteration_tolerance = tolerance_of_vectors;
-      FrictionModes result        = named_modes(
-               frictionless, modes_with_friction(given.coupled, frictionless, given.value,
-                                                 circular_frequency(run.parameters.discretization.maximum_frequency), solvers, run.progress));
+      FrictionModes result        = named_modes(frictionless, modes_with_friction(given.coupled, frictionless, given.value,
+                                                                                  run.parameters.discretization.band(), solvers, run.progress));
       run.progress.finish(text(result.modes.lambda.size(), " found"));
       return result;
     }
@@ -29,12 +29,15 @@ namespace Squeal
 
   void run_sensitivity_of_system(Run &run)
   {
-    const GivenSystem    given    = given_system(run);
-    const SystemFile    &file     = given.file;
-    const CoupledSystem &system   = given.coupled;
-    const double         value    = given.value;
-    const FrictionModes  friction = system.stiffness ? left_and_right_modes(given, run) : direct_solution(given, run).friction;
-    const ComplexModes  &modes    = friction.modes;
+    const GivenSystem    given  = given_system(run);
+    const SystemFile    &file   = given.file;
+    const CoupledSystem &system = given.coupled;
+    if (file.parameters.empty())
+      throw ParameterError("the system has no parameters, with respect to which there would be derivatives", "file " + file.path,
+                           "add `parameters` and coefficients of terms, or set Study = stability");
+    const double        value    = given.value;
+    const FrictionModes friction = system.stiffness ? left_and_right_modes(given, run) : direct_solution(given, run);
+    const ComplexModes &modes    = friction.modes;
 
     const TermProducts       products(system.terms, {modes.lambda, join({modes.real_part.get(), modes.imaginary_part.get()}),
                                                      join({modes.left_real_part.get(), modes.left_imaginary_part.get()})});

@@ -123,7 +123,7 @@ namespace Squeal
           run.progress.note(text("    and ", friction.n_unstable() - n_shown_modes, " more, see complex_modes.csv"));
       }
     run.screen << '\n';
-    if (const std::string note = note_on_count(friction, frictionless.real.eigenvalues.size());
+    if (const std::string note = note_on_count(friction, frictionless.real.eigenvalues.size(), parameters.discretization.maximum_rate);
         !note.empty() && !frictionless.labels.empty())
       run.progress.note(note);
     if (const std::string note = note_on_weak_damping(frictionless.linearisation.coupled, friction); !note.empty())

@@ -269,18 +269,23 @@ namespace Squeal
   static void run_stability_of_system(Run &run)
   {
     const GivenSystem given = given_system(run);
-    DirectSolution    solution;
+    FrictionlessModes frictionless;
+    FrictionModes     friction;
     if (given.coupled.stiffness)
       {
-        solution.frictionless = imported_modes(given.coupled, given.coupled, run);
-        solution.friction     = friction_modes(solution.frictionless, given.value, run);
+        frictionless = imported_modes(given.coupled, given.coupled, run);
+        friction     = friction_modes(frictionless, given.value, run);
+        if (run.parameters.discretization.maximum_rate > 0.)
+          count_modes(given, frictionless, friction, run);
       }
     else
-      solution = direct_solution(given, run);
-    const auto &[frictionless, friction, errors] = solution;
+      {
+        frictionless.linearisation.coupled = given.coupled;
+        friction                           = direct_solution(given, run);
+      }
     record_modes(frictionless, friction, run);
     report_modes(frictionless, friction, {}, run);
-    Columns<int>       columns = errors;
+    Columns<int>       columns = accuracy_columns(given, friction);
     const Columns<int> groups  = group_columns(given, friction.modes);
     columns.insert(columns.end(), groups.begin(), groups.end());
     store_mode_tables(frictionless, friction, columns, {}, run);

@@ -56,10 +56,10 @@ namespace Squeal
   {
     const Parameters &parameters = run.parameters;
     run.progress.begin("Complex modes");
-    FrictionModes       result = named_modes(frictionless, modes_with_friction(frictionless.linearisation.coupled, frictionless, mu,
-                                                                               circular_frequency(parameters.discretization.maximum_frequency),
-                                                                               parameters.solvers, run.progress));
-    const ComplexModes &found  = result.modes;
+    FrictionModes result =
+      named_modes(frictionless, modes_with_friction(frictionless.linearisation.coupled, frictionless, mu, parameters.discretization.band(),
+                                                    parameters.solvers, run.progress));
+    const ComplexModes &found = result.modes;
     if (const std::string &varied = frictionless.linearisation.coupled.varied; !varied.empty())
       result.at = text(" at ", varied, " = ", exact_text(mu));
     result.cost = run.progress.finish(text(found.lambda.size(), " found, ", result.n_unstable(), " unstable", result.at,
@@ -85,7 +85,7 @@ namespace Squeal
     return lines;
   }
 
-  std::string note_on_count(const FrictionModes &friction, const std::size_t n_real_modes)
+  std::string note_on_count(const FrictionModes &friction, const std::size_t n_real_modes, const double maximum_rate)
   {
     const ComplexModes &modes     = friction.modes;
     const std::size_t   n_complex = modes.lambda.size() + modes.n_rigid_body, n_values = modes.real_values.size();
@@ -97,7 +97,9 @@ namespace Squeal
       rest = text(n_values, " real eigenvalues stand for modes that do not oscillate");
     if (friction.n_slow > 0)
       rest += text(rest.empty() ? "" : ", and ", "modes that creep, |lambda| below ", zero_frequency, " of the band's end, are not listed");
-    if (friction.n_slow == 0 && 2 * n_complex + n_values != 2 * n_real_modes)
+    if (maximum_rate > 0.)
+      rest += text(rest.empty() ? "" : ", and ", "modes that decay faster than ", exact_text(maximum_rate), " 1/s are not listed");
+    else if (friction.n_slow == 0 && 2 * n_complex + n_values != 2 * n_real_modes)
       rest += text(rest.empty() ? "" : ", and ", "with friction modes crossed its end");
     return counts + rest;
   }

@@ -61,7 +61,8 @@ namespace Squeal
     const auto   shift     = system.stiffness ? definite_shift(system, omega_max) : std::nullopt;
     if (!shift)
       throw SolverError(
-        "the symmetric part of the stiffness has negative eigenvalues, or it and the mass are singular for the same motion", "system file",
+        "the symmetric part of the stiffness has negative eigenvalues, or it and the mass are singular for the same motion",
+        "file " + run.parameters.system.path(),
         "mark terms that may destabilise by \"kind\": \"friction\", eliminate constraints, and check the signs of the terms; Study = "
         "stability and sensitivity solve such systems");
     const auto count = number_of_modes(system, (1. + margin) * omega_max, solvers, run.progress);
@@ -77,30 +78,51 @@ namespace Squeal
     return result;
   }
 
-  DirectSolution direct_solution(const GivenSystem &given, Run &run)
+  FrictionModes direct_solution(const GivenSystem &given, Run &run)
   {
-    const Parameters &parameters = run.parameters;
     run.progress.begin("Complex modes");
     run.progress.note("  no definite part: Q is factorised as it is, and modes are named by their numbers");
-    const DirectModes modes = direct_modes(given.coupled, given.value, circular_frequency(parameters.discretization.maximum_frequency),
-                                           parameters.solvers, run.progress);
-    DirectSolution    result;
-    result.frictionless.linearisation.coupled   = given.coupled;
-    static_cast<JudgedModes &>(result.friction) = modes;
-    for (std::size_t j = 0; j < modes.modes.lambda.size(); ++j)
-      result.friction.labels.push_back(numbered_label(static_cast<int>(j) + 1));
+    FrictionModes result;
+    static_cast<JudgedModes &>(result) = direct_modes(given.coupled, given.value, run.parameters.discretization.band(),
+                                                      run.parameters.solvers, "file " + given.file.path, run.progress);
+    for (std::size_t j = 0; j < result.modes.lambda.size(); ++j)
+      result.labels.push_back(numbered_label(static_cast<int>(j) + 1));
     if (!given.coupled.varied.empty())
-      result.friction.at = text(" at ", given.coupled.varied, " = ", exact_text(given.value));
-    result.friction.cost = run.progress.finish(
-      text(modes.modes.lambda.size(), " found, ",
-           modes.n_counted ? text(*modes.n_counted, " counted by the argument principle") : "not counted on several processes", ", ",
-           modes.n_unstable(), " unstable", result.friction.at, "; ", modes.modes.summary));
-    if (modes.n_counted)
-      run.count("complex modes counted by the argument principle", *modes.n_counted);
-    result.columns = {{"backward error", "-", [errors = modes.backward_errors](const int j) { return errors[j]; }, 1, true},
-                      {"condition number", "-", [numbers = modes.conditioning.modes](const int j) { return numbers[j]; }, 1, true},
-                      {"error of lambda", "-", [errors = modes.conditioning.errors](const int j) { return errors[j]; }, 1, true}};
+      result.at = text(" at ", given.coupled.varied, " = ", exact_text(given.value));
+    result.cost = run.progress.finish(
+      text(result.modes.lambda.size(), " found, ", result.n_unstable(), " unstable", result.at, "; ", result.modes.summary));
+    count_modes(given, {}, result, run);
     return result;
+  }
+
+  void count_modes(const GivenSystem &given, const FrictionlessModes &frictionless, const FrictionModes &friction, Run &run)
+  {
+    const CoupledSystem &system = given.coupled;
+    const Band           band   = run.parameters.discretization.band();
+    const ContourOptions contour =
+      system.stiffness ? contour_of_band(system, frictionless, band, run.parameters.solvers) : contour_of_band(band);
+    run.progress.begin("Argument principle");
+    if (!is_countable(system))
+      {
+        run.progress.finish("modes are not counted on several processes");
+        return;
+      }
+    const ContourCount count = system.stiffness ?
+                                 count_by_contour(system, {given.value}, contour, run.progress).front() :
+                                 count_by_sparse_lu(sparse_matrices(system.terms, system.at(given.value)), contour, run.progress);
+    check_count(count.n_modes, friction.modes.lambda, contour);
+    run.count("complex modes counted by the argument principle", count.n_modes);
+    run.progress.finish(
+      text(count.n_modes, " modes counted and found up to |Re lambda| = ", contour.largest_growth, " 1/s, ", count.n_points, " points"));
+  }
+
+  Columns<int> accuracy_columns(const GivenSystem &given, const JudgedModes &modes)
+  {
+    const auto column = [](const std::string &name, const std::vector<double> &values) {
+      return Column<int>{name, "-", [values](const int j) { return values[j]; }, 1, true};
+    };
+    return {column("backward error", backward_errors(given.coupled, given.coupled.at(given.value), modes.modes)),
+            column("condition number", modes.conditioning.modes), column("error of lambda", modes.conditioning.errors)};
   }
 
   Columns<int> group_columns(const GivenSystem &given, const ComplexModes &modes)

@@ -66,6 +66,12 @@ namespace Squeal
         {"Steady sliding/Pressed faces", no_steady_sliding},
         {"Steady sliding/Gaps", no_steady_sliding},
 
+        {"Band/Maximum rate",
+         [](const Parameters &p) -> Reason {
+           const bool by_reduced_models =
+             (p.study->has("Designs/") && !p.study->has("Search/")) || (p.study->has("Sensitivity/") && !p.system);
+           return by_reduced_models ? "the study solves reduced models" : no_damping(p);
+         }},
         {"Complex modes/Solver", [](const Parameters &p) { return unless(p.has_friction(), "the problem is frictionless"); }},
         {"Complex modes/Shift inverse", no_krylov},
         {"Complex modes/Tolerance", no_krylov},

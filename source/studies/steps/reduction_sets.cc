@@ -289,9 +289,9 @@ namespace Squeal
   {
     run.progress.begin("Growing a basis");
     ResidualIterationOptions iteration;
-    iteration.largest_circular_frequency = plan.largest_circular_frequency;
-    iteration.tolerance                  = tolerance;
-    iteration.maximum_basis              = run.parameters.solvers.maximum_basis;
+    iteration.band          = plan.largest_circular_frequency;
+    iteration.tolerance     = tolerance;
+    iteration.maximum_basis = run.parameters.solvers.maximum_basis;
     const Stopwatch watch;
     MultiVector     basis =
       grow_residual_basis(system, *frictionless.inverse, *frictionless.real.vectors, {plan.friction_coefficient}, iteration, run.progress)

@@ -99,8 +99,8 @@ namespace Squeal
   std::vector<std::string> verdict(const FrictionModes &modes, double maximum_frequency);
 
   /// Where the numbers of real modes and of modes with friction differ, what became of the difference; else empty. Two real eigenvalues
-  /// stand for one mode that has stopped oscillating.
-  std::string note_on_count(const FrictionModes &modes, std::size_t n_real_modes);
+  /// stand for one mode that has stopped oscillating. @p maximum_rate [1/s] of the band; 0: none is given.
+  std::string note_on_count(const FrictionModes &modes, std::size_t n_real_modes, double maximum_rate);
 
   /// How many modes neither grow nor decay by more than rounding errors although there is damping; empty where all do, or none is damped.
   std::string note_on_weak_damping(const CoupledSystem &system, const FrictionModes &modes);

@@ -29,14 +29,15 @@ namespace Squeal
    */
   FrictionlessModes imported_modes(const CoupledSystem &system, const CoupledSystem &whole, Run &run, double margin = 0.);
 
-  /// Modes of a system without a definite part by LU factors of Q(s), as a step of the run; named by their numbers.
-  struct DirectSolution
-  {
-    FrictionlessModes frictionless; ///< the system, without real modes
-    FrictionModes     friction;
-    Columns<int>      columns; ///< backward errors, condition numbers, errors of λ
-  };
-  DirectSolution direct_solution(const GivenSystem &given, Run &run);
+  /// Modes of a system without a definite part by LU factors of Q(s), counted, as steps of the run; named by their numbers.
+  FrictionModes direct_solution(const GivenSystem &given, Run &run);
+
+  /// Counts modes by the argument principle in the rectangle of the band, as a step of the run. Throws SolverError unless as many were found.
+  /// @param frictionless of no matter for a system without a definite part
+  void count_modes(const GivenSystem &given, const FrictionlessModes &frictionless, const FrictionModes &friction, Run &run);
+
+  /// Columns of a table of modes: backward errors, condition numbers and relative errors of λ [-].
+  Columns<int> accuracy_columns(const GivenSystem &given, const JudgedModes &modes);
 
   /// Columns of a table of modes, known by their numbers: shares of the kinetic energy of the groups of dofs, φ_gᴴ (M φ)_g / φᴴ M φ [%].
   Columns<int> group_columns(const GivenSystem &given, const ComplexModes &modes);
