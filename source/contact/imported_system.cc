@@ -97,13 +97,14 @@ namespace Squeal
           result.terms.push_back(std::move(part));
     set_symmetric_parts(result);
 
-    const RowMap           &map   = file.map;
-    const SecondOrderSystem whole = result.stiffness ? SecondOrderSystem() : sparse_matrices(result.terms, values);
-    const auto             &M = result.stiffness ? result.mass : whole.mass, &K = result.stiffness ? result.stiffness : whole.stiffness;
+    const RowMap           &map       = file.map;
+    const bool              has_parts = result.stiffness && max_norm(*result.stiffness) > 0. && max_norm(*result.mass) > 0.;
+    const SecondOrderSystem whole     = has_parts ? SecondOrderSystem() : sparse_matrices(result.terms, values);
+    const auto             &M = has_parts ? result.mass : whole.mass, &K = has_parts ? result.stiffness : whole.stiffness;
     for (const auto &[matrix, name] : {std::make_pair(&M, "mass"), {&K, "stiffness"}})
       if (!*matrix)
-        throw ParameterError(std::string("the ") + name + " has no terms", "file " + file.path,
-                             "give terms of power 0 and 2 that do not vanish at the values of the parameters");
+        throw ParameterError(std::string("the ") + name + " has no terms at the values of the parameters", "file " + file.path,
+                             "give terms of power 0 and 2 that do not vanish there");
     const std::vector<double> d = dof_scales(*K, *M, largest_circular_frequency);
     const auto                D =
       std::make_shared<SparseMatrix>(map, map, [&](const int i, SparseMatrix::Row &row) { row.emplace_back(map.number(i), d[i]); });

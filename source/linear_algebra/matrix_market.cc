@@ -1,4 +1,5 @@
 #include <squeal/base/exceptions.h>
+#include <squeal/base/memory.h>
 #include <squeal/base/text.h>
 #include <squeal/linear_algebra/communication.h>
 #include <squeal/linear_algebra/matrix_market.h>
@@ -20,6 +21,9 @@ namespace Squeal
 {
   namespace
   {
+    /// Of a row or column, even without entries [byte].
+    constexpr double bytes_of_row = 32.;
+
     /// The words of a text, line by line, with errors that name the line.
     class WordReader
     {
@@ -32,10 +36,11 @@ namespace Squeal
           refuse(text("the file cannot be opened: ", std::strerror(errno)));
       }
 
-      [[noreturn]] void refuse(const std::string &what) const
+      [[noreturn]] void refuse(const std::string &what,
+                               const std::string &change =
+                                 "write the matrix in Matrix Market form: coordinate or array, real or integer, with finite entries") const
       {
-        throw FileError(what, text("file ", path, n_lines > 0 ? text(", line ", n_lines) : ""),
-                        "write the matrix in Matrix Market form: coordinate or array, real or integer, with finite entries");
+        throw FileError(what, text("file ", path, n_lines > 0 ? text(", line ", n_lines) : ""), change);
       }
 
       /// The words of the next line that is neither empty nor a comment; nothing at the end.
@@ -93,6 +98,9 @@ namespace Squeal
     const int n_rows = reader.number<int>(sizes[0]), n_columns = reader.number<int>(sizes[1]);
     if (n_rows < 1 || n_columns < 1 || (!is_general && n_rows != n_columns))
       reader.refuse(text("a matrix of size ", n_rows, " x ", n_columns, is_general ? "" : " is not square"));
+    if (const double bytes = bytes_of_row * (double(n_rows) + n_columns); bytes > available_memory())
+      reader.refuse(text("a matrix of size ", n_rows, " x ", n_columns, " takes more than ", bytes / 1e9, " GB of memory"),
+                    "correct the sizes, or run on a machine with more memory");
 
     std::vector<Eigen::Triplet<double>> entries;
     const auto                          add = [&](const int row, const int column, const std::string &word) {
@@ -131,6 +139,8 @@ namespace Squeal
     else
       {
         const auto n = reader.number<long>(sizes[2]);
+        if (n < 0)
+          reader.refuse(text(n, " is no number of entries"));
         for (long k = 0; k < n; ++k)
           {
             const std::vector<std::string> &words = reader.next();
