@@ -9,8 +9,16 @@ namespace Squeal
     using In     = BasisIngredients;
     using Source = BasisSource;
 
+    /// To friction of low rank, or to all nonsymmetric terms of the stiffness where some are not.
     MultiVector response(const In &in, const Side side)
     {
+      std::vector<Term> nonsymmetric;
+      for (const Term &term : in.coupled->terms)
+        if (term.power == 0 && !term.is_frictionless())
+          nonsymmetric.push_back(term);
+      if (std::any_of(nonsymmetric.begin(), nonsymmetric.end(), [](const Term &term) { return term.matrix != nullptr; }))
+        return in.inverse->solve_frictionless(
+          times(nonsymmetric, in.coupled->at(in.friction_coefficient), 0, *in.set(Source::real), side == Side::left));
       return friction_response(*in.coupled, *in.inverse, *in.set(Source::real), side);
     }
 
@@ -104,6 +112,11 @@ namespace Squeal
     for (const BasisPart *part : parts)
       text += (text.empty() ? "" : " ") + std::string(part->symbol);
     return text;
+  }
+
+  bool BasisRecipe::needs_contact_nodes() const
+  {
+    return std::any_of(parts.begin(), parts.end(), [](const BasisPart *part) { return !part->set; });
   }
 
   bool BasisRecipe::has_real_modes() const

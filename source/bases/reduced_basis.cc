@@ -127,7 +127,7 @@ namespace Squeal
     MultiVector     X    = join_parts(recipe, in, counts);
     const BasisSize size = nominal_size(recipe, counts);
     const int       n    = M.n_rows();
-    if (size.n_r > n && !recipe.is_pod)
+    if (size.n_r > n && recipe.is_connected())
       throw SolverError("the basis has " + std::to_string(size.n_r) + " vectors, the coupled system only " + std::to_string(n) + " dofs",
                         where(recipe), "take fewer component modes, or a finer mesh");
 

@@ -276,7 +276,7 @@ namespace Squeal
 
   bool Parameters::has_friction() const
   {
-    return reduction.problem == ReductionProblem::friction || !study->has("Reduction/Problem");
+    return reduction.problem == ReductionProblem::friction || system || !study->has("Reduction/Problem");
   }
 
   bool Parameters::solves_by(const ComplexSolver solver) const
@@ -341,10 +341,11 @@ namespace Squeal
       {
         if (study->run_of_system == nullptr)
           throw ParameterError(text("Study = ", study->name, " needs a mesh"), "parameter System",
-                               "set Study = stability, sweep or sensitivity, or leave System empty");
+                               "set Study = stability, reduction, sweep or sensitivity, or leave System empty");
         if (goal != AccuracyGoal::as_given)
           throw ParameterError("Accuracy chooses a mesh, but the system comes from a file", "parameter Accuracy", "set it to as given");
         discretization.check();
+        reduction.check_of_system();
         sweep.check_of_system();
         return;
       }

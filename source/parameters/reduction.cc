@@ -75,7 +75,9 @@ namespace Squeal
                      "Directions of a basis whose M-norm is below this part of the largest are dropped.", {1e-14, 1e-2});
     declarations.add("Grown tolerances", grown_tolerances, "none",
                      "Bases `residual-grown`: grown until the estimated relative error of every lambda is below each of these.");
-    declarations.add("Snapshots", snapshots, "none", "Friction coefficients whose complex modes make the basis `POD`.");
+    declarations.add(
+      "Snapshots", snapshots, "none",
+      "Friction coefficients whose complex modes make the basis `POD`; of a system file, values of the parameter mu or else its first.");
     declarations.add("POD tolerance", pod_tolerance, "none", "Principal axes of the snapshots below this part of the largest are left out.",
                      {1e-13, 1.});
   }
@@ -88,6 +90,15 @@ namespace Squeal
       if (!(truncation.frequency > 0.) && (truncation.disc < 1 || (truncation.pins_free < 1 && truncation.pins_sliding < 1)))
         throw ParameterError("the truncation `" + truncation.text() + "` leaves no modes", "parameter Reduction/Component modes",
                              "give a positive frequency, or at least one mode of the disc and one of the pins");
+    for (const double mu : snapshots)
+      if (!(mu >= 0. && mu <= 10.))
+        throw ParameterError("the friction coefficient " + exact_text(mu) + " is not between 0 and 10", "parameter Reduction/Snapshots",
+                             "give friction coefficients near that of the operation");
+    check_of_system();
+  }
+
+  void ReductionParameters::check_of_system() const
+  {
     if (coupled_frequencies.empty())
       throw ParameterError("no frequency up to which real coupled modes make bases", "parameter Reduction/Coupled frequency",
                            "give at least one; 0 means the end of the band");
@@ -98,9 +109,5 @@ namespace Squeal
       if (!(tolerance >= 1e-11 && tolerance <= 1e-1))
         throw ParameterError("the tolerance " + exact_text(tolerance) + " is out of reach or no accuracy at all",
                              "parameter Reduction/Grown tolerances", "give values between 1e-11 and 0.1");
-    for (const double mu : snapshots)
-      if (!(mu >= 0. && mu <= 10.))
-        throw ParameterError("the friction coefficient " + exact_text(mu) + " is not between 0 and 10", "parameter Reduction/Snapshots",
-                             "give friction coefficients near that of the operation");
   }
 } // namespace Squeal

@@ -129,7 +129,9 @@ class Flutter(SystemTest):
                  ([mass, stiffness, (0, "nu", friction[2], "none")], ["terms[3].coefficient", "nu"]),
                  ([mass, stiffness, (0, "1/mu", friction[2], "none")], ["not finite at mu = 0"]),
                  ([mass, stiffness, (3, "1", friction[2], "none")], ["terms[3].power"]),
-                 (singular, ["dof 2", "det Q"]), ([stiffness], ["no mass"]), ([(2, "1", [[0., 0.], [0., 0.]], "symmetric"), stiffness], ["no mass"])]
+                 (singular, ["dof 2", "det Q"]),
+                 ([(power, "1", [[1., 1.], [1., 1.]], "symmetric") for power in (2, 0)], ["det Q(lambda) vanishes", "system.json"]),
+                 ([(power, "1", [[1., 2., 0.], [0., 0., 1.], [0., 0., power]], "none") for power in (2, 0)], ["det Q(lambda) vanishes", "system.json"]), ([stiffness], ["no mass"]), ([(2, "1", [[0., 0.], [0., 0.]], "symmetric"), stiffness], ["no mass"])]
         for terms, mentions in cases:
             with self.subTest(mentions):
                 self.write_system({"mu": (0.6, 0., 1.)}, terms)
@@ -137,12 +139,44 @@ class Flutter(SystemTest):
                 process = self.call("study.prm", "--output", "refused")
                 self.assert_message(process, mentions)
                 self.assertFalse((self.folder / "refused").exists())
+        for part, powers in (("mass", (2, 0)), ("stiffness", (0, 2))):
+            self.write_system({"mu": (0.6, 0., 1.)}, [(power, coefficient, [[1., 0.], [0., 1.]], "symmetric") for power, coefficient in zip(powers, ("mu", "1"))])
+            self.assert_message(self.call("study.prm", "--output", "refused", "--set", "System values=mu = 0"), [f"the {part} has no terms", "system.json"])
         self.write_system({"mu": (0.6, 0., 1.), "kappa": (1., 0.5, 2.)}, flutter_terms())
         for study, override, mentions in (("stability", "System values=nu = 1", ["`nu`", "mu, kappa"]), ("stability", "System values=mu = 2", ["range"]),
                                           ("sweep", "Sweep/Parameter=mu, 0, 2, 5", ["range"]), ("stability", "System=nothing", ["nothing"]),
-                                          ("reduction", "System=system", ["needs a mesh"]), ("sweep", "Sweep/Parameter=mu", ["range of a parameter"])):
+                                          ("reduction", "Reduction/Bases=real, free", ["`free`", "contact nodes"]),
+                                          ("reduction", "Reduction/Bases=real + 1st-ord. two-sided + damping", ["needs damping"]),
+                                          ("ingredients", "System=system", ["needs a mesh"]), ("sweep", "Sweep/Parameter=mu", ["range of a parameter"])):
             self.write("study.prm", STUDY.format(study=study, band=BAND))
             self.assert_message(self.call("study.prm", "--output", "refused", "--set", override), mentions)
+
+    def test_maximum_rate(self):
+        """Lightly and heavily damped modes, with and without a definite part: those of the QZ algorithm in the rectangle, and as many counted."""
+        n, end = 16, 2. * math.pi * BAND
+        chain = 200. * np.eye(n) - 90. * (np.eye(n, k=1) + np.eye(n, k=-1))
+        damping = np.diag(np.where(np.arange(n) % 4 == 1, 24., 0.06 + 0.02 * np.arange(n)))
+        follower = 12. * (np.eye(n, k=2) - np.eye(n, k=-2))
+        for stiffness in (chain, chain - 30. * np.eye(n)):
+            self.write_system({}, [(2, "1", np.eye(n), "symmetric"), (1, "1", damping, "symmetric"), (0, "1", stiffness, "symmetric"),
+                                   (0, "1", follower, "skew")])
+            every = [value for value in squeal.System.read(self.folder / "system").solve().eigenvalues if 1e-6 < value.imag < end]
+            for rate in (0.5, 1.2, 5.):
+                expected = [value for value in every if abs(value.real) < rate]
+                self.assertLess(len(expected), len(every))
+                for solver in ("Krylov", "residual iteration"):
+                    results = self.study("stability", f"Band/Maximum rate={rate}", f"Complex modes/Solver={solver}", "Complex modes/Iteration tolerance=1e-10")
+                    self.assert_same_eigenvalues(self.lambdas(results), expected, 1e-8)
+                    counts = json.loads((results / "run.json").read_text(encoding="utf-8"))["counts"]
+                    self.assertEqual(counts["complex modes counted by the argument principle"], len(expected))
+
+    def test_growth_beyond_the_maximum_rate(self):
+        """What grows faster is listed, but not counted; a contour through an eigenvalue is not taken."""
+        identity = np.eye(3)
+        self.write_system({}, [(2, "1", identity, "symmetric"), (1, "1", np.diag([-3., 0.5, 1.]), "symmetric"), (0, "1", np.diag([90., 100., 110.]), "symmetric")])
+        found = self.lambdas(self.study("stability", "Band/Maximum rate=0.3"))
+        self.assert_same_eigenvalues(found, [complex(0.5 * c, (k - 0.25 * c * c) ** 0.5) for c, k in ((3., 90.), (-0.5, 100.))])
+        self.assert_message(self.call("study.prm", "--output", "refused", "--set", "Band/Maximum rate=0.5"), ["on the contour", "0.5 1/s", "change Band/Maximum rate"])
 
     def test_no_definite_part(self):
         """Lagrange multipliers, follower forces and a stiffness without a sign, against the QZ algorithm."""
@@ -199,6 +233,11 @@ class Flutter(SystemTest):
         results = self.study("sweep", "Sweep/Parameter=d, 0, 1, 21", band=5.)
         self.assertEqual({row["modes [-]"] for row in self.rows(results, "counts")}, {float(n)})
 
+    def test_no_parameters(self):
+        self.write_system({}, flutter_terms()[:2])
+        self.write("study.prm", STUDY.format(study="sensitivity", band=BAND))
+        self.assert_message(self.call("study.prm", "--output", "refused"), ["no parameters", "system.json"])
+
     def test_strict_files(self):
         """Numbers that lenient readers take for others."""
         self.write("study.prm", STUDY.format(study="stability", band=BAND))
@@ -207,6 +246,7 @@ class Flutter(SystemTest):
                                (head + "general\n2 2 1\n1.5 1 3\n", ["1.5"]), (head + "general\n2 2 1\n1 1 3 4\n", ["value"]),
                                (head + "general\n2 2 1\n1 1 3\n2 2 1\n", ["more than 1"]), (head + "general\n2 2 3\n1 1 3\n2 2 1\n", ["2 entries, not 3"]),
                                (head + "symmetric\n2 2 1\n1 2 3\n", ["below the diagonal"]), (head + "general\n2 2 1\n0 1 3\n", ["row 0"]),
+                               (head + "general\n2 2 -1\n", ["-1"]), (head + "general\n2000000000 2000000000 1\n1 1 3\n", ["2000000000"]),
                                (head.replace("real", "pattern") + "general\n2 2 1\n1 1\n", ["pattern"])):
             self.write("system/A0.mtx", text)
             self.assert_message(self.call("study.prm", "--output", "refused"), ["A0.mtx", *mentions])
@@ -275,6 +315,37 @@ class Brake(SystemTest):
                 found = self.lambdas(self.study("stability", f"System values=omega = {omega}", f"Complex modes/Solver={solver}",
                                                 "Complex modes/Iteration tolerance=1e-10"))
                 self.assert_same(found, self.eigenvalues(omega), 1e-8)
+
+    def test_accuracy(self):
+        """Backward errors and condition numbers of a definite system have the columns of others."""
+        self.write_system({"omega": (2., 1., 4.)}, self.terms)
+        results, exact = self.study("stability"), self.eigenvalues(2.)
+        for row, value in zip(self.rows(results, "complex_modes"), self.lambdas(results)):
+            self.assertLess(row["backward error [-]"], 1e-12)
+            self.assertGreater(row["condition number [-]"], 1. - 1e-9)
+            self.assertLess(row["error of lambda [-]"], 1e-9)
+            self.assertLess(min(abs(value - other) for other in exact), (10. * row["error of lambda [-]"] + 1e-10) * abs(value))
+
+    def test_reduction(self):
+        """Bases of modes and their responses: each as good as it claims, the nonsymmetric stiffness being skew here."""
+        self.write_system({"omega": (2., 1., 4.)}, self.terms)
+        results = self.study("reduction", "Reduction/Snapshots=1, 2.5, 4", "Reduction/Grown tolerances=1e-4, 1e-7")
+        bases = {row["basis"]: row for row in self.rows(results, "reduction_bases")}
+        order = ["real", "real + 1st-ord.", "real + 1st-ord. two-sided", "real + 1st-ord. two-sided + damping"]
+        self.assertEqual(list(bases), [*order, "POD", "residual-grown 0.0001", "residual-grown 1e-07"])
+        errors = {basis: max(row["lambda [-]"] for row in self.rows(results, "reduction_errors") if row["basis"] == basis) for basis in bases}
+        for worse, better, factor in zip(order, order[1:], (1e-3, 1.1, 1e-3)):
+            self.assertLess(errors[better], factor * errors[worse])
+            self.assertGreaterEqual(bases[better]["n_r [-]"], bases[worse]["n_r [-]"])
+        self.assertLess(errors["POD"], 1e-6)
+        self.assertLess(errors["residual-grown 0.0001"], 1e-3)
+        self.assertLess(errors["residual-grown 1e-07"], 1e-6)
+        exact = self.eigenvalues(2.)
+        for row in self.rows(results, "reduction_modes"):
+            reference = complex(0.02 * math.pi * row["reference divergence rate [%]"] * row["reference frequency [Hz]"],
+                                2. * math.pi * row["reference frequency [Hz]"])
+            self.assertLess(min(abs(reference - value) for value in exact), 1e-8 * abs(reference))
+        self.assert_message(self.call("study.prm", "--output", "refused", "--set", "Reduction/Bases=POD"), ["outside of the range of omega", "Snapshots"])
 
     def test_sweep(self):
         self.write_system({"omega": (2., 1., 4.)}, self.terms)

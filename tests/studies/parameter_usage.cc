@@ -97,11 +97,15 @@ TEST(ParameterUsage, EveryStudyIsFoundByItsNameAndUsesItsDefaults)
 TEST(ParameterUsage, OfASystemFile)
 {
   const auto paths = names(unused_among({"Operation/Friction coefficient", "Geometry/File", "Sweep/Parameter", "Sweep/Map parameter",
-                                         "Band/Maximum frequency", "Output/Write system", "Sensitivity/Thresholds"},
+                                         "Band/Maximum frequency", "Band/Maximum rate", "Output/Write system", "Sensitivity/Thresholds"},
                                         parameters_of({"Study=sweep", "System=brake"})));
   EXPECT_EQ(paths,
             (std::set<std::string>{"Operation/Friction coefficient", "Geometry/File", "Sweep/Map parameter", "Sensitivity/Thresholds"}));
-  EXPECT_THROW(parameters_of({"Study=reduction", "System=brake"}), ParameterError);
+  EXPECT_EQ(names(unused_among({"Reduction/Bases", "Reduction/Component modes", "Reduction/Problem", "Sweep/Parameter"},
+                               parameters_of({"Study=reduction", "System=brake"}))),
+            (std::set<std::string>{"Reduction/Component modes", "Reduction/Problem", "Sweep/Parameter"}));
+  EXPECT_EQ(names(unused_among({"Band/Maximum rate"}, parameters_of({"Study=sensitivity", "System=brake"}))), std::set<std::string>());
+  EXPECT_THROW(parameters_of({"Study=ingredients", "System=brake"}), ParameterError);
 }
 
 TEST(ParameterUsage, OfEveryStudy)
@@ -120,6 +124,7 @@ TEST(ParameterUsage, OfEveryStudy)
   const Paths design       = {"Study=geometry", "Designs/Variables=Geometry/Pin height = 0.03 to 0.04 in 2"};
   const Paths own_meshes   = {"Discretization/Element", "Geometry/Outlines"};
   const Paths one_mu       = {"Operation/Friction coefficient"};
+  const Paths no_rate      = {"Band/Maximum rate"};
 
   const std::vector<Usage> table = {
     {{}, {}, {no_sliding, undamped, krylov}},
@@ -148,7 +153,11 @@ TEST(ParameterUsage, OfEveryStudy)
      {no_shapes, no_sliding, {"Reduction/Component modes", "Reduction/Coupled frequency"}}},
     {{"Study=reduction", "Reduction/Problem=frictionless"},
      {"Reduction/"},
-     {reduced, no_sliding, no_bases, {"Operation/", "Damping/", "Disc material/Rayleigh", "Pin material/Rayleigh", "Reduction/Coupled"}}},
+     {reduced,
+      no_rate,
+      no_sliding,
+      no_bases,
+      {"Operation/", "Damping/", "Disc material/Rayleigh", "Pin material/Rayleigh", "Reduction/Coupled"}}},
 
     {{"Study=sweep"},
      {"Sweep/"},
@@ -157,20 +166,23 @@ TEST(ParameterUsage, OfEveryStudy)
      {"Sweep/"},
      {{"Complex modes/"}, no_stability, no_sliding, one_mu}},
 
-    {{"Study=sensitivity"}, {"Sensitivity/", "Sweep/"}, {reduced, no_sweep, no_sliding, undamped}},
-    {{"Study=sensitivity", dissipation}, {"Sensitivity/", "Sweep/"}, {reduced, no_sweep, no_sliding}},
+    {{"Study=sensitivity"}, {"Sensitivity/", "Sweep/"}, {reduced, no_rate, no_sweep, no_sliding, undamped}},
+    {{"Study=sensitivity", dissipation}, {"Sensitivity/", "Sweep/"}, {reduced, no_rate, no_sweep, no_sliding}},
     {{"Study=sensitivity", "Sensitivity/Thresholds=false"},
      {"Sensitivity/", "Sweep/"},
      {reduced,
+      no_rate,
       no_sweep,
       no_sliding,
       undamped,
       {"Sweep/First friction", "Sweep/Last friction", "Sweep/Number of friction", "Sweep/Threshold"}}},
 
-    {design, {"Designs/", "Sweep/"}, {reduced, no_sweep, no_sliding, undamped, one_mu, {"Designs/Number", "Designs/Seed", "Designs/File"}}},
+    {design,
+     {"Designs/", "Sweep/"},
+     {reduced, no_rate, no_sweep, no_sliding, undamped, one_mu, {"Designs/Number", "Designs/Seed", "Designs/File"}}},
     {joined(design, {"Designs/Plan=Sobol sequence", steady}),
      {"Designs/", "Sweep/"},
-     {reduced, no_sweep, one_mu, {"Designs/File", "Operation/Rotation speed"}}},
+     {reduced, no_rate, no_sweep, one_mu, {"Designs/File", "Operation/Rotation speed"}}},
     // A search has ranges in the place of a plan
     {{"Study=search", "Designs/Variables=Geometry/Pin height=0.03 to 0.04"},
      {"Designs/", "Search/", "Sweep/"},

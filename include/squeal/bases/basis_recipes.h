@@ -103,6 +103,9 @@ namespace Squeal
       return parts.front()->is_uncoupled;
     }
 
+    /// Whether some of its columns belong to contact nodes instead of modes.
+    bool needs_contact_nodes() const;
+
     /// Whether real coupled modes are among its columns.
     bool has_real_modes() const;
 

@@ -62,8 +62,8 @@ namespace Squeal
    * makes the columns M_c-orthonormal. The disc_free modes of a free disc
    * are completed by its rigid-body motions where they lack them.
    *
-   * Throws SolverError if an ingredient is missing or an empty set, if the
-   * basis is larger than the system, or if it cannot be made orthonormal.
+   * Throws SolverError if an ingredient is missing or an empty set, if a
+   * basis of component modes is larger than the system, or if it cannot be made orthonormal.
    */
   ReducedBasis reduced_basis(const BasisRecipe &recipe, const BasisIngredients &ingredients, const BasisOptions &options = {});
 } // namespace Squeal

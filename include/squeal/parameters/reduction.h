@@ -45,7 +45,10 @@ namespace Squeal
 
     void declare(Declarations &declarations);
 
-    /// Throws ParameterError.
+    /// Of a mesh. Throws ParameterError.
     void check() const;
+
+    /// Of a system file. Throws ParameterError.
+    void check_of_system() const;
   };
 } // namespace Squeal

@@ -1,5 +1,6 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/studies/reduction/reduction_tables.h>
+#include <squeal/studies/steps/imported_modes.h>
 #include <squeal/studies/steps/parameter_usage.h>
 
 #include <ostream>
@@ -50,6 +51,15 @@ namespace Squeal
               {{"disc", "F1"}},
               std::vector<bool>(labels.size(), false),
               frictionless.solution.cpu_seconds};
+    }
+
+    ReferenceSolution reference_of_system(const GivenSystem &given, const FrictionlessModes &frictionless, Run &run)
+    {
+      const FrictionModes      full = friction_modes(frictionless, given.value, run);
+      std::vector<std::string> groups;
+      for (const bool grows : full.unstable)
+        groups.emplace_back(grows ? "unstable" : "other");
+      return {full.modes, full.labels, {}, groups, {{"unstable", "other"}}, full.unstable, full.cost.cpu_seconds};
     }
 
     /// Modes of a reduced model with the processor seconds of the fastest of several solutions.
@@ -140,6 +150,30 @@ namespace Squeal
           measure(recipe, "");
       return result;
     }
+    /// Measures all bases on a system that has @p n dofs before it is coupled, and writes the tables.
+    void measure_bases(const ReductionPlan     &plan,
+                       const FrictionlessModes &frictionless,
+                       const CoupledSystem     &system,
+                       ReferenceSolution        reference,
+                       const int                n,
+                       Run                     &run)
+    {
+      ReductionSets               sets(plan, frictionless, system, run);
+      std::vector<TruncatedModes> truncations;
+      reference.seconds += sets.full_order_factorisation();
+      const std::vector<MeasuredBasis> candidates = all_measured(sets, reference, truncations);
+
+      run.write_table("reduction_bases", reduction_basis_table(candidates, n, reference.seconds));
+      if (!truncations.empty())
+        run.write_table("reduction_truncations", reduction_truncation_table(truncations));
+      run.write_table("reduction_costs", sets.cost_table());
+      run.write_table("reduction_errors", reduction_error_table(candidates, reference));
+      run.write_table("reduction_estimates", reduction_estimate_table(candidates, reference));
+      run.store_table("reduction_modes", reduction_mode_table(candidates, reference));
+      run.screen << '\n';
+      run.progress.note(text("  full order: ", reference.seconds, " s of CPU for ", reference.labels.size(), " modes"));
+      run.finish();
+    }
   } // namespace
 
   /// `Study = reduction`: reduced bases measured against full-order modes, those of Tables 2, 4 and 5 of the paper and better ones: sizes,
@@ -149,25 +183,18 @@ namespace Squeal
     const ReductionPlan     plan         = reduction_plan(run.parameters);
     const FrictionlessModes frictionless = damped_modes(scene, run);
     const CoupledSystem    &coupled      = frictionless.linearisation.coupled;
-    const CoupledSystem     system       = plan.has_friction ? coupled : undamped(coupled);
+    measure_bases(plan, frictionless, plan.has_friction ? coupled : undamped(coupled),
+                  plan.has_friction ? complex_reference(plan, frictionless, run) : real_reference(frictionless),
+                  scene.model->free_map().n(), run);
+  }
 
-    ReferenceSolution           reference = plan.has_friction ? complex_reference(plan, frictionless, run) : real_reference(frictionless);
-    ReductionSets               sets(plan, frictionless, system, run);
-    std::vector<TruncatedModes> truncations;
-    reference.seconds += sets.full_order_factorisation();
-    const std::vector<MeasuredBasis> candidates = all_measured(sets, reference, truncations);
-
-    // ----------------------------------------------------------------- results
-    run.write_table("reduction_bases", reduction_basis_table(candidates, scene.model->free_map().n(), reference.seconds));
-    if (!truncations.empty())
-      run.write_table("reduction_truncations", reduction_truncation_table(truncations));
-    run.write_table("reduction_costs", sets.cost_table());
-    run.write_table("reduction_errors", reduction_error_table(candidates, reference));
-    run.write_table("reduction_estimates", reduction_estimate_table(candidates, reference));
-    run.store_table("reduction_modes", reduction_mode_table(candidates, reference));
-    run.screen << '\n';
-    run.progress.note(text("  full order: ", reference.seconds, " s of CPU for ", reference.labels.size(), " modes"));
-    run.finish();
+  /// The same for a system file: bases of its modes and of their responses.
+  static void run_reduction_of_system(Run &run)
+  {
+    const GivenSystem       given        = given_system(run);
+    const ReductionPlan     plan         = reduction_plan(run.parameters, given.file, given.coupled, given.value);
+    const FrictionlessModes frictionless = imported_modes(given.coupled, given.coupled, run);
+    measure_bases(plan, frictionless, given.coupled, reference_of_system(given, frictionless, run), given.file.map.n(), run);
   }
 
   extern const Study reduction_study = [] {
@@ -180,6 +207,7 @@ namespace Squeal
                              "leave out the normal stiffness, or choose Study = stability or sweep");
       reduction_plan(p);
     };
+    study.run_of_system = run_reduction_of_system;
     return study;
   }();
 } // namespace Squeal

@@ -85,7 +85,7 @@ namespace Squeal
       const MeasuredBasis &candidate;
       ModeLabel            label;
       std::string          group;
-      double               disc_share;
+      Entry                disc_share;
       ModalQuantities      mode, exact, better;
     };
     std::vector<Row> rows;
@@ -93,7 +93,8 @@ namespace Squeal
       for (std::size_t j = 0; j < reference.labels.size(); ++j)
         {
           const ModeError &e = candidate.errors[j];
-          rows.push_back({e, candidate, reference.labels[j], reference.groups[j], reference.disc_shares[j], modal_quantities(e.reduced),
+          rows.push_back({e, candidate, reference.labels[j], reference.groups[j],
+                          reference.disc_shares.empty() ? Entry() : Entry(reference.disc_shares[j]), modal_quantities(e.reduced),
                           modal_quantities(e.reference), modal_quantities(e.corrected)});
         }
     const auto frequency_bar  = [](const Row &row) { return std::abs(row.better.frequency - row.mode.frequency); };

@@ -93,11 +93,14 @@ namespace Squeal
            {"System", "System values", "Study", "Band/", "Real modes/", "Complex modes/", "Linear algebra/", "Output/Write system"})
         if (concerns(used, path))
           return true;
-      for (const char *of_sweep : {"Sweep/Parameter", "Sweep/Second parameter", "Sweep/First friction coefficient",
-                                   "Sweep/Last friction coefficient", "Sweep/Number of friction coefficients", "Sweep/Tolerance",
-                                   "Sweep/Maximum basis", "Sweep/Threshold tolerance", "Sweep/Complex plane at", "Sweep/Count modes at"})
-        if (path == of_sweep)
-          return parameters.study->run_of_system != nullptr && parameters.study->has("Sweep/Parameter");
+      for (const char *of_study :
+           {"Sweep/Parameter", "Sweep/Second parameter", "Sweep/First friction coefficient", "Sweep/Last friction coefficient",
+            "Sweep/Number of friction coefficients", "Sweep/Tolerance", "Sweep/Maximum basis", "Sweep/Threshold tolerance",
+            "Sweep/Complex plane at", "Sweep/Count modes at", "Reduction/Bases", "Reduction/Coupled frequency", "Reduction/Rank tolerance",
+            "Reduction/Grown tolerances", "Reduction/Snapshots", "Reduction/POD tolerance"})
+        if (path == of_study)
+          return parameters.study->run_of_system != nullptr &&
+                 (parameters.study->has("Sweep/Parameter") || parameters.study->has("Reduction/"));
       return false;
     }
 

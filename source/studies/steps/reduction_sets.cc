@@ -10,21 +10,32 @@ namespace Squeal
 {
   namespace
   {
-    /// Whether a basis belongs to the problem.
-    bool fits(const BasisRecipe &recipe, const Parameters &p)
+    /// What bases are for.
+    struct Problem
     {
-      const bool has_damping =
-        p.operation.radial_dissipation != RadialDissipation::none || p.operation.friction_slope != 0. || p.materials.is_damped();
-      return (p.has_friction() || !recipe.needs_friction) && (has_damping || !recipe.needs_damping);
+      explicit Problem(const Parameters &p)
+        : has_friction(p.has_friction())
+        , has_damping(p.system || p.operation.radial_dissipation != RadialDissipation::none || p.operation.friction_slope != 0. ||
+                      p.materials.is_damped())
+        , has_contact_nodes(!p.system)
+      {}
+
+      bool has_friction, has_damping, has_contact_nodes, has_snapshots = true;
+    };
+
+    bool fits(const BasisRecipe &recipe, const Problem &problem)
+    {
+      return (problem.has_friction || !recipe.needs_friction) && (problem.has_damping || !recipe.needs_damping) &&
+             (problem.has_contact_nodes || !recipe.needs_contact_nodes()) && (problem.has_snapshots || !recipe.is_pod);
     }
 
     /// Bases that the parameters name; all that fit where they name none.
-    std::vector<const BasisRecipe *> chosen_recipes(const Parameters &p)
+    std::vector<const BasisRecipe *> chosen_recipes(const Parameters &p, const Problem &problem)
     {
       const std::vector<std::string>  &names = p.reduction.bases;
       std::vector<const BasisRecipe *> result;
       for (const BasisRecipe &recipe : basis_recipes())
-        if (names.empty() ? fits(recipe, p) : std::find(names.begin(), names.end(), recipe.name) != names.end())
+        if (names.empty() ? fits(recipe, problem) : std::find(names.begin(), names.end(), recipe.name) != names.end())
           result.push_back(&recipe);
       return result;
     }
@@ -46,7 +57,7 @@ namespace Squeal
     template <typename Predicate>
     bool measures(const Parameters &p, const Predicate &fits)
     {
-      const auto recipes = chosen_recipes(p);
+      const auto recipes = chosen_recipes(p, Problem(p));
       return std::any_of(recipes.begin(), recipes.end(), [&](const BasisRecipe *recipe) { return fits(*recipe); });
     }
 
@@ -71,24 +82,49 @@ namespace Squeal
     return std::any_of(recipes.begin(), recipes.end(), [source](const BasisRecipe *recipe) { return recipe->rests_on(source); });
   }
 
-  ReductionPlan reduction_plan(const Parameters &parameters)
+  static ReductionPlan plan_for(const Problem &problem, const Parameters &parameters, const double value)
   {
-    const bool friction = parameters.has_friction();
     refuse_unknown(parameters.reduction.bases);
     ReductionPlan plan;
-    plan.recipes                    = chosen_recipes(parameters);
-    plan.has_friction               = friction;
-    plan.friction_coefficient       = friction ? parameters.operation.friction_coefficient : 0.;
+    plan.recipes                    = chosen_recipes(parameters, problem);
+    plan.has_friction               = problem.has_friction;
+    plan.friction_coefficient       = value;
     plan.largest_circular_frequency = circular_frequency(parameters.discretization.maximum_frequency);
+    const auto refuse               = [](const BasisRecipe &recipe, const std::string &what, const std::string &change) {
+      throw ParameterError(text("the basis ", in_quotes(recipe.name), " ", what), "parameter Reduction/Bases", change);
+    };
     for (const BasisRecipe *recipe : plan.recipes)
-      if (!fits(*recipe, parameters))
-        throw ParameterError(std::string("the basis `") + recipe->name + "` " +
-                               (friction ? "needs damping, and there is none" : "belongs to the problem with friction"),
-                             "parameter Reduction/Bases",
-                             friction ? "switch a damping on, or leave the basis out" :
-                                        "set Reduction/Problem = friction, or leave it out");
+      if (!problem.has_contact_nodes && recipe->needs_contact_nodes())
+        refuse(*recipe, "needs bodies and their contact nodes, which a system file does not have", "leave the basis out");
+      else if (!problem.has_friction && recipe->needs_friction)
+        refuse(*recipe, "belongs to the problem with friction", "set Reduction/Problem = friction, or leave it out");
+      else if (!problem.has_damping && recipe->needs_damping)
+        refuse(*recipe, "needs damping, and there is none", "switch a damping on, or leave the basis out");
     if (plan.rests_on(BasisSource::snapshots) && parameters.reduction.snapshots.empty())
-      throw ParameterError("the basis POD has no snapshots", "parameter Reduction/Snapshots", "give at least one friction coefficient");
+      throw ParameterError("the basis POD has no snapshots", "parameter Reduction/Snapshots", "give at least one value");
+    return plan;
+  }
+
+  ReductionPlan reduction_plan(const Parameters &parameters)
+  {
+    return plan_for(Problem(parameters), parameters, parameters.has_friction() ? parameters.operation.friction_coefficient : 0.);
+  }
+
+  ReductionPlan reduction_plan(const Parameters &parameters, const SystemFile &file, const CoupledSystem &system, const double value)
+  {
+    const FileParameter *varied = file.find(system.varied);
+    Problem              problem(parameters);
+    problem.has_damping      = system.has_damping();
+    const auto &snapshots    = parameters.reduction.snapshots;
+    problem.has_snapshots    = varied != nullptr && std::all_of(snapshots.begin(), snapshots.end(), [&](const double snapshot) {
+                              return varied->lower <= snapshot && snapshot <= varied->upper;
+                            });
+    const ReductionPlan plan = plan_for(problem, parameters, value);
+    if (!problem.has_snapshots && plan.rests_on(BasisSource::snapshots))
+      throw ParameterError(varied == nullptr ? "the basis POD needs a parameter, and the system has none" :
+                                               text("snapshots lie outside of the range of ", varied->name, " from ",
+                                                    exact_text(varied->lower), " to ", exact_text(varied->upper)),
+                           "parameter Reduction/Snapshots", "give values in the range, or leave the basis POD out");
     return plan;
   }
 
@@ -121,18 +157,16 @@ namespace Squeal
     , frictionless(frictionless)
     , system(system)
     , run(run)
-    , scene(*frictionless.linearisation.scene)
     , linearisation(frictionless.linearisation)
-    , disc_shift(stabilizing_shift(*scene.model, scene.system, plan.largest_circular_frequency))
   {
-    ingredients.uncoupled            = &scene.system;
     ingredients.contact              = &linearisation.contact;
     ingredients.coupled              = &system;
     ingredients.inverse              = frictionless.inverse.get();
     ingredients.friction_coefficient = plan.friction_coefficient;
     charge_coupled_factor();
     take_real_modes(0.);
-    compute_static_modes();
+    if (std::any_of(plan.recipes.begin(), plan.recipes.end(), std::mem_fn(&BasisRecipe::is_connected)))
+      compute_static_modes();
     if (plan.rests_on(BasisSource::snapshots))
       compute_snapshots();
   }
@@ -174,6 +208,12 @@ namespace Squeal
   void ReductionSets::charge_coupled_factor()
   {
     // The inverse computes the factor of K_c together with K_c⁻¹ A, which not every basis needs: that part is measured once more
+    if (system.n_contact() == 0)
+      {
+        book({BasisSource::coupled_factor, "", {}, {}, {}, frictionless.factorisation.cpu_seconds});
+        book({BasisSource::coupled_attachment});
+        return;
+      }
     const Stopwatch   watch;
     const MultiVector attachment = frictionless.inverse->solve_frictionless(system.friction_forces->columns(0, system.n_contact()));
     const double      share      = std::min(watch.cost().cpu_seconds, frictionless.factorisation.cpu_seconds);
@@ -211,8 +251,10 @@ namespace Squeal
   void ReductionSets::compute_static_modes()
   {
     run.progress.begin("Static modes");
+    const Scene               &scene   = *linearisation.scene;
     const FactorizationLibrary library = run.parameters.solvers.library;
-    const Stopwatch            of_factor;
+    ingredients.uncoupled              = &scene.system;
+    const Stopwatch of_factor;
     response = std::make_unique<InertiaRelief>(static_response(*scene.model, scene.system, plan.largest_circular_frequency, library));
     book({BasisSource::uncoupled_factor, "", {}, {}, {}, of_factor.cost().cpu_seconds});
 
@@ -246,7 +288,7 @@ namespace Squeal
     std::vector<const MultiVector *> parts;
     for (const double value : values)
       {
-        run.progress.update(text("mu = ", value));
+        run.progress.update(text(linearisation.coupled.varied, " = ", value));
         modes.push_back(krylov_modes(linearisation.coupled, *frictionless.inverse, frictionless.shift, value,
                                      plan.largest_circular_frequency, frictionless.real.eigenvalues.size(), run.parameters.solvers,
                                      run.progress, frictionless.real.vectors.get()));
@@ -255,7 +297,7 @@ namespace Squeal
       }
     MultiVector set = join(parts);
     const int   n   = keep({BasisSource::snapshots, "", {}, {}, {}, watch.cost().cpu_seconds}, std::move(set));
-    run.progress.finish(text(n, " vectors from ", values.size(), " friction coefficients"));
+    run.progress.finish(text(n, " vectors from ", values.size(), " values of ", linearisation.coupled.varied));
   }
 
   // ------------------------------------------------------------- for some bases
@@ -308,8 +350,10 @@ namespace Squeal
   {
     const bool            is_disc = component == Component::disc;
     const std::string     what    = std::string("modes of the ") + (is_disc ? "disc" : "pins") + " for reduced bases";
-    SymmetricModesOptions options = real_modes_options(run.parameters.solvers, what, is_disc ? disc_shift : 0.);
-    options.by_parts              = !is_disc; // pins are alike: one by one there are no multiple modes
+    const Scene          &scene   = *linearisation.scene;
+    SymmetricModesOptions options = real_modes_options(
+      run.parameters.solvers, what, is_disc ? stabilizing_shift(*scene.model, scene.system, plan.largest_circular_frequency) : 0.);
+    options.by_parts = !is_disc; // pins are alike: one by one there are no multiple modes
 
     const auto   T = component_kernel(*scene.model, linearisation.interface, component, boundary);
     const auto   K = congruence(*scene.system.stiffness, *T), M = congruence(*scene.system.mass, *T);

@@ -25,7 +25,7 @@ namespace Squeal
   {
     ComplexModes                          modes;
     std::vector<ModeLabel>                labels;      ///< of the modes
-    std::vector<double>                   disc_shares; ///< of their energy [-]
+    std::vector<double>                   disc_shares; ///< of their energy [-]; empty: there is no disc
     std::vector<std::string>              groups;
     std::vector<std::vector<std::string>> joined; ///< groups whose maxima the paper takes together
     std::vector<bool>                     unstable;

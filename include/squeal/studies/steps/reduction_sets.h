@@ -1,6 +1,7 @@
 #pragma once
 
 #include <squeal/bases/basis_recipes.h>
+#include <squeal/system/system_file.h>
 #include <squeal/studies/steps/friction_modes.h>
 
 namespace Squeal
@@ -19,6 +20,9 @@ namespace Squeal
 
   /// Throws ParameterError if the parameters name a basis that is none, or one that does not fit the problem.
   ReductionPlan reduction_plan(const Parameters &parameters);
+
+  /// The same for a system file, at a value of its varied parameter.
+  ReductionPlan reduction_plan(const Parameters &parameters, const SystemFile &file, const CoupledSystem &system, double value);
 
   /// When a study of reduced bases leaves parameters unused.
   std::vector<UsageRule> reduction_usage();
@@ -88,9 +92,7 @@ namespace Squeal
     /// Keeps the lowest modes of a component: @p count of them, or, where that is zero, all up to @p frequency [Hz].
     int keep_lowest(Charge charge, Component component, ContactBoundary boundary, double frequency, int count);
 
-    const Scene         &scene;
     const Linearisation &linearisation;
-    const double         disc_shift; ///< of the disc alone [rad/s]
 
     std::vector<Charge>                                 charges; ///< of all sets
     std::map<BasisSource, double>                       seconds; ///< of the sets in use
