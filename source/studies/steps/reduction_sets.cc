@@ -211,7 +211,7 @@ namespace Squeal
     if (system.n_contact() == 0)
       {
         book({BasisSource::coupled_factor, "", {}, {}, {}, frictionless.factorisation.cpu_seconds});
-        book({BasisSource::coupled_attachment});
+        seconds[BasisSource::coupled_attachment] = 0.;
         return;
       }
     const Stopwatch   watch;
