@@ -86,18 +86,19 @@ def names_in(node):
     raise ValueError(node)
 
 
-def evaluate(node, values, functions=FUNCTIONS):
-    """The value of a tree, of floats or of intervals."""
+def evaluate(node, values, functions=FUNCTIONS, number=float):
+    """The value of a tree, of floats or of intervals, which `number` makes of constants."""
     if isinstance(node, ast.Constant):
-        return node.value
+        return number(node.value)
     if isinstance(node, ast.Name):
-        return CONSTANTS.get(node.id[2:], values.get(node.id[2:]))
+        name = node.id[2:]
+        return number(CONSTANTS[name]) if name in CONSTANTS else values[name]
     if isinstance(node, ast.UnaryOp):
-        value = evaluate(node.operand, values, functions)
+        value = evaluate(node.operand, values, functions, number)
         return -value if isinstance(node.op, ast.USub) else value
     if isinstance(node, ast.Call):
-        return functions[node.func.id[2:]](evaluate(node.args[0], values, functions))
-    return OPERATORS[type(node.op)](evaluate(node.left, values, functions), evaluate(node.right, values, functions))
+        return functions[node.func.id[2:]](evaluate(node.args[0], values, functions, number))
+    return OPERATORS[type(node.op)](*(evaluate(side, values, functions, number) for side in (node.left, node.right)))
 
 
 def is_division(node):
@@ -116,13 +117,13 @@ class Interval:
         self.lower, self.upper = lower, lower if upper is None else upper
 
     @classmethod
-    def of(cls, value):
-        return value if isinstance(value, cls) else cls(value)
-
-    @classmethod
     def around(cls, values):
         values = list(values)
         return EVERYTHING if any(math.isnan(value) for value in values) else cls(min(values), max(values))
+
+    @property
+    def ends(self):
+        return self.lower, self.upper
 
     def __contains__(self, value):
         return self.lower <= value <= self.upper
@@ -131,49 +132,27 @@ class Interval:
         return Interval(-self.upper, -self.lower)
 
     def __add__(self, other):
-        other = Interval.of(other)
         return Interval(self.lower + other.lower, self.upper + other.upper)
 
     def __sub__(self, other):
-        return self + -Interval.of(other)
+        return self + -other
 
     def __mul__(self, other):
-        other = Interval.of(other)
-        return Interval.around(a * b for a in (self.lower, self.upper) for b in (other.lower, other.upper))
+        return Interval.around(a * b for a in self.ends for b in other.ends)
 
     def __truediv__(self, other):
-        other = Interval.of(other)
-        return EVERYTHING if 0 in other else Interval.around(a / b for a in (self.lower, self.upper) for b in (other.lower, other.upper))
+        return EVERYTHING if 0 in other else Interval.around(a / b for a in self.ends for b in other.ends)
 
-    def __pow__(self, other):
-        exponent = Interval.of(other)
+    def __pow__(self, exponent):
         if exponent.lower < 0:
             return EVERYTHING if 0 in self else Interval(1.0) / self**-exponent
         if exponent.lower == exponent.upper and exponent.lower.is_integer():
-            ends = (bounded(pow, end, exponent.lower) for end in (self.lower, self.upper))
+            ends = (bounded(pow, end, exponent.lower) for end in self.ends)
             return Interval.around([*ends, 0.0] if exponent.lower > 0 and 0 in self else ends)
-        if self.lower < 0:
-            return EVERYTHING
-        return Interval.around(bounded(pow, a, b) for a in (self.lower, self.upper) for b in (exponent.lower, exponent.upper))
-
-    def __radd__(self, other):
-        return self + other
-
-    def __rsub__(self, other):
-        return -self + other
-
-    def __rmul__(self, other):
-        return self * other
-
-    def __rtruediv__(self, other):
-        return Interval(other) / self
-
-    def __rpow__(self, other):
-        return Interval(other)**self
+        return EVERYTHING if self.lower < 0 else Interval.around(bounded(pow, a, b) for a in self.ends for b in exponent.ends)
 
     def __abs__(self):
-        ends = [abs(self.lower), abs(self.upper)]
-        return Interval(0.0 if 0 in self else min(ends), max(ends))
+        return Interval.around([*map(abs, self.ends), *([0.0] if 0 in self else [])])
 
 
 EVERYTHING = Interval(-math.inf, math.inf)
@@ -189,42 +168,39 @@ def bounded(function, *values):
 
 def monotonic(function, least):
     """An increasing function of intervals, unknown for numbers up to `least`."""
-    def of(x):
-        x = Interval.of(x)
-        return EVERYTHING if x.lower <= least else Interval(*(bounded(function, end) for end in (x.lower, x.upper)))
-
-    return of
+    return lambda x: EVERYTHING if x.lower <= least else Interval(*(bounded(function, end) for end in x.ends))
 
 
 def wave(function, top):
     """Sine or cosine of intervals, 1 at `top`."""
     def of(x):
-        x = Interval.of(x)
         if not x.upper - x.lower < 2 * math.pi:
             return Interval(-1.0, 1.0)
-        values = [function(x.lower), function(x.upper)]
-        for value, place in ((1.0, top), (-1.0, top + math.pi)):
-            if place + 2 * math.pi * math.ceil((x.lower - place) / (2 * math.pi)) in x:
-                values.append(value)
-        return Interval.around(values)
+        extremes = [value for value, place in ((1.0, top), (-1.0, top + math.pi))
+                    if place + 2 * math.pi * math.ceil((x.lower - place) / (2 * math.pi)) in x]
+        return Interval.around([*map(function, x.ends), *extremes])
 
     return of
 
 
 SIN, COS = wave(math.sin, math.pi / 2), wave(math.cos, 0.0)
 OF_INTERVALS = {"sin": SIN, "cos": COS, "tan": lambda x: SIN(x) / COS(x), "exp": monotonic(math.exp, -math.inf), "log": monotonic(math.log, 0.0),
-                "ln": monotonic(math.log, 0.0), "sqrt": monotonic(math.sqrt, -math.ulp(0.0)), "abs": lambda x: abs(Interval.of(x))}
+                "ln": monotonic(math.log, 0.0), "sqrt": monotonic(math.sqrt, -math.ulp(0.0)), "abs": abs}
+
+
+def interval_of(node, ranges):
+    """An interval that contains all values of a tree for parameters in ranges."""
+    return evaluate(node, {name: Interval(*ends) for name, ends in ranges.items()}, OF_INTERVALS, Interval)
 
 
 def find_zero(node, ranges):
     """Parameters near which a tree vanishes, None where it vanishes nowhere in the ranges. Ranges are halved until an interval excludes zero."""
     if isinstance(node, ast.IfExp):
-        exponent = Interval.of(evaluate(node.test, {name: Interval(*ends) for name, ends in ranges.items()}, OF_INTERVALS))
-        return find_zero(node.body, ranges) if exponent.lower < 0 else None
+        return find_zero(node.body, ranges) if interval_of(node.test, ranges).lower < 0 else None
     boxes = [(0, {name: ranges[name] for name in names_in(node)})]
     while boxes:
         halvings, box = boxes.pop()
-        if 0 not in Interval.of(evaluate(node, {name: Interval(*ends) for name, ends in box.items()}, OF_INTERVALS)):
+        if 0 not in interval_of(node, box):
             continue
         widths = {name: (upper - lower) / ((ranges[name][1] - ranges[name][0]) or 1.0) for name, (lower, upper) in box.items()}
         widest = max(widths, key=widths.get, default=None)
