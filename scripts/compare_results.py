@@ -12,11 +12,13 @@ count.
 """
 
 import argparse
-import csv
-import math
+import io
 import pathlib
 import re
 import sys
+
+import numpy as np
+import pandas
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "python"))
 from squeal.command_line import exit_on_error
@@ -25,60 +27,31 @@ from squeal.errors import Error
 VARYING = re.compile(r"time|CPU|wall|memory|residual|eps_res|speed-up|orthonormality", re.IGNORECASE)
 
 
-def read_table(path):
-    """Header and rows; lines that start with # are no data."""
-    with open(path, newline="", encoding="utf-8") as file:
-        rows = list(csv.reader(line for line in file if line.strip() and not line.startswith("#")))
-    return (rows[0], rows[1:]) if rows else ([], [])
-
-
-def number(text):
-    try:
-        value = float(text)
-    except ValueError:
-        return None
-    return value if math.isfinite(value) else None
+def read_texts(path):
+    """Cells of a table as texts; of columns with the same name pandas numbers all but the first."""
+    lines = [line for line in path.read_text(encoding="utf-8").splitlines(keepends=True) if line.strip() and not line.startswith("#")]
+    return pandas.read_csv(io.StringIO("".join(lines)), dtype=str, keep_default_na=False) if lines else pandas.DataFrame()
 
 
 def compare_columns(name, old, new, tolerance):
     """The largest relative difference of a column, and complaints."""
-    scale = max((abs(number(text)) for text in old if number(text) is not None), default=0.0)
-    largest, complaints = 0.0, []
-    for row, (a, b) in enumerate(zip(old, new), start=1):
-        x, y = number(a), number(b)
-        if x is None or y is None:
-            if a != b:
-                complaints.append(f"{name}, row {row}: `{a}` became `{b}`")
-        elif x != y:
-            difference = abs(x - y) / scale if scale > 0 else abs(y)
-            largest = max(largest, difference)
-            if difference > tolerance:
-                complaints.append(f"{name}, row {row}: {a} became {b}, {difference:.1e}")
-    return largest, complaints
-
-
-def with_occurrence(names):
-    """Names of columns, of which some may be equal, each with the number of equal ones before it."""
-    return [(name, names[:column].count(name)) for column, name in enumerate(names)]
+    x, y = (pandas.to_numeric(column, errors="coerce").replace([np.inf, -np.inf], np.nan) for column in (old, new))
+    are_numbers = x.notna() & y.notna()
+    differences = ((x - y).abs() / (x.abs().max() or 1.0)).where(are_numbers, 0.0)
+    complaints = [f"{name}, row {row + 1}: " + (f"{old[row]} became {new[row]}, {differences[row]:.1e}" if are_numbers[row] else f"`{old[row]}` became `{new[row]}`")
+                  for row in np.flatnonzero(~are_numbers & (old != new) | (differences > tolerance))]
+    return differences.max(), complaints
 
 
 def compare_tables(old_file, new_file, tolerance, ignored, everything):
-    (old_names, old), (new_names, new) = read_table(old_file), read_table(new_file)
-    places = dict(zip(with_occurrence(new_names), range(len(new_names))))
-    missing = [name for name, occurrence in with_occurrence(old_names) if (name, occurrence) not in places]
-    if missing:
+    old, new = read_texts(old_file), read_texts(new_file)
+    if missing := [name for name in old.columns if name not in new.columns]:
         return 0.0, [f"columns are missing: {', '.join(missing)}"]
     if len(old) != len(new):
         return 0.0, [f"{len(old)} rows became {len(new)}"]
-    largest, complaints = 0.0, []
-    for column, (name, occurrence) in enumerate(with_occurrence(old_names)):
-        if name in ignored or (not everything and VARYING.search(name)):
-            continue
-        place = places[name, occurrence]
-        difference, found = compare_columns(name, [row[column] for row in old], [row[place] for row in new], tolerance)
-        largest = max(largest, difference)
-        complaints += found
-    return largest, complaints
+    found = [compare_columns(name, old[name], new[name], tolerance) for name in old.columns
+             if name not in ignored and (everything or not VARYING.search(name)) and len(old)]
+    return max((largest for largest, _ in found), default=0.0), [complaint for _, complaints in found for complaint in complaints]
 
 
 @exit_on_error()
