@@ -71,6 +71,13 @@ class Table:
         """Whether the number in each cell of a column is not zero."""
         return [number != 0 for number in self.numbers(column)]
 
+    def groups(self, *columns):
+        """Rows with the same values in some columns, in the order of the table."""
+        found = {}
+        for row in self.rows:
+            found.setdefault(tuple(row[column] for column in columns), []).append(row)
+        return list(found.values())
+
     def eigenvalues(self):
         """λ [1/s] of the modes in the rows."""
         return [complex(rate, 2 * math.pi * frequency) for rate, frequency in zip(self.numbers("growth rate [1/s]"), self.numbers("frequency [Hz]"))]

@@ -1,7 +1,5 @@
 """What accuracy costs: errors of meshes, elements and bases over time."""
 
-from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
-
 from squeal.plotting import style
 from squeal.plotting.reduction import in_order, pareto_front
 
@@ -22,14 +20,6 @@ class Solution:
         self.seconds = float(row["CPU time [s]"])
         self.is_complete = row["modes without counterpart [-]"] == "0"
         self.errors = {column: max(float(row[column]), FLOOR) for column in row if column.endswith((FREQUENCY, DIVERGENCE))}
-
-
-def logarithmic(panel):
-    panel.set_xscale("log")
-    panel.set_yscale("log")
-    panel.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
-    panel.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    panel.xaxis.set_minor_formatter(NullFormatter())
 
 
 def draw_front(panel, solutions, column):
@@ -60,7 +50,7 @@ def cost_figure(solutions):
             if reduced:
                 panel.plot(*zip(*reduced), linestyle="none", label=f"{family}, reduced", markersize=6,
                            **{**look, "markerfacecolor": "white"})
-        logarithmic(panel)
+        style.cost_axes(panel, [solution.seconds for solution in solutions])
     return picture.add_key()
 
 
@@ -79,7 +69,7 @@ def kind_figure(solutions):
                 points = [(seconds, error) for seconds, error in points if error > FLOOR]
                 if points:
                     panel.plot(*zip(*points), linestyle="none", label=kind, markersize=6, **style.mark_of(number))
-            logarithmic(panel)
+            style.cost_axes(panel, [solution.seconds for solution in own])
     return picture.add_key()
 
 

@@ -3,29 +3,9 @@
 import math
 
 from squeal.plotting import style
+from squeal.reporting.designs import LARGEST, ONSET, name_of, positions, variables_of
 
-ONSET, LARGEST = "mu of 0.01 % [-]", "largest divergence rate [%]"
 MOST_VARIABLES, MOST_LABELS = 8, 10
-
-
-def variables_of(table):
-    """Columns of the variables: those between number and outcome."""
-    return table.columns[1:table.columns.index("outcome")]
-
-
-def positions(texts):
-    """Places of values on an axis, with names of the ticks where they are no numbers."""
-    try:
-        return [float(text) for text in texts], None
-    except ValueError:
-        names = list(dict.fromkeys(texts))
-        return [names.index(text) for text in texts], names
-
-
-def short(name):
-    """The name of a variable for an axis."""
-    words = name.split(" + ")[0].split("/")[-1]
-    return words + (" ..." if " + " in name else "")
 
 
 def figures(results):
@@ -48,7 +28,7 @@ def figures(results):
         values, names = table.numbers(column), table.texts(label_column)
         for number, variable in enumerate(variables):
             panel = picture.panels[row * len(variables) + number]
-            style.prepare(panel, "", short(variable) if row else "", title if number == 0 else "")
+            style.prepare(panel, "", name_of(variable) if row else "", title if number == 0 else "")
             places, ticks = positions(table.texts(variable))
             for x, y, name, is_solved in zip(places, values, names, solved):
                 if not is_solved:

@@ -4,7 +4,6 @@ import math
 
 from squeal.plotting import style
 
-ROW_HEIGHT = 0.24  # of a bar [inches]
 LEAST = 1e-6  # smaller changes are rounding [%]
 
 PANELS = (("change of frequency [%]", "change of frequency [%]", "Ingredients/Frequency tolerance"),
@@ -12,12 +11,11 @@ PANELS = (("change of frequency [%]", "change of frequency [%]", "Ingredients/Fr
 COST = "cost beside the reference [-]"
 
 
-def draw_bars(panel, values, changed, places):
+def draw_bars(panel, values, changed):
     """A bar for each value that there is, in two colours by whether the verdict changes."""
     for colour, label, wanted in ((style.BLUE, "the verdict stays", False), (style.VERMILLION, "the verdict changes", True)):
-        chosen = [(place, value) for place, value, flag in zip(places, values, changed) if flag is wanted and not math.isnan(value)]
-        if chosen:
-            panel.barh(*zip(*chosen), height=0.62, color=colour, label=label, hatch="///" if wanted else None, edgecolor="white", linewidth=0)
+        chosen = [place for place, flag in enumerate(changed) if flag is wanted and not math.isnan(values[place])]
+        style.draw_bars(panel, chosen, [values[place] for place in chosen], colour, label, wanted)
 
 
 def figures(results):
@@ -29,21 +27,18 @@ def figures(results):
              for ingredient, tried, reason in zip(table.texts("ingredient"), table.texts("tried"), table.texts("not tried because"))]
     names = [name if len(name) < 42 else name[:39] + "..." for name in names]
     changed = [number == 1 for number in table.numbers("verdict changed [-]")]
-    places = range(len(table))
 
-    picture = style.Picture("What each part of the model changes by itself", 3, 3, (3.9, ROW_HEIGHT * len(table) + 1.1))
+    picture = style.Picture("What each part of the model changes by itself", 3, 3, (3.9, style.BAR * len(table) + 1.1))
     for panel, (column, label, parameter) in zip(picture.panels, PANELS):
         style.prepare(panel, "", label, "")
         panel.set_xscale("log")
         values = [value if math.isnan(value) or value > LEAST else math.nan for value in table.numbers(column)]
-        draw_bars(panel, values, changed, places)
+        draw_bars(panel, values, changed)
         panel.axvline(results.number(parameter), color=style.BLACK, linestyle="--", linewidth=1.1, label="accuracy asked for")
         panel.set_xlim(left=LEAST)
     style.prepare(picture.panels[2], "", "processor time beside the reference [-]", "")
-    draw_bars(picture.panels[2], table.numbers(COST), changed, places)
+    draw_bars(picture.panels[2], table.numbers(COST), changed)
     picture.panels[2].axvline(1, color=style.GREY, linewidth=1.1, label="the scene as it is")
     for panel in picture.panels:
-        panel.set_ylim(len(table) - 0.4, -0.6)
-        panel.set_yticks(places, names if panel is picture.panels[0] else [""] * len(table), fontsize=style.SMALL)
-        panel.grid(axis="y", visible=False)
+        style.name_rows(panel, names if panel is picture.panels[0] else [""] * len(table))
     return {"ingredients": picture.add_key()}

@@ -1,12 +1,9 @@
 """Errors and costs of reduced bases, as figures 10 to 18 of the paper."""
 
-from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
-
 from squeal.plotting import style
 
 CRITERIA = {"res [-]": "\u03b5_res", "mac [-]": "\u03b5_mac", "frq [-]": "\u03b5_frq", "div [-]": "\u03b5_div"}
 FLOOR = 1e-16  # errors below it are rounding; zero has no place on a logarithmic axis
-WIDE = 1e3  # ratio of the ends of an axis of costs from which on only powers of ten are named
 MOST_COLUMNS = 3
 AT_FLOOR = "on this line: 1e-16 or less"
 
@@ -106,12 +103,7 @@ def draw_costs(panel, candidates, column, costs):
     for number, (candidate, cost, error) in enumerate(zip(candidates, costs, errors)):
         panel.plot([cost], [error], linestyle="none", label=candidate.title, markersize=7, **style.mark_of(number))
     draw_floor(panel, errors)
-    panel.set_xscale("log")
-    panel.set_yscale("log")
-    digits = (1, 2, 5) if max(costs) < WIDE * min(costs) else (1,)
-    panel.xaxis.set_major_locator(LogLocator(subs=digits))
-    panel.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    panel.xaxis.set_minor_formatter(NullFormatter())
+    style.cost_axes(panel, costs)
 
 
 def cost_figure(candidates, with_friction):

@@ -4,7 +4,6 @@ import math
 
 from squeal.plotting import style
 
-ROW_HEIGHT = 0.24  # of a bar [inches]
 MOST_MODES = 4
 CHANGE = "divergence rate per 1 % [percentage points]"
 
@@ -21,18 +20,15 @@ def figures(results):
     changes = {mode: {row[2]: row[6] for row in rows if row[0] == mode} for mode in modes}
     names = sorted(changes[modes[0]], key=lambda name: -abs(changes[modes[0]][name]))
 
-    picture = style.Picture("What one per cent of each parameter changes", len(modes), len(modes), (3.9, ROW_HEIGHT * len(names) + 1.3))
+    picture = style.Picture("What one per cent of each parameter changes", len(modes), len(modes), (3.9, style.BAR * len(names) + 1.3))
     for panel, mode in zip(picture.panels, modes):
         _, label, _, _, frequency, divergence, _ = next(row for row in rows if row[0] == mode)
         style.prepare(panel, f"{label}, {frequency:.0f} Hz, {divergence:.3g} %", "change of divergence rate [points]", "")
-        for colour, hatch, text, sign in ((style.VERMILLION, None, "more of it: grows more", 1), (style.BLUE, "///", "more of it: grows less", -1)):
-            chosen = [(place, changes[mode][name]) for place, name in enumerate(names) if sign * changes[mode][name] > 0]
-            if chosen:
-                panel.barh(*zip(*chosen), height=0.62, color=colour, hatch=hatch, edgecolor="white", linewidth=0, label=text)
+        for colour, text, sign in ((style.VERMILLION, "more of it: grows more", 1), (style.BLUE, "more of it: grows less", -1)):
+            chosen = [place for place, name in enumerate(names) if sign * changes[mode][name] > 0]
+            style.draw_bars(panel, chosen, [changes[mode][names[place]] for place in chosen], colour, text, sign < 0)
         panel.axvline(0, color=style.GREY, linewidth=1.1)
-        panel.set_ylim(len(names) - 0.4, -0.6)
-        panel.set_yticks(range(len(names)), names if panel is picture.panels[0] else [""] * len(names), fontsize=style.SMALL)
+        style.name_rows(panel, names if panel is picture.panels[0] else [""] * len(names))
         panel.ticklabel_format(axis="x", style="plain", useOffset=False)
         panel.locator_params(axis="x", nbins=5)
-        panel.grid(axis="y", visible=False)
     return {"sensitivity": picture.add_key()}

@@ -4,6 +4,7 @@ import math
 
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 # Told apart with every kind of colour vision (Okabe and Ito); what they mean is said by marks, widths and dashes, too.
 BLACK, GREY, BLUE, VERMILLION, GREEN = "#000000", "#8c8c8c", "#0072b2", "#d55e00", "#009e73"
@@ -13,6 +14,8 @@ MARKERS = ("o", "s", "^", "v", "D", "P", "X", "<", ">", "p", "*", "h")
 
 FONT_SIZE, SMALL = 10, 8  # [points]
 INCH = 72  # [points]
+BAR = 0.24  # height of a row [inches]
+WIDE = 1e3  # ratio of the ends of an axis of costs from which on only powers of ten are named
 KEY_LINE, KEY_MARK, KEY_LETTER, TITLE = 0.22, 0.75, 0.063, 0.35  # [inches]
 
 FREQUENCY, DIVERGENCE = "frequency [Hz]", "divergence rate R/\u03c9 [%]"
@@ -80,3 +83,25 @@ def prepare(panel, title, x_label, y_label):
 
 def zero_line(panel):
     panel.axhline(0, color="#555555", linewidth=0.9, zorder=1, gid="zero")
+
+
+def cost_axes(panel, costs):
+    """Logarithmic axes for errors over costs, with numbers on the axis of costs."""
+    panel.set_xscale("log")
+    panel.set_yscale("log")
+    panel.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5) if max(costs) < WIDE * min(costs) else (1,)))
+    panel.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    panel.xaxis.set_minor_formatter(NullFormatter())
+
+
+def draw_bars(panel, places, values, colour, label, is_hatched):
+    """Bars at places from the top, if there are any."""
+    if places:
+        panel.barh(places, values, height=0.62, color=colour, label=label, hatch="///" if is_hatched else None, edgecolor="white", linewidth=0)
+
+
+def name_rows(panel, names):
+    """Names of the rows of bars, empty where another panel has them."""
+    panel.set_ylim(len(names) - 0.4, -0.6)
+    panel.set_yticks(range(len(names)), names, fontsize=SMALL)
+    panel.grid(axis="y", visible=False)

@@ -21,6 +21,15 @@ def name_of(variable):
     return first.split("/")[-1] + (" …" if others else "")
 
 
+def positions(texts):
+    """Places of values on an axis, with names of the ticks where they are no numbers."""
+    try:
+        return [float(text) for text in texts], []
+    except ValueError:
+        names = list(dict.fromkeys(texts))
+        return [names.index(text) for text in texts], names
+
+
 def solved(table):
     return [row for row in table.rows if row["outcome"] == "solved"]
 
@@ -96,13 +105,9 @@ def lines_section(results):
     rows, end = solved(table), end_of_sweep(results)
     dimensions = []
     for name in variables_of(table):
-        texts = [row[name] for row in rows]
-        try:
-            dimensions.append({"label": name_of(name), "values": [float(text) for text in texts], "tickformat": ".4~g"})
-        except ValueError:
-            names = list(dict.fromkeys(texts))
-            dimensions.append({"label": name_of(name), "values": [names.index(text) for text in texts], "tickvals": list(range(len(names))),
-                               "ticktext": names})
+        values, names = positions([row[name] for row in rows])
+        ticks = {"tickvals": list(range(len(names))), "ticktext": names} if names else {"tickformat": ".4~g"}
+        dimensions.append({"label": name_of(name), "values": values, **ticks})
     onset, largest = [number(row[ONSET] or end) for row in rows], [number(row[LARGEST] or "0") for row in rows]
     dimensions += [{"label": "μ of 0.01 %", "values": onset, "tickformat": ".4~g"},
                    {"label": "largest rate [%]", "values": largest, "tickformat": ".4~g"}]

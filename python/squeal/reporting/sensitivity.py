@@ -57,22 +57,14 @@ def checks(results):
     return found
 
 
-def groups(table, columns):
-    """Rows with the same values in some columns, in the order of the table."""
-    found = {}
-    for row in table.rows:
-        found.setdefault(tuple(row[column] for column in columns), []).append(row)
-    return list(found.values())
-
-
 def modes_of(table):
     """Rows of each mode, the one that grows fastest first."""
-    return sorted(groups(table, ("mode [-]",)), key=lambda rows: -number(rows[0][RATE]))
+    return sorted(table.groups("mode [-]"), key=lambda rows: -number(rows[0][RATE]))
 
 
 def thresholds_of(table):
     """Rows of each threshold, by ascending friction coefficient."""
-    return groups(table, ("mu [-]", "event", "label", "label of partner", FREQUENCY))
+    return table.groups("mu [-]", "event", "label", "label of partner", FREQUENCY)
 
 
 def ranking(rows, change=CHANGE):

@@ -75,9 +75,7 @@ def shape_sections(results, modes):
 
 def energy_sections(results):
     """What each body adds to the divergence rate, by modes."""
-    bodies = {}
-    for row in results.table("energy").rows if results.has("energy") else []:
-        bodies.setdefault(row["mode [-]"], []).append(row)
+    bodies = {rows[0]["mode [-]"]: rows for rows in results.table("energy").groups("mode [-]")} if results.has("energy") else {}
     if not bodies:
         return []
     parts = (("friction into the disc [%]", "friction on the disc", "#b2182b"), ("friction into the pin [%]", "friction on the pin", "#f4a582"),

@@ -48,10 +48,7 @@ def checks(results):
 
 def branches_of(results, name):
     """Rows of each branch."""
-    branches = {}
-    for row in results.table(name).rows:
-        branches.setdefault(row["branch [-]"], []).append(row)
-    return branches
+    return {rows[0]["branch [-]"]: rows for rows in results.table(name).groups("branch [-]")}
 
 
 def branch_section(results, name, title):
