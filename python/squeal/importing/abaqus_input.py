@@ -41,10 +41,6 @@ class AbaqusInput:
         self._axes = {None: (1.0, 0.0, 0.0, 0.0, 1.0, 0.0)}
         self._parts, self._instance, self._of_part = 0, "", set()
         self._read()
-        for label, (_, nodes) in self.elements.items():
-            for node in nodes:
-                if node not in self.points:
-                    raise self._refused(f"element {label} has node {node}, which is not in the file", "write all nodes out")
         for sets, known in ((self.element_sets, self.elements), (self.node_sets, self.points)):
             sets.update({name: self._labels(sets, known, name) for name in sets})
         faces = {name: [face for entry in entries for face in self._faces(name, *entry)] for name, entries in self.surfaces.items()}

@@ -46,8 +46,6 @@ class ExodusFile:
                 self.elements[len(self.elements) + 1] = (shape, [nodes[i] for i in order]) if shape else (kind, [])
             self.element_sets[name] = list(range(first, len(self.elements) + 1))
         self.node_sets = {name: self._variables[nodes].tolist() for name, nodes in self._sets("ns", "nodeset", "node_ns")}
-        if unknown := {node for nodes in [*self.node_sets.values(), *(nodes for _, nodes in self.elements.values())] for node in nodes} - self.points.keys():
-            raise LookupError(f"node {min(unknown)} is not in the file")
         for name, elements in self._sets("ss", "sideset", "elem_ss"):
             sides = zip(self._variables[elements].tolist(), self._variables[elements.replace("elem", "side")].tolist())
             solids = [(element, side) for element, side in sides if len(faces_of(self.elements[element][0])) > 1]

@@ -38,7 +38,11 @@ class ForeignMesh:
         return [tuple(nodes[i] for i in faces_of(shape)[0]) for shape, nodes in elements if len(faces_of(shape)) == 1]
 
 
-def from_input_file(source):
+def from_input_file(source, path):
+    for what, label, nodes in [*(("element", label, nodes) for label, (_, nodes) in source.elements.items()),
+                               *(("node set", name, nodes) for name, nodes in source.node_sets.items())]:
+        if unknown := next((node for node in nodes if node not in source.points), None):
+            raise Error(f"{what} {label} has node {unknown}, which is not in the file", path, "write all nodes into one file")
     mesh = ForeignMesh()
     mesh.points = np.array(list(source.points.values()))
     node = {label: number for number, label in enumerate(source.points)}
@@ -108,4 +112,4 @@ def read(path):
         if begin := re.search(NOT_READ, file.read(100_000)):
             raise Error(f"meshes of {begin.lastgroup} are not read", path, "export .inp (Abaqus) or .bdf (Nastran) in the pre-processor")
     reader = READERS.get(path.suffix.lower())
-    return from_input_file(reader(path)) if reader else from_meshio(path)
+    return from_input_file(reader(path), path) if reader else from_meshio(path)

@@ -62,9 +62,6 @@ class NastranInput:
             except (ValueError, IndexError) as error:
                 raise Error(f"{card[0]} cannot be read ({error})", f"{path}, line {line}", "check this card") from error
         self.dropped = [f"{n} elements {name}" for name, n in self._unread.items()]
-        for label, (_, nodes) in self.elements.items():
-            if unknown := [node for node in nodes if node not in self.points]:
-                raise Error(f"element {label} has node {unknown[0]}, which is not in the file", path, "write all nodes into one file")
 
     def _take(self, name, *fields):
         if name.startswith("INCLUDE"):
