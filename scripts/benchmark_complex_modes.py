@@ -13,7 +13,6 @@ the number of modes to look for; of SLEPc, set-up and solution with that number 
 round, of which the median is printed.
 """
 
-import argparse
 import pathlib
 import statistics
 import tempfile
@@ -63,11 +62,9 @@ def compare(rounds, n_modes):
 
 @exit_on_error()
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = benchmarking.parser_of(__doc__)
     parser.add_argument("directory", metavar="DIRECTORY", type=pathlib.Path, help="output of a run with Output/Write matrices = true")
     parser.add_argument("--formulations", help="of SLEPc, separated by commas (default: all that fit)")
-    parser.add_argument("--runs", type=int, default=3, help="repetitions (default: %(default)s)")
-    parser.add_argument("--core", type=int, default=0, help="the core to run on (default: %(default)s)")
     arguments = parser.parse_args()
     if not slepc_modes.available():
         raise slepc_modes.missing()

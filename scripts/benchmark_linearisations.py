@@ -17,19 +17,18 @@ the band are found
 Processor seconds of one core, medians; the largest relative distance of an eigenvalue of the band from the first method's.
 """
 
-import argparse
 import os
 import time
 
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-os.environ.setdefault("OMP_NUM_THREADS", "1")
+import benchmarking
+
+os.environ.update(benchmarking.environment())  # before NumPy loads OpenBLAS
 
 import numpy as np
 import scipy.linalg
 import scipy.sparse as sparse
 import scipy.sparse.linalg
 
-import benchmarking
 import slepc_modes
 from squeal import exported_matrices
 from squeal.command_line import exit_on_error
@@ -91,11 +90,9 @@ def by_toar(M, C, K, end):
 
 @exit_on_error()
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = benchmarking.parser_of(__doc__)
     parser.add_argument("directory")
     parser.add_argument("--vectors", type=int, default=234)
-    parser.add_argument("--runs", type=int, default=3)
-    parser.add_argument("--core", type=int, default=0)
     arguments = parser.parse_args()
     os.sched_setaffinity(0, {arguments.core})
     print(benchmarking.describe_machine(arguments.core), flush=True)

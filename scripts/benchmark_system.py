@@ -62,7 +62,7 @@ def smallest_number(problems, end, first):
 
 @exit_on_error()
 def main():
-    parser = benchmarking.sweep_parser(__doc__)
+    parser = benchmarking.parser_of(__doc__, of_sweep=True)
     parser.add_argument("--eigenvalues", type=int, help="how many SLEPc is asked for (default: the smallest number that covers the band)")
     parser.add_argument("--basis", type=int, help="vectors of its basis (default: twice as many)")
     parser.add_argument("--tolerance", type=float, default=1e-12, help="SLEPc's tolerance (default: %(default)s)")

@@ -17,34 +17,17 @@ the largest. Needs SLEPc (scripts/setup.sh peers) for all rows but the last.
 
 import argparse
 import pathlib
-import statistics
 import tempfile
 
 import benchmarking
 import slepc_modes
-from benchmark_sweep import coefficients
+from benchmarking import Rounds
 from squeal.command_line import exit_on_error
 from squeal.errors import Error
 
 PRM = benchmarking.SOURCE / "prm"
 NO_FIELDS = ["Output/Mode shapes=none"]
-MATRICES = ["Study=stability", "Output/Write matrices=true", *NO_FIELDS]
 DISSIPATION = "Operation/Radial dissipation=consistent"
-
-
-class Rounds:
-    """What the rounds of a row measured, by the name of the quantity."""
-
-    def __init__(self, title):
-        self.title, self.values = title, {}
-
-    def add(self, name, value):
-        self.values.setdefault(name, []).append(value)
-
-    def print(self):
-        print(f"\n{self.title}")
-        for name, values in self.values.items():
-            print(f"  {name:<62} {benchmarking.spread(values, 2)}", flush=True)
 
 
 def gain_of_cores(rounds, cores, parameter_file, folder, settings):
@@ -58,24 +41,8 @@ def gain_of_cores(rounds, cores, parameter_file, folder, settings):
     rounds.add("gain of the second core [-]", one / two)
 
 
-def matrices_of(folder, name, parameter_file, settings, core):
-    """The matrices of a scene for SLEPc, and its number of modes; written once."""
-    directory = folder / name
-    if not directory.exists():
-        benchmarking.run_squeal(core, parameter_file, directory, [*settings, *MATRICES])
-    return directory, benchmarking.n_rows(directory / "real_modes.csv")
-
-
-def mean_peer(rounds, core, matrices, chosen):
-    """Mean processor seconds of SLEPc over some friction coefficients."""
-    directory, n_modes = matrices
-    solutions = [benchmarking.run_peer(core, directory, n_modes, friction_coefficient=mu) for mu in chosen]
-    for solution in solutions:
-        if solution["modes"] != n_modes:
-            print(f"  note: SLEPc {solution['formulation']} found {solution['modes']} of {n_modes} modes")
-    mean = statistics.mean(solution["CPU time [s]"] for solution in solutions)
-    rounds.add(f"SLEPc {solutions[0]['formulation']}, one friction coefficient, CPU [s]", mean)
-    return mean
+def scene_of(folder, damped, core):
+    return benchmarking.matrices_of(folder / ("damped" if damped else "undamped"), PRM / "sweep.prm", [DISSIPATION] if damped else [], core)
 
 
 def chart(cores, folder, n_rounds, damped):
@@ -83,16 +50,9 @@ def chart(cores, folder, n_rounds, damped):
     parameter_file = PRM / ("sweep_damped.prm" if damped else "sweep.prm")
     settings = ["Sweep/Count modes at=", *NO_FIELDS] if damped else NO_FIELDS
     rounds = Rounds(f"{parameter_file.name}{', without its count' if damped else ''}")
-    scenes = [matrices_of(folder, "undamped", PRM / "sweep.prm", [], cores[:1])]
-    if damped:
-        scenes.append(matrices_of(folder, "damped", PRM / "sweep.prm", [DISSIPATION], cores[:1]))
+    scenes = [scene_of(folder, of_damped, cores[:1]) for of_damped in ((False, True) if damped else (False,))]
     for _ in range(n_rounds):
-        record = benchmarking.run_squeal(cores[:1], parameter_file, folder / "sweep", settings)
-        seconds = benchmarking.cpu_seconds(record)
-        rounds.add("squeal, the whole run, CPU [s]", seconds)
-        number, chosen = coefficients(folder / "sweep")
-        peers = sum(mean_peer(rounds, cores[:1], scene, chosen) for scene in scenes)
-        rounds.add(f"{number} solutions by SLEPc / the run [-]", number * peers / seconds)
+        benchmarking.compare_sweep(rounds, cores[:1], parameter_file, settings, folder / "sweep", scenes)
         gain_of_cores(rounds, cores, parameter_file, folder, settings)
     rounds.print()
 
@@ -101,13 +61,12 @@ def one(cores, folder, n_rounds):
     """One friction coefficient from matrices."""
     for damped in (False, True):
         rounds = Rounds(f"one friction coefficient, {'consistent' if damped else 'no'} dissipation, from the assembled matrices")
-        scene = matrices_of(folder, "damped" if damped else "undamped", PRM / "sweep.prm", [DISSIPATION] if damped else [], cores[:1])
-        settings = [*([DISSIPATION] if damped else []), *NO_FIELDS]
+        scene = scene_of(folder, damped, cores[:1])
         for _ in range(n_rounds):
-            record = benchmarking.run_squeal(cores[:1], PRM / "disc_pins.prm", folder / "one", settings)
+            record = benchmarking.run_squeal(cores[:1], PRM / "disc_pins.prm", folder / "one", [*NO_FIELDS, *([DISSIPATION] if damped else [])])
             seconds = benchmarking.cpu_seconds(record, {"Mode count", "Factorisation", "Real modes", "Complex modes"})
             rounds.add("squeal, count, factor, real and complex modes, CPU [s]", seconds)
-            rounds.add("squeal / SLEPc [-]", seconds / mean_peer(rounds, cores[:1], scene, [0.4]))
+            rounds.add("squeal / SLEPc [-]", seconds / benchmarking.mean_peer(rounds, cores[:1], scene, [0.4]))
         rounds.print()
 
 

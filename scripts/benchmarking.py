@@ -16,6 +16,7 @@ from squeal.program import SOURCE, find_program, words_of
 from squeal.results import read_table
 
 PEER = SOURCE / "scripts" / "slepc_modes.py"
+PARTS = (0.1, 0.3, 0.5, 0.7, 0.9)  # of a sweep, at which SLEPc solves
 
 
 def cpu():
@@ -52,11 +53,12 @@ def describe_machine(core):
             f"load of the machine {load:.1f}")
 
 
-def sweep_parser(description):
-    """The command line of a benchmark of one sweep: parameter file, settings, repetitions, core."""
+def parser_of(description, of_sweep=False):
+    """The command line of a benchmark: repetitions and core, of one of a sweep also parameter file and settings."""
     parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("parameter_file", metavar="PRM", type=pathlib.Path)
-    parser.add_argument("--set", action="append", default=[], dest="settings", metavar="Section/Name=value")
+    if of_sweep:
+        parser.add_argument("parameter_file", metavar="PRM", type=pathlib.Path)
+        parser.add_argument("--set", action="append", default=[], dest="settings", metavar="Section/Name=value")
     parser.add_argument("--runs", type=int, default=3, help="repetitions (default: %(default)s)")
     parser.add_argument("--core", type=int, default=0, help="the core to run on (default: %(default)s)")
     return parser
@@ -105,3 +107,50 @@ def n_rows(table):
 def spread(values, digits=1):
     """Median with smallest and largest."""
     return f"{statistics.median(values):.{digits}f} ({min(values):.{digits}f} to {max(values):.{digits}f})"
+
+
+class Rounds:
+    """What the rounds of a benchmark measured, by the name of the quantity."""
+
+    def __init__(self, title):
+        self.title, self.values = title, {}
+
+    def add(self, name, value):
+        self.values.setdefault(name, []).append(value)
+
+    def print(self):
+        print(f"\n{self.title}")
+        for name, values in self.values.items():
+            print(f"  {name:<62} {spread(values, 2)}", flush=True)
+
+
+def matrices_of(directory, parameter_file, settings, core):
+    """The matrices of a scene for SLEPc, written once, and its number of modes."""
+    if not directory.exists():
+        run_squeal(core, parameter_file, directory, [*settings, "Study=stability", "Output/Write matrices=true", "Output/Mode shapes=none"])
+    return directory, n_rows(directory / "real_modes.csv")
+
+
+def mean_peer(rounds, core, matrices, chosen):
+    """Mean processor seconds of SLEPc over some friction coefficients."""
+    directory, n_modes = matrices
+    solutions = [run_peer(core, directory, n_modes, friction_coefficient=mu) for mu in chosen]
+    for solution in solutions:
+        if solution["modes"] != n_modes:
+            print(f"  note: SLEPc {solution['formulation']} found {solution['modes']} of {n_modes} modes")
+    mean = statistics.mean(solution["CPU time [s]"] for solution in solutions)
+    rounds.add(f"SLEPc {solutions[0]['formulation']}, one friction coefficient, CPU [s]", mean)
+    return mean
+
+
+def compare_sweep(rounds, core, parameter_file, settings, output, scenes):
+    """One round: a sweep, then SLEPc at five of its friction coefficients in each of the scenes; its mean stands for all."""
+    record = run_squeal(core, parameter_file, output, settings)
+    seconds = cpu_seconds(record)
+    rounds.add("squeal, the whole run, CPU [s]", seconds)
+    for name in dict.fromkeys(step["name"] for step in record["steps"]):
+        rounds.add(f"  {name}", cpu_seconds(record, {name}))
+    number, first, last = (float(parameter(output, f"Sweep/{name}"))
+                           for name in ("Number of friction coefficients", "First friction coefficient", "Last friction coefficient"))
+    peers = sum(mean_peer(rounds, core, scene, [first + part * (last - first) for part in PARTS]) for scene in scenes)
+    rounds.add(f"{number:.0f} solutions by SLEPc / the run [-]", number * peers / seconds)
