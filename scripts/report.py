@@ -14,34 +14,14 @@ import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "python"))
-from squeal.errors import Error
-from squeal.reporting.page import MissingLibraries
-from squeal.results import Results
+from squeal.command_line import make_of_results
 
 
-def main(words=None):
+def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("results", metavar="RESULTS", help="folder that a run has left")
     parser.add_argument("-o", "--output", metavar="FILE.html", help="(default: RESULTS/report.html)")
-    arguments = parser.parse_args(words)
-    try:
-        place, remarks = Results(arguments.results).report(arguments.output)
-    except MissingLibraries as missing:
-        print(f"No report: install {' '.join(missing.packages)} (or call scripts/setup.sh), then: scripts/report.py {arguments.results}", file=sys.stderr)
-        return 1
-    except Error as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 1
-    except ModuleNotFoundError as missing:
-        if missing.name != "numpy":
-            raise
-        print(f"No report: install python3-{missing.name} (or call scripts/setup.sh), then: scripts/report.py {arguments.results}", file=sys.stderr)
-        return 1
-    for remark in remarks:
-        print(remark)
-    print(f"  report: {place}")
-    return 0
+    make_of_results("report", parser, lambda results, arguments: results.report(arguments.output))
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

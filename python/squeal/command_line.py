@@ -27,6 +27,24 @@ def exit_on_error():
         sys.exit(f"error: {error.strerror}\n  where:  {error.filename}\n  change: check the file and its folder, and who may read and write there")
 
 
+def make_of_results(what, parser, make):
+    """Reads the rest of the command line, with the folder of the results, makes `what` of them and ends the script.
+
+    make(results, arguments) returns a file or a list of files, and remarks.
+    """
+    from squeal.results import Results
+
+    parser.add_argument("results", metavar="RESULTS", help="folder that a run has left")
+    arguments = parser.parse_args()
+    try:
+        with exit_on_error():
+            found, remarks = make(Results(arguments.results), arguments)
+    except ModuleNotFoundError as missing:
+        sys.exit(f"No {what}: install python3-{missing.name} (or call scripts/setup.sh), then: "
+                 f"scripts/{os.path.basename(sys.argv[0])} {arguments.results}")
+    print(*remarks, f"  {what}: {', '.join(map(str, found if isinstance(found, list) else [found]))}", sep="\n")
+
+
 def ensure_display(packages, command=(sys.executable,), screen="1280x1024x24"):
     """Without a screen, starts the script again under a virtual one; for libraries that draw through X."""
     if os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"):

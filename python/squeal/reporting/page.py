@@ -19,14 +19,6 @@ CONTROLS = JAVASCRIPT / "three" / "examples" / "js" / "controls" / "OrbitControl
 TABLE_STYLE = JAVASCRIPT / "jquery-datatables" / "css" / "jquery.dataTables.min.css"
 
 
-class MissingLibraries(Error):
-    """Libraries that the page needs are missing; `packages` of Debian have them."""
-
-    def __init__(self, packages):
-        super().__init__("libraries of the report are missing", "Results.report()", f"install {' '.join(packages)} (or call scripts/setup.sh)")
-        self.packages = packages
-
-
 def missing_packages():
     return [package for package, path in LIBRARIES.items() if not path.is_file()]
 
@@ -132,10 +124,9 @@ def body(content):
 
 
 def page(content):
-    """The whole file. Throws MissingLibraries."""
-    missing = missing_packages()
-    if missing:
-        raise MissingLibraries(missing)
+    """The whole file. Throws Error where libraries are missing."""
+    if missing := missing_packages():
+        raise Error("libraries of the report are missing", "Results.report()", f"apt-get install {' '.join(missing)} (or scripts/setup.sh)")
     charts = [{part: entry[part] for part in ("id", "data", "layout", "choices", "chosen") if part in entry}
               for entry in content["sections"] if is_chart(entry)]
     data = {"charts": charts, "shapes": next((entry["shapes"] for entry in content["sections"] if "shapes" in entry), None)}
