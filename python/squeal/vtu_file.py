@@ -6,6 +6,8 @@ import struct
 import xml.etree.ElementTree
 import zlib
 
+from squeal.errors import Error
+
 # Names of VTK's types
 SHAPES = {5: "triangle", 9: "quad", 10: "tetra", 12: "hexahedron", 13: "wedge", 14: "pyramid"}
 TYPE_CODES = {"Float32": "f", "Int32": "i", "UInt8": "B"}
@@ -18,6 +20,7 @@ class VtuFile:
     """
 
     def __init__(self, path):
+        self.path = path
         head, _, self.data = path.read_bytes().partition(b'<AppendedData encoding="raw">\n_')
         root = xml.etree.ElementTree.fromstring(head + b"</VTKFile>")
         assert root.get("compressor") == "vtkZLibDataCompressor" and root.get("header_type") == "UInt64", path
@@ -49,6 +52,14 @@ class VtuFile:
         assert n_blocks == 1 and len(plain) == size, data.get("Name")
         values = array.array(TYPE_CODES[data.get("type")], plain).tolist()
         return list(zip(values[0::3], values[1::3], values[2::3])) if data.get("NumberOfComponents") == "3" else values
+
+    def field(self, name):
+        """A point field as an array. Throws Error if there is none."""
+        import numpy
+
+        if name not in self.fields:
+            raise Error(f"the file has no point field {name}", self.path, f"name one of: {', '.join(self.fields)}")
+        return numpy.array(self.fields[name])
 
     def as_meshio(self):
         """A Mesh of meshio."""

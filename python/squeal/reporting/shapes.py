@@ -5,31 +5,15 @@ import base64
 import numpy as np
 
 from squeal.results import shape_files
+from squeal.surface import outer_faces
 from squeal.vtu_file import VtuFile
 
 LARGEST = 12  # modes
-# Of VTK's cells; triangles repeat their last corner
-FACES = {5: ((0, 1, 2, 2),), 9: ((0, 1, 2, 3),),
-         10: ((0, 1, 2, 2), (0, 1, 3, 3), (1, 2, 3, 3), (2, 0, 3, 3)),
-         12: ((0, 1, 2, 3), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)),
-         13: ((0, 1, 2, 2), (3, 4, 5, 5), (0, 1, 4, 3), (1, 2, 5, 4), (2, 0, 3, 5)),
-         14: ((0, 1, 2, 3), (0, 1, 4, 4), (1, 2, 4, 4), (2, 3, 4, 4), (3, 0, 4, 4))}
 STEPS = 32767  # of a displacement from zero to the largest one
 
 
 def text_of(array, kind):
     return base64.b64encode(np.ascontiguousarray(array, dtype=kind).tobytes()).decode()
-
-
-def surface(cells, types):
-    """Faces that belong to one cell only, four corners each; a triangle repeats its last one."""
-    faces = np.concatenate([np.array([cell for cell, of_cell in zip(cells, types) if of_cell == kind])[:, FACES[kind]].reshape(-1, 4)
-                            for kind in sorted(set(types))])
-    keys = faces.copy()
-    keys[faces[:, 2] == faces[:, 3], 3] = -1
-    keys.sort(axis=1)
-    _, first, count = np.unique(keys, axis=0, return_index=True, return_counts=True)
-    return faces[first[count == 1]]
 
 
 def of_growing_modes(results, modes):
@@ -40,7 +24,7 @@ def of_growing_modes(results, modes):
     if not growing:
         return None
     mesh = VtuFile(files[growing[0]])
-    points, faces = np.array(mesh.points), surface(mesh.cells, mesh.cell_types)
+    points, faces = np.array(mesh.points), outer_faces(mesh)
     used, numbers = np.unique(faces, return_inverse=True)
     is_disc = np.zeros(len(points), dtype=bool)
     is_disc[[corner for cell, component in zip(mesh.cells, mesh.cell_fields["component"]) if component == 0 for corner in cell]] = True

@@ -1,0 +1,55 @@
+"""Outer faces of the bodies in a file of fields, and their edges; points are numbers of those of the file."""
+
+import numpy as np
+
+# Of VTK's cells; triangles repeat their last corner
+FACES = {5: ((0, 1, 2, 2),), 9: ((0, 1, 2, 3),),
+         10: ((0, 1, 2, 2), (0, 1, 3, 3), (1, 2, 3, 3), (2, 0, 3, 3)),
+         12: ((0, 1, 2, 3), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)),
+         13: ((0, 1, 2, 2), (3, 4, 5, 5), (0, 1, 4, 3), (1, 2, 5, 4), (2, 0, 3, 5)),
+         14: ((0, 1, 2, 3), (0, 1, 4, 4), (1, 2, 4, 4), (2, 3, 4, 4), (3, 0, 4, 4))}
+SAME_PLACE = 1e-5  # of the size of the bodies: points of several processes
+
+
+def outer_faces(mesh, bodies=None):
+    """Faces that belong to one cell only (m x 4, a triangle repeats its last corner), of all bodies or of those chosen by their component.
+
+    Coincident points of one body are one point, those of two bodies in contact stay apart.
+    """
+    points, of_cells = np.array(mesh.points), mesh.cell_fields.get("component", [0] * len(mesh.cells))
+    chosen = [cell for cell, body in enumerate(of_cells) if bodies is None or body in bodies]
+    body = np.zeros(len(points))
+    for cell in chosen:
+        body[mesh.cells[cell]] = of_cells[cell]
+    places = np.round(points / (SAME_PLACE * np.ptp(points, axis=0).max()))
+    _, first, number = np.unique(np.column_stack([body, places]), axis=0, return_index=True, return_inverse=True)
+    cells = {kind: [mesh.cells[cell] for cell in chosen if mesh.cell_types[cell] == kind] for kind in FACES}
+    faces = first[number][np.concatenate([np.array(own)[:, FACES[kind]].reshape(-1, 4) for kind, own in cells.items() if own])]
+    keys = faces.copy()
+    keys[faces[:, 2] == faces[:, 3], 3] = -1
+    keys.sort(axis=1)
+    _, first, count = np.unique(keys, axis=0, return_index=True, return_counts=True)
+    return faces[first[count == 1]]
+
+
+def sides_of(faces):
+    """Both ends (n x 2, ascending) of the sides of faces, and the number of the face of each."""
+    ends = np.sort(np.stack([faces, np.roll(faces, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
+    is_side = ends[:, 0] < ends[:, 1]  # of a repeated corner there is none
+    return ends[is_side], np.repeat(np.arange(len(faces)), 4)[is_side]
+
+
+def edges_of(faces):
+    """Both ends (n x 2) of the edges of faces, and how many faces meet there."""
+    return np.unique(sides_of(faces)[0], axis=0, return_counts=True)
+
+
+def sharp_edges(points, faces, angle=50):
+    """Both ends (n x 2) of the edges of a closed surface where its normal turns by more than an angle [degree]."""
+    corners = points[faces]
+    normals = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
+    normals /= np.linalg.norm(normals, axis=1)[:, None]
+    ends, owners = sides_of(faces)
+    order = np.lexsort(ends.T)  # both faces of an edge follow each other
+    one, other = owners[order].reshape(-1, 2).T
+    return ends[order][::2][abs(np.sum(normals[one] * normals[other], axis=1)) < np.cos(np.radians(angle))]
