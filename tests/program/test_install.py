@@ -51,6 +51,14 @@ class Installed(ProgramTest):
         self.assertEqual(process.stdout.split(), [str(len(eigenvalues(self.folder / "by_module"))), str(share / "python" / "squeal" / "__init__.py")])
         process = subprocess.run([share / "scripts" / "plot_results.py", self.folder / "none"], text=True, capture_output=True)
         self.assertIn("there is no folder", process.stderr)
+        for name, values in (("M", "1\n0\n0\n1"), ("K", "100\n-30\n-30\n80")):
+            self.write(f"{name}.mtx", f"%%MatrixMarket matrix array real general\n2 2\n{values}\n")
+        self.write("two.json", '{"terms": [{"file": "M.mtx", "power": 2}, {"file": "K.mtx", "power": 0}]}')
+        process = subprocess.run([share / "scripts" / "import_matrices.py", "two.json", "--output", "two"], cwd=self.folder, text=True, capture_output=True)
+        self.assertEqual(process.returncode, 0, process.stderr)
+        self.write("two.prm", "set System = two\nsubsection Band\n  set Maximum frequency = 3\nend\n")
+        process = self.squeal("two.prm", "--output", "of_matrices")
+        self.assertEqual((process.returncode, len(eigenvalues(self.folder / "of_matrices"))), (0, 2), process.stderr)
 
     def test_takes_its_own_mesher(self):
         """Gmsh runs in the installed executable."""
