@@ -16,6 +16,7 @@ from squeal import quadratic
 from squeal.errors import Error
 from squeal.expressions import NAME, Expression
 from squeal.importing.configuration import read_json
+from squeal.results import Table
 
 FORMAT, VERSION, FILE = "squeal system", 1, "system.json"
 SYMMETRIES = {"none": 0, "symmetric": 1, "skew": -1}
@@ -368,21 +369,18 @@ def read_matrix(folder, name, where):
 
 
 def read_rows(folder, name, where):
-    """Rows of a CSV file as dictionaries, numbers as such."""
-    path = inside(folder, name, where)
-    with open(path, newline="", encoding="utf-8") as file:
-        rows = list(csv.DictReader(file))
-    try:
-        return [{key: text if key == "direction" else float(text) for key, text in row.items()} for row in rows]
-    except (TypeError, ValueError) as problem:
-        raise Error(f"{path} cannot be read: {problem}", where, "write a number for each column of a row") from problem
+    """Rows of a CSV file as dictionaries, numbers as such, NaN for an empty cell."""
+    table = Table(inside(folder, name, where))
+    columns = [table.texts(column) if column == "direction" else table.numbers(column) for column in table.columns]
+    return [dict(zip(table.columns, row)) for row in zip(*columns)]
 
 
 def write_rows(path, rows):
     with open(path, "w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, list(rows[0]) if rows else DOF_COLUMNS, lineterminator="\n")
         writer.writeheader()
-        writer.writerows({key: value if isinstance(value, str) else repr(float(value)) for key, value in row.items()} for row in rows)
+        writer.writerows({key: value if isinstance(value, str) else "" if math.isnan(value) else repr(float(value)) for key, value in row.items()}
+                         for row in rows)
 
 
 def write_matrix(path, matrix, symmetry="none"):

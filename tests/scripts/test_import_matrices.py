@@ -2,6 +2,7 @@
 
 import json
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -15,6 +16,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 SCRIPT = ROOT / "scripts" / "import_matrices.py"
 sys.path.insert(0, str(ROOT / "python"))
 from squeal import System
+from squeal.importing.system_import import import_system
 
 try:
     import h5py
@@ -204,6 +206,18 @@ class ImportMatrices(unittest.TestCase):
         from pyNastran.op4.op4 import OP4
         OP4(debug=False).write_op4(str(self.folder / "model.op4"), {"MAA": (6, self.matrices["M"]), "RAA": (1, self.matrices["R"])}, is_binary=False)
         self.assert_imported({"M": {"file": "model.op4", "variable": "MAA"}, "R": {"file": "model.op4", "variable": "RAA"}}, 1e-12)
+
+    def test_configuration_of_the_page(self):
+        """That of doc/python.md imports matrices of four dofs."""
+        text, = re.findall(r"```yaml\n(.*?)```", (ROOT / "doc" / "python.md").read_text(encoding="utf-8"), flags=re.DOTALL)
+        upper = np.triu(np.ones((4, 4)), 1)
+        scipy.io.savemat(self.folder / "matrices.mat", {"M": np.eye(4), "G": upper - upper.T, "D": upper})
+        sparse.save_npz(self.folder / "stiffness.npz", sparse.csr_matrix(np.diag([1.0, 2.0, 3.0, 4.0])))
+        self.write("brake.yaml", text.replace("300", "3"))
+        system, remarks, _ = import_system(self.folder / "brake.yaml")
+        self.assertEqual((remarks, system.groups), ([], {"disc": [[1, 3]]}))
+        np.testing.assert_allclose(system.C({"omega": 10.0}), 10.0 * (upper - upper.T) + upper / 10.0)
+        np.testing.assert_allclose(system.K(), np.diag([1e3, 2e3, 3e3, 4e3]))
 
     def test_yaml(self):
         np.save(self.folder / "M.npy", self.matrices["M"])
