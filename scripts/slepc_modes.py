@@ -81,7 +81,7 @@ class Solution:
 
         matrices = [problem.stiffness, problem.mass] if self.formulation == "linear" else [problem.stiffness, problem.damping, problem.mass]
         operators = [petsc_matrix(matrix) for matrix in matrices]
-        solver = self.linear_solver(operators) if self.formulation == "linear" else self.quadratic_solver(operators)
+        solver = self.solver(operators)
         size = problem.size if self.formulation == "linear" else 2 * problem.size
         solver.setDimensions(n_eigenvalues, min(basis or default_basis(self.formulation, n_eigenvalues), size))
         solver.setTolerances(tol=tolerance, max_it=1000)
@@ -108,34 +108,31 @@ class Solution:
         for operator in operators:
             operator.destroy()
 
-    def linear_solver(self, operators):
-        """K x = nu M x with nu = -lambda^2, about -shift^2."""
+    def solver(self, operators):
+        """Shift-invert with an LU factorisation by MUMPS; the linear problem is K x = nu M x with nu = -lambda^2, about -shift^2."""
         from petsc4py import PETSc
         from slepc4py import SLEPc
 
-        solver = SLEPc.EPS().create(PETSc.COMM_SELF)
-        solver.setOperators(*operators)
-        solver.setProblemType(SLEPc.EPS.ProblemType.GNHEP)
-        solver.setType(SLEPc.EPS.Type.KRYLOVSCHUR)
-        solver.setWhichEigenpairs(SLEPc.EPS.Which.TARGET_MAGNITUDE)
-        solver.setTarget(-self.shift**2)
-        invert_by_mumps(solver.getST())
-        return solver
-
-    def quadratic_solver(self, operators):
-        from petsc4py import PETSc
-        from slepc4py import SLEPc
-
-        types = {"toar": SLEPc.PEP.Type.TOAR, "q-arnoldi": SLEPc.PEP.Type.QARNOLDI, "linearised": SLEPc.PEP.Type.LINEAR}
-        solver = SLEPc.PEP().create(PETSc.COMM_SELF)
-        solver.setOperators(operators)
-        solver.setProblemType(SLEPc.PEP.ProblemType.GENERAL)
-        solver.setType(types[self.formulation])
-        solver.setWhichEigenpairs(SLEPc.PEP.Which.TARGET_MAGNITUDE)
-        solver.setTarget(self.shift)
-        solver.setScale(SLEPc.PEP.Scale.SCALAR)
-        invert_by_mumps(solver.getST())
-        solver.getST().setTransform(True)
+        is_linear = self.formulation == "linear"
+        solver = (SLEPc.EPS if is_linear else SLEPc.PEP)().create(PETSc.COMM_SELF)
+        if is_linear:
+            solver.setOperators(*operators)
+            solver.setProblemType(SLEPc.EPS.ProblemType.GNHEP)
+            solver.setType(SLEPc.EPS.Type.KRYLOVSCHUR)
+        else:
+            solver.setOperators(operators)
+            solver.setProblemType(SLEPc.PEP.ProblemType.GENERAL)
+            solver.setType({"toar": SLEPc.PEP.Type.TOAR, "q-arnoldi": SLEPc.PEP.Type.QARNOLDI, "linearised": SLEPc.PEP.Type.LINEAR}[self.formulation])
+            solver.setScale(SLEPc.PEP.Scale.SCALAR)
+        solver.setWhichEigenpairs(type(solver).Which.TARGET_MAGNITUDE)
+        solver.setTarget(-self.shift**2 if is_linear else self.shift)
+        transformation = solver.getST()
+        transformation.setType(SLEPc.ST.Type.SINVERT)
+        transformation.setTransform(not is_linear)
+        inner = transformation.getKSP()
+        inner.setType("preonly")
+        inner.getPC().setType("lu")
+        inner.getPC().setFactorSolverType("mumps")
         return solver
 
     def covers(self, band):
@@ -154,17 +151,6 @@ def petsc_matrix(matrix):
     matrix.sort_indices()
     csr = (matrix.indptr.astype(PETSc.IntType), matrix.indices.astype(PETSc.IntType), matrix.data)
     return PETSc.Mat().createAIJ(matrix.shape, csr=csr, comm=PETSc.COMM_SELF)
-
-
-def invert_by_mumps(transformation):
-    """Shift-invert by an LU factorisation."""
-    from slepc4py import SLEPc
-
-    transformation.setType(SLEPc.ST.Type.SINVERT)
-    inner = transformation.getKSP()
-    inner.setType("preonly")
-    inner.getPC().setType("lu")
-    inner.getPC().setFactorSolverType("mumps")
 
 
 def n_wanted(formulation, n_modes):
