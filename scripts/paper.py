@@ -111,7 +111,7 @@ class Mode:
 def modes_of(results, table):
     """Modes of a table of a run by frequency; of component modes those of the free disc and of pins that slide."""
     return [Mode(row["label"], row["frequency [Hz]"], row.get("divergence rate [%]", 0.0), row.get("unstable [-]") == 1,
-                 (row.get("wave with rotation [-]"), row.get("wave against rotation [-]"))) for row in results.table(f"{table}.csv")
+                 (row.get("wave with rotation [-]"), row.get("wave against rotation [-]"))) for row in results.rows(table)
             if (row.get("component"), row.get("contact")) in ((None, None), ("disc", "free"), ("pins", "sliding"))]
 
 
@@ -291,7 +291,7 @@ def of_dissipation(undamped, damped):
 def statements(without, damped):
     """Section 4 of the paper statement by statement; those about modes that the runs do not have are left out."""
     modes = modes_to_compare(without, damped)
-    found = (*of_frequencies(*modes, len(damped.table("sliding_pins.csv"))), *of_growth(modes[2]), *of_dissipation(*modes[2:]))
+    found = (*of_frequencies(*modes, len(damped.rows("sliding_pins"))), *of_growth(modes[2]), *of_dissipation(*modes[2:]))
     return [{"section": section, "statement": words, "paper": paper, "here": here, "unit": unit, "verdict": verdict, "rule": rule,
              "modes": "; ".join(map(str, modes))} for section, words, paper, here, unit, (verdict, rule), *modes in found]
 
@@ -347,8 +347,7 @@ def draw(folder, without, damped):
     try:
         from squeal.plotting import complex_plane
         from squeal.plotting.draw import render
-        from squeal.results import Results
-        figure = complex_plane.paper_figure(Results(without.folder), Results(damped.folder))
+        figure = complex_plane.paper_figure(without, damped)
         (folder / "figure6.svg").write_bytes(render(figure, "svg"))
     except ModuleNotFoundError as missing:
         print(f"No figure6.svg: Python has no {missing.name}; install python3-matplotlib.", file=sys.stderr)

@@ -39,8 +39,8 @@ BRAKE_DIVERGENCE = ("0.0045", "0.028", "0.0028")  # of the last of them [points]
 @entry("accuracy", "Disc brake: difference from coarser meshes and distance from a finer mesh")
 def brake(runs):
     shapes, coarser = "Output/Mode shapes=none", "Discretization/Coarser mesh=disc_size = {}, pad_size = {}".format
-    fine = runs("brake_fine", "brake.prm", shapes, "Geometry/disc_size=0.0063", "Geometry/pad_size=0.004").table("complex_modes.csv")
-    twice, slightly = (runs(f"brake_{disc}", "brake.prm", shapes, coarser(disc, pad)).table("complex_modes.csv")
+    fine = runs("brake_fine", "brake.prm", shapes, "Geometry/disc_size=0.0063", "Geometry/pad_size=0.004").rows("complex_modes")
+    twice, slightly = (runs(f"brake_{disc}", "brake.prm", shapes, coarser(disc, pad)).rows("complex_modes")
                        for disc, pad in ((0.019, 0.012), (0.0125, 0.0078)))
     estimated = "estimated frequency error by the mesh [%]"
     for row, quoted in BRAKE.items():
@@ -74,7 +74,7 @@ LARGEST, RMS = "frequency error [%]", "rms frequency error [%]"
 
 
 def compared(results, quoted, columns):
-    rows = {(row["element"], row["mesh factor [-]"]): row for row in results.table("accuracy.csv") if row["method"] == "full order"}
+    rows = {(row["element"], row["mesh factor [-]"]): row for row in results.rows("accuracy") if row["method"] == "full order"}
     for key, texts in quoted.items():
         for column, text in zip(columns, texts):
             yield Number(f"{key[0]}, mesh factor {key[1]}: {column}", text, rows[key][column])
@@ -84,7 +84,7 @@ def compared(results, quoted, columns):
 def default_scene(runs):
     results = runs("accuracy", "studies/accuracy.prm")
     yield from compared(results, DEFAULT_SCENE, ("dofs [-]", LARGEST, RMS, "divergence error [percentage points]"))
-    orders = [row["order of frequency [-]"] for row in results.table("accuracy_orders.csv") if row["family"].startswith("quadratic")]
+    orders = [row["order of frequency [-]"] for row in results.rows("accuracy_orders") if row["family"].startswith("quadratic")]
     yield Number("modes whose frequency shows an order", "66", sum(isinstance(order, float) for order in orders))
     yield Number("their order in the middle", "2.4", statistics.median(orders))
 

@@ -9,7 +9,7 @@ QUOTED = {0.0286: ("0.608", "0.993"), 0.0302: ("0.623", "0.986"), 0.0318: ("0.87
 
 @entry("designs", "Fifty designs of the default scene")
 def fifty(runs):
-    rows = runs("designs", "studies/designs.prm").table("designs.csv")
+    rows = runs("designs", "studies/designs.prm").rows("designs")
     yield Number("designs", "50", len(rows))
     yield Number("of which the pins flutter first", "48", sum(row["label at 0.01 %"] == "F1" for row in rows))
     for height, (least, greatest) in QUOTED.items():
@@ -21,7 +21,7 @@ def fifty(runs):
 
 @entry("designs", "Fifty designs on one mesh")
 def one_mesh(runs):
-    rows = runs("materials", "studies/materials.prm").table("designs.csv")
+    rows = runs("materials", "studies/materials.prm").rows("designs")
     best, worst = min(rows, key=lambda row: row[RATE]), max(rows, key=lambda row: row[RATE])
     yield Number("modes of each, found", "66", min(row["modes [-]"] for row in rows))
     yield Number("  counted", "66", min(row["modes counted [-]"] for row in rows))
@@ -39,17 +39,17 @@ IRON = "Disc material/Rayleigh beta=4.5e-7"
 
 @entry("designs", "A silent design: the search")
 def searched(runs):
-    scene = runs("search_scene", "sweep.prm", *SEARCHED, "Disc material/Rayleigh beta=1e-7").table("branches.csv")
+    scene = runs("search_scene", "sweep.prm", *SEARCHED, "Disc material/Rayleigh beta=1e-7").rows("branches")
     leading = max(scene, key=lambda row: row["divergence rate [%]"])
     yield Number("largest divergence rate of the scene [%]", "0.611", leading["divergence rate [%]"])
     yield Number("  frequency [Hz]", "2354", leading["frequency [Hz]"])
     results = runs("search", "studies/search.prm")
-    best = min(results.table("designs.csv"), key=lambda row: row[RATE])
+    best = min(results.rows("designs"), key=lambda row: row[RATE])
     yield Number("best, design", "4", best["design [-]"])
     for name, value, factor in ((RATE, "0.229", 1), ("mu of 0.01 % [-]", "0.374", 1), (HEIGHT, "31.9", 1000), ("Geometry/Pin diameter", "50.1", 1000),
                                 ("Pin material/Young modulus", "1.56", 1e-9)):
         yield Number(f"  {name}", value, factor * best[name])
-    check = results.table("full_order.csv")[0]
+    check = results.rows("full_order")[0]
     yield Number("divergence rate at full order [%]", "0.2289", check["divergence rate [%]"])
     yield Number("unstable modes at full order", "2", check["unstable modes [-]"])
 
@@ -57,10 +57,10 @@ def searched(runs):
 @entry("designs", "A silent design: with the damping of grey iron")
 def silent(runs):
     quiet = runs("quiet", "sweep.prm", *SEARCHED, *BEST, IRON)
-    yield Number("modes that grow at some friction coefficient", "0", sum(row["growing [-]"] for row in quiet.table("branches.csv")))
+    yield Number("modes that grow at some friction coefficient", "0", sum(row["growing [-]"] for row in quiet.rows("branches")))
     full = runs("quiet_full_order", "disc_pins.prm", *SEARCHED[:1], *BEST, IRON, "Complex modes/Solver=Krylov", "Operation/Friction coefficient=0.45",
                 "Output/Mode shapes=none")
     yield Number("unstable modes at full order", "0", full.n_unstable())
     other = runs("iron_alone", "sweep.prm", *SEARCHED, IRON)
-    yield Number("the pins as they were: squeal from", "0.254", min(row["mu [-]"] for row in other.table("thresholds.csv")))
-    yield Number("  largest divergence rate [%]", "0.371", max(row["divergence rate [%]"] for row in other.table("branches.csv")))
+    yield Number("the pins as they were: squeal from", "0.254", min(row["mu [-]"] for row in other.rows("thresholds")))
+    yield Number("  largest divergence rate [%]", "0.371", max(row["divergence rate [%]"] for row in other.rows("branches")))

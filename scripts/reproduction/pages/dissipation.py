@@ -18,7 +18,7 @@ def ends(rows, label, column):
 
 
 def of_modes(results, label):
-    rates = sorted(mode["divergence rate [%]"] for mode in results.modes(label))
+    rates = sorted(mode["divergence rate [%]"] for mode in results.complex_modes(label))
     return rates
 
 

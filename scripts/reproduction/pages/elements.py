@@ -35,7 +35,7 @@ def pin_frequency(runs, label, element, outlines, nodes, layers, *, rings=0, gra
                    f"Discretization/Element={element}", f"Geometry/Outlines={outlines}", f"Geometry/Nodes per pin face={nodes}",
                    f"Geometry/Pin layers={layers}", f"Geometry/Pin rings={rings}", f"Geometry/Pin grading={grading}",
                    f"Pin material/Poisson ratio={ratio}")
-    return min(mode["frequency [Hz]"] for mode in results.table("component_modes.csv")
+    return min(mode["frequency [Hz]"] for mode in results.rows("component_modes")
                if mode["component"] == "pins" and mode["contact"] == "sliding" and mode["label"].startswith(label))
 
 
@@ -83,8 +83,8 @@ def tetrahedra(runs):
     for refinement, (disc, frequency, divergence) in TETRAHEDRA.items():
         results = runs(f"tetrahedra_{refinement}", "disc_pins.prm", NO_SHAPES, "Geometry/File=disc_pins_tetrahedra.geo",
                        f"Geometry/refinement={refinement}", "Discretization/Element=quadratic")
-        free = [mode["frequency [Hz]"] for mode in results.table("component_modes.csv") if mode["label"].startswith("A0-4")]
+        free = [mode["frequency [Hz]"] for mode in results.rows("component_modes") if mode["label"].startswith("A0-4")]
         yield Number(f"refinement {refinement}, A0-4 [Hz]", disc, sum(free) / len(free))
-        leading = max(results.table("complex_modes.csv"), key=lambda mode: mode["divergence rate [%]"])
+        leading = max(results.rows("complex_modes"), key=lambda mode: mode["divergence rate [%]"])
         yield Number(f"refinement {refinement}, F1 [Hz]", frequency, leading["frequency [Hz]"])
         yield Number(f"refinement {refinement}, F1 [%]", divergence, leading["divergence rate [%]"])

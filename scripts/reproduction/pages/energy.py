@@ -11,7 +11,7 @@ QUOTED = {17: ("0.680", "46", ("5", "13.2"), ("6", "12.8"), ("1", "3.6")),
 
 @entry("energy", "The table of the default scene")
 def default_scene(runs):
-    rows = runs("default", "disc_pins.prm", "Output/Mode shapes=none").table("energy.csv")
+    rows = runs("default", "disc_pins.prm", "Output/Mode shapes=none").rows("energy")
     for mode, (rate, into_disc, *shares) in QUOTED.items():
         own = {row["body"]: row for row in rows if row["mode [-]"] == mode}
         found = own["disc"]["divergence rate [%]"]
@@ -27,7 +27,7 @@ def sums(runs):
     results = runs("default", "disc_pins.prm", "Output/Mode shapes=none")
     difference = results.record["quantities"]["largest difference of a divergence rate from what its powers add up to [-]"]
     yield Number("largest difference [-]", "1e-14", difference, bound=True)
-    own = {row["body"]: row for row in results.table("energy.csv") if row["mode [-]"] == 13}
+    own = {row["body"]: row for row in results.rows("energy") if row["mode [-]"] == 13}
     for pin in (4, 5):
         yield Number(f"R0-2: pin_top_{pin} [%]", "-1.9",
                      100 * own[f"pin_top_{pin}"]["all of it [%]"] / own["disc"]["divergence rate [%]"])

@@ -22,7 +22,7 @@ CHANGES = {"consistent", "-0.01 s/m", "on", "quadratic", "real modes alone", "re
 
 
 def rows_of(runs):
-    rows = runs("ingredients", "disc_pins.prm", *TRIALS).table("ingredients.csv")
+    rows = runs("ingredients", "disc_pins.prm", *TRIALS).rows("ingredients")
     # A table's numbers are numbers, also where they name what was tried
     return {row["tried"] if isinstance(row["tried"], str) else f"{row['tried']:g}": row for row in rows}
 
@@ -72,7 +72,7 @@ CHANGES_WITH_DAMPING = {"Rayleigh damping", "rotation of the disc", "band"}
 @entry("ingredients", "The table of the scene with all damping")
 def with_all_damping(runs):
     rows = {(row["ingredient"], row["tried"] if isinstance(row["tried"], str) else f"{row['tried']:g}"): row
-            for row in runs("ingredients_damped", "studies/ingredients.prm").table("ingredients.csv")}
+            for row in runs("ingredients_damped", "studies/ingredients.prm").rows("ingredients")}
     for (ingredient, tried), (frequency, divergence, unstable) in QUOTED_WITH_DAMPING.items():
         row = rows[ingredient, tried]
         yield Number(f"{ingredient}: {tried}, frequency [%]", frequency, row[FREQUENCY])

@@ -8,7 +8,7 @@ QUADRATIC = ("Discretization/Element=quadratic", "Geometry/Nodes per pin face=19
 def bending(runs, ratio, *settings, suffix=""):
     """The lowest F1 frequency [Hz] of a sliding pin."""
     results = runs(f"poisson_{ratio}{suffix}", "disc_pins.prm", "Output/Mode shapes=none", f"Pin material/Poisson ratio={ratio}", *settings)
-    return min(mode["frequency [Hz]"] for mode in results.table("component_modes.csv")
+    return min(mode["frequency [Hz]"] for mode in results.rows("component_modes")
                if mode["component"] == "pins" and mode["contact"] == "sliding" and mode["label"] == "F1")
 
 

@@ -8,7 +8,7 @@ NO_SHAPES = "Output/Mode shapes=none"
 @entry("mode_shapes", "Component modes and real modes; the pins split the doublet A0-4")
 def modes(runs):
     results = runs("default", "disc_pins.prm", NO_SHAPES)
-    real = {mode["label"]: mode["frequency [Hz]"] for mode in results.table("real_modes.csv")}
-    yield Number("component modes", "102", len(results.table("component_modes.csv")))
-    yield Number("real modes", "66", len(results.table("real_modes.csv")))
+    real = {mode["label"]: mode["frequency [Hz]"] for mode in results.rows("real_modes")}
+    yield Number("component modes", "102", len(results.rows("component_modes")))
+    yield Number("real modes", "66", len(results.rows("real_modes")))
     yield Number("A0-4 + and A0-4 - are apart by [Hz]", "7", real["A0-4 +"] - real["A0-4 -"])

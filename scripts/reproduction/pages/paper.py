@@ -9,7 +9,7 @@ NO_SHAPES = "Output/Mode shapes=none"
 @entry("paper", "Table 3: component modes up to 6, 7.5 and 10 kHz")
 def truncations(runs):
     results = runs("frictionless_frequency", "studies/frictionless_frequency.prm")
-    rows = {row["component modes"]: row for row in results.table("reduction_truncations.csv")}
+    rows = {row["component modes"]: row for row in results.rows("reduction_truncations")}
     for name, *quoted in (("6000 Hz", "30", "36", "36"), ("7500 Hz", "38", "72", "36"), ("10000 Hz", "53", "120", "60")):
         for column, number in zip(("disc [-]", "pins free [-]", "pins sliding [-]"), quoted):
             yield Number(f"{name}, {column}", number, rows[name][column])
@@ -17,7 +17,7 @@ def truncations(runs):
 
 @entry("paper", "Tables 2, 4, 5 and 6: sizes of the bases")
 def sizes(runs):
-    rows = {row["basis"]: row for row in runs("friction", "studies/friction.prm").table("reduction_bases.csv")}
+    rows = {row["basis"]: row for row in runs("friction", "studies/friction.prm").rows("reduction_bases")}
     for basis, quoted in (("free", "200"), ("fixed", "368"), ("mixed", "368"), ("free + t.a.m.", "428"), ("free with r.a.m.", "200"),
                           ("fixed + t.a.m.", "596"), ("mixed + t.a.m.", "596"), ("real", "66"), ("real + t.a.m.", "294"),
                           ("real + 1st-ord.", "132")):
@@ -26,7 +26,7 @@ def sizes(runs):
 
 @entry("paper", "Figures 7 and 8: where A0-4 and A0-5 coalesce, and pairs of F1 separate again")
 def coalescences(runs):
-    rows = runs("sweep_without", "sweep.prm", NO_SHAPES).table("thresholds.csv")
+    rows = runs("sweep_without", "sweep.prm", NO_SHAPES).rows("thresholds")
     for label, quoted in (("A0-4", "0.088"), ("A0-5", "0.089")):
         yield Number(f"onset of {label}", quoted, next(row["mu [-]"] for row in rows if row["label"].startswith(label)))
     ends = sorted(row["mu [-]"] for row in rows if row["event"] == "restabilisation" and row["label"] == "F1")

@@ -30,7 +30,7 @@ def statements(runs):
 def waves(runs):
     for name, results, quoted in zip(("without C_b", "with C_b"), solutions(runs),
                                      (("0.989", "0.011", "0.961", "0.039"), ("0.989", "0.011", "0.956", "0.034"))):
-        modes = {mode["label"]: mode for mode in results.modes()}
+        modes = {mode["label"]: mode for mode in results.complex_modes()}
         for label, share in zip(("A0-4 +", "A0-4 -", "A0-5 +", "A0-5 -"), quoted):
             yield Number(f"{label}, {name}: share with the rotation", share, modes[label]["wave with rotation [-]"])
         if name == "without C_b":
@@ -42,16 +42,16 @@ def bifurcation(runs):
     results = runs("sweep_damped", "sweep_damped.prm")
     for name, n, quoted in (("thresholds_without_dissipation", "24", {"A0-4": "0.0883", "A0-5": "0.0893", "F1": "0.0172"}),
                             ("thresholds", "12", {"A0-4": "0.0837", "A0-5": "0.0875", "F1": "0.0208"})):
-        rows = results.table(f"{name}.csv")
+        rows = results.rows(name)
         yield Number(name, n, len(rows))
         for label, mu in quoted.items():
             # The leading pair of F1 lies above the others
             onset = max((row for row in rows if row["event"] == "onset" and row["label"].startswith(label)), key=lambda row: row["frequency [Hz]"])
             yield Number(f"onset of {label}", mu, onset["mu [-]"])
-    rows = results.table("thresholds_without_dissipation.csv")
+    rows = results.rows("thresholds_without_dissipation")
     ends = sorted(row["mu [-]"] for row in rows if row["event"] == "restabilisation")
     yield Number("restabilisations of F1", "8", len(ends))
     for place, mu in ((0, "0.0010"), (1, "0.238"), (-1, "0.422")):
         yield Number("  at", mu, ends[place])
     yield Number("onsets of F1", "12", sum(row["event"] == "onset" and row["label"] == "F1" for row in rows))
-    yield Number("restabilisations with C_b", "0", sum(row["event"] == "restabilisation" for row in results.table("thresholds.csv")))
+    yield Number("restabilisations with C_b", "0", sum(row["event"] == "restabilisation" for row in results.rows("thresholds")))

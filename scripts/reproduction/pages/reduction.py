@@ -6,7 +6,7 @@ STUDIES = {"without": ("friction", "studies/friction.prm"), "with": ("friction_d
 
 
 def study(runs, dissipation, table):
-    return runs(*STUDIES[dissipation]).table(f"reduction_{table}.csv")
+    return runs(*STUDIES[dissipation]).rows(f"reduction_{table}")
 
 
 def largest(rows, basis, column, group=None):
@@ -93,7 +93,7 @@ def section_five(runs):
                   ("free", "disc", ("4.3e-4", "4.5e-6", "1.9e-6")), ("free", "F1", ("1.4e-3", "4.1e-5", "1.4e-5")),
                   ("fixed", "disc", ("1.8e-2", "1.4e-2", "9.8e-3")))}
     for run, bases in quoted.items():
-        rows = runs(*run).table("reduction_errors.csv")
+        rows = runs(*run).rows("reduction_errors")
         for basis, group, numbers in bases:
             found = [row for row in rows if row["basis"] == basis and row["group"] == group]
             for row, number in zip(found, numbers, strict=True):

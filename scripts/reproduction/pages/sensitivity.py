@@ -19,7 +19,7 @@ QUOTED = {"Geometry/Disc outer radius": ("-0.1276", "-19.8"),
 
 @entry("sensitivity", "What one per cent of each parameter changes of the mode that grows most")
 def leading_mode(runs):
-    rows = [row for row in runs("sensitivity", "studies/sensitivity.prm").table("sensitivities.csv")
+    rows = [row for row in runs("sensitivity", "studies/sensitivity.prm").rows("sensitivities")
             if row["mode [-]"] == 1 and not row["only of"]]
     yield Number("frequency [Hz]", "3569", rows[0]["frequency [Hz]"])
     yield Number("divergence rate [%]", "1.068", rows[0]["divergence rate [%]"])
@@ -31,7 +31,7 @@ def leading_mode(runs):
 
 @entry("sensitivity", "How far thresholds move")
 def thresholds(runs):
-    rows = runs("sensitivity", "studies/sensitivity.prm").table("sensitivities_thresholds.csv")
+    rows = runs("sensitivity", "studies/sensitivity.prm").rows("sensitivities_thresholds")
     yield Number("without derivatives", "1", sum(row["derivative of"] == "none" for row in rows))
     for label, mu, parameter, change in (("A0-5 +", "0.0893", "Disc material/Density", "0.0094"),
                                          ("A0-4 +", "0.0883", "Disc material/Density", "-0.0001"),

@@ -20,7 +20,7 @@ def steady(runs, name, *settings):
 
 
 def certificate(results):
-    return {row["quantity"]: row["value"] for row in results.table("sliding_certificate.csv")}
+    return {row["quantity"]: row["value"] for row in results.rows("sliding_certificate")}
 
 
 @entry("sliding", "Proof: the certificate at mu = 0.4, and the friction coefficient below which the state is the only one")
@@ -37,7 +37,7 @@ def proof(runs):
 @entry("sliding", "The table over mu: open nodes, largest pressure beside the mean, travel of the backplates")
 def over_friction(runs):
     for mu, (n_open, ratio, travel) in OVER_FRICTION.items():
-        pins = steady(runs, f"sliding_{mu}", f"Operation/Friction coefficient={mu}").table("sliding_pins.csv")
+        pins = steady(runs, f"sliding_{mu}", f"Operation/Friction coefficient={mu}").rows("sliding_pins")
         yield Number(f"mu = {mu}: open nodes", n_open, sum(pin["open nodes [-]"] for pin in pins))
         yield Number(f"mu = {mu}: largest pressure / mean", ratio, max(pin["largest pressure [Pa]"] for pin in pins) / MEAN_PRESSURE)
         yield Number(f"mu = {mu}: travel [um]", travel, 1e6 * max(pin["travel of backplate [m]"] for pin in pins))
@@ -46,7 +46,7 @@ def over_friction(runs):
 @entry("sliding", "Largest nodal pressure with 19, 37 and 61 nodes per face, open nodes of each pin, centres of pressure")
 def meshes(runs):
     for nodes, pressure, n_open, centre in ((19, "220", "0", "-6.32"), (37, "284", "1", "-6.33"), (61, "364", "3", "-6.34")):
-        pins = steady(runs, f"sliding_faces_{nodes}", f"Geometry/Nodes per pin face={nodes}").table("sliding_pins.csv")
+        pins = steady(runs, f"sliding_faces_{nodes}", f"Geometry/Nodes per pin face={nodes}").rows("sliding_pins")
         yield Number(f"{nodes} nodes: largest pressure [kPa]", pressure, 1e-3 * max(pin["largest pressure [Pa]"] for pin in pins))
         yield Number(f"{nodes} nodes: open nodes of a pin", n_open, max(pin["open nodes [-]"] for pin in pins))
         yield Number(f"{nodes} nodes: centre of pressure [mm]", centre, 1e3 * pins[0]["pressure offset along t [m]"])
@@ -80,7 +80,7 @@ def pressed_pads(runs):
     results = runs("brake_pressed", "brake.prm", NO_SHAPES, "Steady sliding/Contact state=steady sliding", "Steady sliding/Control=pressure",
                    "Steady sliding/Pressed faces=pad_outer_back, pad_inner_back",
                    "Mounts/Elastic mounts=disc_hub: 1e13, 1e13, 1e13; pad_outer_back: 5e9, 2e10, 0; pad_inner_back: 4e9, 1.5e10, 0")
-    for pad in results.table("sliding_pins.csv"):
+    for pad in results.rows("sliding_pins"):
         yield Number(f"{pad['pin']}: centre of pressure towards the leading edge [mm]", "7.8", -1e3 * pad["pressure offset along t [m]"])
         yield Number(f"{pad['pin']}: outwards [mm]", "4.9", 1e3 * pad["pressure offset outwards [m]"])
         yield Number(f"{pad['pin']}: largest pressure [MPa]", "1.9", 1e-6 * pad["largest pressure [Pa]"])

@@ -33,7 +33,7 @@ def full_order(runs, name, mu):
 
 def at_value(results, mu):
     """lambda of every branch at a friction coefficient of the grid."""
-    rows = [row for row in results.table("branches.csv") if abs(row["mu [-]"] - mu) < 1e-9 and row["refinement [-]"] == 0]
+    rows = [row for row in results.rows("branches") if abs(row["mu [-]"] - mu) < 1e-9 and row["refinement [-]"] == 0]
     return np.array([complex(row["growth rate [1/s]"], 2 * math.pi * row["frequency [Hz]"]) for row in rows])
 
 
@@ -87,7 +87,7 @@ def against_full_order_tightly(runs):
 def thresholds(runs):
     for name, label, quoted in (("without", "A0-5", "0.0893"), ("without", "F1", "0.0424"), ("without", "R0-2", "0.3987"),
                                 ("without", "F1", "0.3785"), ("consistent", "A0-4", "0.0837"), ("consistent", "F1", "0.0496")):
-        rows = [row for row in sweep(runs, name).table("thresholds.csv") if row["label"].startswith(label)]
+        rows = [row for row in sweep(runs, name).rows("thresholds") if row["label"].startswith(label)]
         threshold = min(rows, key=lambda row: abs(row["mu [-]"] - float(quoted)))
         yield Number(f"{name}: threshold of {label}", quoted, threshold["mu [-]"])
         below, above = (full_order(runs, name, threshold["mu [-]"] + side * 1e-5).n_unstable() for side in (-1, 1))
@@ -96,16 +96,16 @@ def thresholds(runs):
 
 @entry("sweep", "With 10 values instead of 90, 22 of the 24 thresholds are seen")
 def few_values(runs):
-    yield Number("thresholds with 90 values", "24", len(sweep(runs, "without").table("thresholds.csv")))
+    yield Number("thresholds with 90 values", "24", len(sweep(runs, "without").rows("thresholds")))
     few = sweep(runs, "without", "Sweep/Number of friction coefficients=10", suffix="_10")
-    yield Number("thresholds with 10 values", "22", len(few.table("thresholds.csv")))
+    yield Number("thresholds with 10 values", "22", len(few.rows("thresholds")))
 
 
 @entry("sweep", "The argument principle at mu = 0.4 counts 66 modes without and with dissipation")
 def counts(runs):
     for name, n_points, phase in (("without", "40", "0.17"), ("consistent", "81", "0.93")):
         results = sweep(runs, name, "Sweep/Number of friction coefficients=10", "Sweep/Count modes at=0.4", suffix="_counted")
-        row = results.table("argument_counts.csv")[0]
+        row = results.rows("argument_counts")[0]
         yield Number(f"{name}: modes counted", "66", row["modes counted [-]"])
         yield Number(f"{name}: points", n_points, row["contour points [-]"])
         yield Number(f"{name}: largest phase step [rad]", phase, row["largest phase step [rad]"])

@@ -32,12 +32,12 @@ def agreement(runs):
     counts = results.record["counts"]
     for name, quoted in (("disc modes", "30"), ("sliding pin modes", "36"), ("real modes", "66")):
         yield Number(name, quoted, counts[name])
-    yield Number("complex modes", "66", len(results.table("complex_modes.csv")))
+    yield Number("complex modes", "66", len(results.rows("complex_modes")))
 
 
 @entry("table1", "Unstable pairs without radial dissipation")
 def unstable_pairs(runs):
-    modes = solution(runs, paper.WITHOUT).modes()
+    modes = solution(runs, paper.WITHOUT).complex_modes()
     growing = sorted((mode for mode in modes if mode["divergence rate [%]"] > 0.01), key=lambda mode: -mode["divergence rate [%]"])
     for place, (label, frequency, rate) in enumerate((("F1", "3569", "1.07"), ("A0-5", "3452", "0.86"), ("A0-4", "2353", "0.68"),
                                                       ("F1", "3548", "0.32"), ("F1", "3542", "0.12"))):
@@ -47,7 +47,7 @@ def unstable_pairs(runs):
 
 @entry("table1", "With C_b, consistent and about steady sliding")
 def damped(runs):
-    modes = solution(runs, paper.WITH).modes()
+    modes = solution(runs, paper.WITH).complex_modes()
 
     def rates(label):
         return sorted((mode["divergence rate [%]"], mode["frequency [Hz]"]) for mode in modes if mode["label"].startswith(label))

@@ -10,7 +10,7 @@ RATE = "divergence rate [%]"
 @entry("tutorial", "Does it squeal?")
 def first_run(runs):
     results = runs("default", "disc_pins.prm", "Output/Mode shapes=none")
-    yield Number("modes", "66", len(results.modes()))
+    yield Number("modes", "66", len(results.complex_modes()))
     yield Number("that grow", "9", results.n_unstable())
     for label, rate, frequency in (("F1", "1.068", "3569"), ("A0-5", "0.856", None), ("A0-4", "0.680", "2353")):
         mode = results.leading(label)
@@ -18,7 +18,7 @@ def first_run(runs):
         if frequency:
             yield Number("  frequency [Hz]", frequency, mode["frequency [Hz]"])
     yield Number("periods of a factor of e", "15", 1 / (2 * math.pi * results.leading("F1")[RATE] / 100))
-    own = {row["body"]: row["all of it [%]"] / results.leading("F1")[RATE] for row in results.table("energy.csv") if row["mode [-]"] == 44}
+    own = {row["body"]: row["all of it [%]"] / results.leading("F1")[RATE] for row in results.rows("energy") if row["mode [-]"] == 44}
     for pin, share in ((4, "14.9"), (5, "15.7"), (2, "1.9")):
         for side in ("top", "bottom"):
             yield Number(f"energy from pin_{side}_{pin} [%]", share, 100 * own[f"pin_{side}_{pin}"])
@@ -27,11 +27,11 @@ def first_run(runs):
 @entry("tutorial", "From which friction coefficient on?")
 def sweep(runs):
     results = runs("sweep", "sweep.prm", "Output/Mode shapes=none")
-    thresholds = results.table("thresholds.csv")
+    thresholds = results.rows("thresholds")
     yield Number("thresholds", "24", sum(row["mechanism"] == "coalescence" for row in thresholds))
     for label, mu in (("A0-4", "0.0883"), ("A0-5", "0.0893")):
         yield Number(f"onset of {label}", mu, min(row["mu [-]"] for row in thresholds if row["label"].startswith(label)))
-    leading = max(results.table("branches.csv"), key=lambda row: row[RATE])
+    leading = max(results.rows("branches"), key=lambda row: row[RATE])
     yield Number("largest divergence rate [%]", "1.168", leading[RATE])
     yield Number("  frequency [Hz]", "3568", leading["frequency [Hz]"])
     yield Number("  friction coefficient", "0.45", leading["mu [-]"])
@@ -39,7 +39,7 @@ def sweep(runs):
 
 @entry("tutorial", "What would help?")
 def derivatives(runs):
-    rows = [row for row in runs("sensitivity", "studies/sensitivity.prm").table("sensitivities.csv") if row["mode [-]"] == 1 and not row["only of"]]
+    rows = [row for row in runs("sensitivity", "studies/sensitivity.prm").rows("sensitivities") if row["mode [-]"] == 1 and not row["only of"]]
     for parameter, change in (("Geometry/Disc outer radius", "-0.1276"), ("Geometry/Pin height", "0.0654"), ("Geometry/Disc thickness", "0.0301"),
                               ("Operation/Friction coefficient", "0.0084")):
         row = next(row for row in rows if row["parameter"] == parameter)
@@ -48,7 +48,7 @@ def derivatives(runs):
 
 @entry("tutorial", "Fifty designs")
 def designs(runs):
-    rows = runs("designs", "studies/designs.prm").table("designs.csv")
+    rows = runs("designs", "studies/designs.prm").rows("designs")
     rate = "largest divergence rate [%]"
     best, worst = min(rows, key=lambda row: row[rate]), max(rows, key=lambda row: row[rate])
     yield Number("best, design", "2", best["design [-]"])

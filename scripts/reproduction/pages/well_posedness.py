@@ -42,7 +42,7 @@ DAMPING = {"none": ((), "39188", "42738"),
 
 
 def leading(results):
-    return max(results.modes(), key=lambda mode: mode["growth rate [1/s]"])
+    return max(results.complex_modes(), key=lambda mode: mode["growth rate [1/s]"])
 
 
 def ring(runs, friction_coefficient, layers, *settings, suffix=""):
@@ -92,8 +92,8 @@ def in_band(runs):
         for factor, (n_modes, axial, frequency, rate) in meshes.items():
             results = one_pin(runs, friction_coefficient, factor, 5000)
             name = f"mu = {friction_coefficient}, mesh {factor}"
-            yield Number(f"{name}, modes", n_modes, len(results.modes()))
-            yield Number(f"{name}, A0-4 [Hz]", axial, max(mode["frequency [Hz]"] for mode in results.modes("A0-4")))
+            yield Number(f"{name}, modes", n_modes, len(results.complex_modes()))
+            yield Number(f"{name}, A0-4 [Hz]", axial, max(mode["frequency [Hz]"] for mode in results.complex_modes("A0-4")))
             if frequency is not None:
                 yield Number(f"{name}, leading mode [Hz]", frequency, leading(results)["frequency [Hz]"])
                 yield Number(f"{name}, leading mode [%]", rate, leading(results)["divergence rate [%]"])
@@ -104,7 +104,7 @@ def beyond_band(runs):
     for (friction_coefficient, factor, band), (n_growing, growth, frequency) in BEYOND.items():
         results = one_pin(runs, friction_coefficient, factor, band)
         name = f"mu = {friction_coefficient}, mesh {factor}, to {band / 1000:g} kHz"
-        beyond = [mode for mode in results.modes() if mode["frequency [Hz]"] > 5000 and mode["divergence rate [%]"] > 0.01]
+        beyond = [mode for mode in results.complex_modes() if mode["frequency [Hz]"] > 5000 and mode["divergence rate [%]"] > 0.01]
         yield Number(f"{name}, modes above 0.01 %", n_growing, len(beyond))
         yield Number(f"{name}, largest growth rate [1/s]", growth, leading(results)["growth rate [1/s]"])
         yield Number(f"{name}, its frequency [kHz]", frequency, leading(results)["frequency [Hz]"] / 1000)
