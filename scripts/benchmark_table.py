@@ -15,14 +15,13 @@ with one thread and with two, one after the other; their ratio is what the secon
 the largest. Needs SLEPc (scripts/setup.sh peers) for all rows but the last.
 """
 
-import argparse
 import pathlib
 import tempfile
 
 import benchmarking
 import slepc_modes
 from benchmarking import Rounds
-from squeal.command_line import exit_on_error
+from squeal.command_line import Parser, exit_on_error
 from squeal.errors import Error
 
 PRM = benchmarking.SOURCE / "prm"
@@ -86,7 +85,7 @@ ROWS = {"chart": lambda *arguments: chart(*arguments, damped=False), "damped": l
 
 @exit_on_error()
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = Parser(__doc__)
     parser.add_argument("--runs", type=int, default=3, help="rounds (default: %(default)s)")
     parser.add_argument("--cores", default="0,1", help="one or two cores (default: %(default)s)")
     parser.add_argument("--rows", default=",".join(ROWS), help="rows of the table (default: all)")

@@ -1,6 +1,5 @@
 """What the benchmarks share: the machine, runs of squeal and of SLEPc on one core with the same BLAS kernels, medians."""
 
-import argparse
 import json
 import os
 import pathlib
@@ -10,6 +9,7 @@ import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "python"))
+from squeal.command_line import Parser
 from squeal.errors import Error
 from squeal.parameter_file import read_parameters
 from squeal.program import SOURCE, find_program, words_of
@@ -55,7 +55,7 @@ def describe_machine(core):
 
 def parser_of(description, of_sweep=False):
     """The command line of a benchmark: repetitions and core, of one of a sweep also parameter file and settings."""
-    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = Parser(description)
     if of_sweep:
         parser.add_argument("parameter_file", metavar="PRM", type=pathlib.Path)
         parser.add_argument("--set", action="append", default=[], dest="settings", metavar="Section/Name=value")

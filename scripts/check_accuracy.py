@@ -10,7 +10,6 @@ called converged and is off by more than the accuracy, or by a tenth of that in 
 is 1 if there is one.
 """
 
-import argparse
 import pathlib
 import sys
 
@@ -18,7 +17,7 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "python"))
-from squeal.command_line import exit_on_error
+from squeal.command_line import Parser, exit_on_error
 from squeal.errors import Error
 from squeal.parameter_file import read_parameters
 from squeal.results import read_table
@@ -69,7 +68,7 @@ def print_largest(what, chosen):
 
 @exit_on_error()
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = Parser(__doc__)
     parser.add_argument("run")
     parser.add_argument("reference")
     arguments = parser.parse_args()

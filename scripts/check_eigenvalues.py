@@ -14,7 +14,6 @@ chosen here. Where the table estimates the errors of its eigenvalues, as that of
 differ by three times the largest estimate.
 """
 
-import argparse
 import math
 import os
 import pathlib
@@ -31,7 +30,7 @@ import slepc_modes
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "python"))
 from squeal import exported_matrices, parameter_file, quadratic
-from squeal.command_line import exit_on_error
+from squeal.command_line import Parser, exit_on_error
 from squeal.errors import Error
 from squeal.results import Table
 from squeal.system import System
@@ -144,7 +143,7 @@ def compare(name, labels, eigenvalues, found, tolerance):
 
 @exit_on_error()
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = Parser(__doc__)
     parser.add_argument("directory", metavar="DIRECTORY", type=pathlib.Path, help="output of a run with Output/Write matrices = true")
     parser.add_argument("--modes", metavar="FILE", default="complex_modes.csv", help="the table, in DIRECTORY (default: %(default)s)")
     parser.add_argument("--solver", choices=("scipy", "slepc", "both"), default="both", help="(default: %(default)s)")

@@ -11,7 +11,6 @@ a column is missing, a text differs or a number differs by more than the toleran
 count.
 """
 
-import argparse
 import io
 import pathlib
 import re
@@ -21,7 +20,7 @@ import numpy as np
 import pandas
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "python"))
-from squeal.command_line import exit_on_error
+from squeal.command_line import Parser, exit_on_error
 from squeal.errors import Error
 
 VARYING = re.compile(r"time|CPU|wall|memory|residual|eps_res|speed-up|orthonormality", re.IGNORECASE)
@@ -56,7 +55,7 @@ def compare_tables(old_file, new_file, tolerance, ignored, everything):
 
 @exit_on_error()
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = Parser(__doc__)
     parser.add_argument("old", metavar="OLD", type=pathlib.Path)
     parser.add_argument("new", metavar="NEW", type=pathlib.Path)
     parser.add_argument("--tolerance", type=float, default=1e-9, help="relative to the largest of a column (default: %(default)s)")

@@ -22,7 +22,6 @@ the diagonal are left out. `nodes: model.inp` (or .bdf) with `unit: mm` adds the
 `coefficient` is an expression in the parameters with + - * / ^, sin, cos, tan, exp, log, sqrt, abs and _pi. Needs python3-yaml.
 """
 
-import argparse
 import pathlib
 import sys
 
@@ -31,21 +30,21 @@ from squeal.command_line import Parser, exit_on_error
 from squeal.importing.system_import import import_system, write_labels
 
 
+@exit_on_error()
 def main():
-    parser = Parser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = Parser(__doc__)
     parser.add_argument("config", metavar="CONFIG", help="YAML or JSON")
     parser.add_argument("--output", metavar="FOLDER", required=True, type=pathlib.Path, help="where to write system.json and its matrices")
-    with exit_on_error():
-        arguments = parser.parse_args()
-        system, remarks, numbering = import_system(arguments.config)
-        system.write(arguments.output)
-        if numbering.labels is not None:
-            write_labels(arguments.output / "rows.csv", numbering.labels)
-        print(f"{arguments.config}: {system.size} dofs, {len(system.terms)} terms")
-        for term in system.terms:
-            print(f"  {term.name}: lambda^{term.power}, {term.coefficient}, {term.matrix.nnz} entries, "
-                  f"largest {abs(term.matrix).max():.3g}, {term.symmetry}")
-        print(*(f"  note: {remark}" for remark in remarks), f"written: {arguments.output / 'system.json'}", sep="\n")
+    arguments = parser.parse_args()
+    system, remarks, numbering = import_system(arguments.config)
+    system.write(arguments.output)
+    if numbering.labels is not None:
+        write_labels(arguments.output / "rows.csv", numbering.labels)
+    print(f"{arguments.config}: {system.size} dofs, {len(system.terms)} terms")
+    for term in system.terms:
+        print(f"  {term.name}: lambda^{term.power}, {term.coefficient}, {term.matrix.nnz} entries, "
+              f"largest {abs(term.matrix).max():.3g}, {term.symmetry}")
+    print(*(f"  note: {remark}" for remark in remarks), f"written: {arguments.output / 'system.json'}", sep="\n")
 
 
 if __name__ == "__main__":

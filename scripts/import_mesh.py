@@ -19,7 +19,6 @@ sets) and what meshio reads: MED (groups), VTK (integers of cells: a set `part:3
 rejected. Needs python3-meshio, for Exodus python3-netcdf4, for MED python3-h5py.
 """
 
-import argparse
 import pathlib
 import sys
 
@@ -29,8 +28,9 @@ from squeal.importing.foreign_mesh import UNITS
 from squeal.importing.mesh_import import run
 
 
+@exit_on_error()
 def main():
-    parser = Parser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = Parser(__doc__)
     parser.add_argument("file")
     parser.add_argument("output", nargs="?", help="the .msh to be written; without it, the sets of FILE are listed")
     parser.add_argument("--unit", help=f"unit of length of FILE: {', '.join(UNITS)}")
@@ -39,8 +39,7 @@ def main():
     parser.add_argument("--contact", action="append", default=[], metavar="DISC_SURFACE / SURFACE[: FACTOR]")
     parser.add_argument("--mount", action="append", default=[], metavar="SURFACE: RADIAL, TANGENTIAL, AXIAL", help="N/m^3")
     parser.add_argument("--names", metavar="FILE")
-    with exit_on_error():
-        run(parser.parse_args())
+    run(parser.parse_args())
 
 
 if __name__ == "__main__":

@@ -9,7 +9,6 @@
 Exits with 1 where a case is neither right nor refused as it should be. The environment variable SQUEAL names the program.
 """
 
-import argparse
 import collections
 import concurrent.futures
 import os
@@ -22,6 +21,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 from extremes import page
 from extremes.cases import CASES
 from extremes.judge import judge
+from squeal.command_line import Parser, exit_on_error
 
 
 def judge_in(number, case, keep):
@@ -32,8 +32,9 @@ def judge_in(number, case, keep):
         return judge(case, folder)
 
 
+@exit_on_error()
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = Parser(__doc__)
     parser.add_argument("--only", default="", metavar="WORDS", help="only the cases whose name contains WORDS")
     parser.add_argument("--quick", action="store_true", help="only those that the tests run")
     parser.add_argument("--missing", action="store_true", help="only those that are not in the table of doc/extremes.md")

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Memory of every process of a run, step by step: the largest resident size in each, beside what all of them have at once.
 
     scripts/measure_memory.py N PRM [ARGUMENT]...
@@ -15,8 +15,10 @@ import sys
 import threading
 import time
 
-ROOT = pathlib.Path(__file__).resolve().parents[1]
-PROGRAM = os.environ.get("SQUEAL", str(ROOT / "build/release/squeal"))
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "python"))
+from squeal.command_line import Parser, exit_on_error
+from squeal.program import find_program
+
 INTERVAL = 0.05  # [s]
 STEP = re.compile(r"^  (\S.*?)\s{2,}[\d.]+ s\b")
 
@@ -30,12 +32,12 @@ def resident(pid):
         return 0
 
 
-def ranks(measurement):
+def ranks(program, measurement):
     """Processes of the program that this measurement has started, by rank."""
     result = {}
     for folder in pathlib.Path("/proc").glob("[0-9]*"):
         try:
-            if os.path.realpath(folder / "exe") != os.path.realpath(PROGRAM):
+            if os.path.realpath(folder / "exe") != str(program):
                 continue
             environment = dict(entry.split(b"=", 1) for entry in (folder / "environ").read_bytes().split(b"\0") if b"=" in entry)
             if int(environment[b"PARENT_OF_MEASUREMENT"]) == measurement:
@@ -48,16 +50,16 @@ def ranks(measurement):
 class Sampler(threading.Thread):
     """Largest sizes since the last step has ended."""
 
-    def __init__(self, n):
+    def __init__(self, program, n):
         super().__init__(daemon=True)
-        self.n, self.lock, self.done = n, threading.Lock(), False
+        self.program, self.n, self.lock, self.done = program, n, threading.Lock(), False
         self.first, self.largest, self.at_once = None, [0] * n, 0
 
     def run(self):
         pids = {}
         while not self.done:
             if len(pids) < self.n:
-                pids = ranks(os.getpid())
+                pids = ranks(self.program, os.getpid())
             sizes = [resident(pids[rank]) if rank in pids else 0 for rank in range(self.n)]
             with self.lock:
                 if self.first is None and all(sizes):
@@ -73,14 +75,19 @@ class Sampler(threading.Thread):
         return result
 
 
+@exit_on_error()
 def main():
-    n = int(sys.argv[1])
+    parser = Parser(__doc__)
+    parser.add_argument("n", metavar="N", type=int, help="number of processes")
+    parser.add_argument("prm", metavar="PRM")
+    arguments, others = parser.parse_known_args()
+    n, program = arguments.n, find_program().resolve()
     environment = {**os.environ, "OMP_NUM_THREADS": "1", "PARENT_OF_MEASUREMENT": str(os.getpid()), "OMPI_MCA_mpi_yield_when_idle": "1",
                    "OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_hwloc_base_binding_policy": "none"}
-    sampler = Sampler(n)
+    sampler = Sampler(program, n)
     sampler.start()
     launcher = ["mpirun", "-np", str(n)] if n > 1 else []
-    process = subprocess.Popen([*launcher, PROGRAM, *sys.argv[2:]], env=environment, stdout=subprocess.PIPE, text=True)
+    process = subprocess.Popen([*launcher, program, arguments.prm, *others], env=environment, stdout=subprocess.PIPE, text=True)
     rows = []
     for line in process.stdout:
         if step := STEP.match(line):

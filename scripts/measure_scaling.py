@@ -8,13 +8,12 @@ run what it took by the clock, its peak of memory beside what `squeal --dry-run`
 size the exponent of a power law through the last two.
 """
 
-import argparse
 import math
 import tempfile
 
 import benchmarking
 import squeal
-from squeal.command_line import exit_on_error
+from squeal.command_line import Parser, exit_on_error
 
 # Element size [m], layers of the disc, nodes on a pin's face, layers of the pins
 MESHES = {"32": (0.0115, 3, 19, 4), "78": (0.008, 4, 37, 6), "138": (0.006, 4, 61, 6), "281": (0.0045, 5, 91, 8),
@@ -54,7 +53,7 @@ def columns(record):
 
 @exit_on_error()
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = Parser(__doc__)
     parser.add_argument("--sizes", default="32,78,138,281", help="names of meshes (default: %(default)s)")
     parser.add_argument("--study", default="stability", choices=STUDIES)
     parser.add_argument("--set", action="append", default=[], dest="settings", metavar="Section/Name=value")

@@ -14,7 +14,6 @@ comparison, and writes to DIR:
 "With C_b" is consistent and about steady sliding, the reading closest to the paper.
 """
 
-import argparse
 import csv
 import dataclasses
 import math
@@ -23,7 +22,7 @@ import re
 import sys
 
 from reproduction.runs import SOURCE, Runs
-from squeal.command_line import exit_on_error
+from squeal.command_line import Parser, exit_on_error
 
 NEGLIGIBLE = 0.01  # divergence rate [%] below which a mode counts as neutral
 FIXED = "Study", "Band/", "Operation/Radial dissipation", "Steady sliding/Contact state", "Output/"
@@ -382,7 +381,7 @@ def compare(folder, settings):
 
 @exit_on_error()
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = Parser(__doc__)
     parser.add_argument("--results", metavar="DIR", type=pathlib.Path, default=SOURCE / "results" / "paper")
     parser.add_argument("--set", action="append", default=[], dest="settings", metavar="Section/Name=value",
                         help="of every run, for another mesh for example")

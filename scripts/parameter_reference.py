@@ -7,7 +7,6 @@
 The environment variable SQUEAL names the program (default: build/release/squeal).
 """
 
-import argparse
 import dataclasses
 import pathlib
 import re
@@ -15,6 +14,7 @@ import subprocess
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "python"))
+from squeal.command_line import Parser, exit_on_error
 from squeal.program import SOURCE, find_program
 
 PAGE = SOURCE / "doc" / "parameters.md"
@@ -78,8 +78,9 @@ def page(listing):
     return text
 
 
+@exit_on_error()
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = Parser(__doc__)
     parser.add_argument("--check", action="store_true", help="writes nothing")
     arguments = parser.parse_args()
     written = page(subprocess.run([find_program(), "--print-parameters"], capture_output=True, text=True, check=True).stdout)

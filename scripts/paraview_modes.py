@@ -17,13 +17,12 @@ Needs Debian's paraview, python3-paraview, xvfb and xauth (scripts/setup.sh para
 without a screen it starts itself again under xvfb-run.
 """
 
-import argparse
 import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "python"))
 from paraview_scenes import VIEWS, WIDTH, scene_of_all, scene_of_energy, scene_of_one, write_film
-from squeal.command_line import ensure_display, exit_on_error
+from squeal.command_line import Parser, ensure_display, exit_on_error
 from squeal.errors import Error
 from squeal.results import read_table, shape_files
 
@@ -67,7 +66,7 @@ def chosen(name, rows, files):
 
 
 def parsed():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = Parser(__doc__)
     parser.add_argument("results", metavar="RESULTS", type=pathlib.Path)
     parser.add_argument("--mode", action="append", metavar="MODE", help="a row of complex_modes.csv or a label; for pictures several times")
     parser.add_argument("--state", type=pathlib.Path, metavar="FILE.pvsm")

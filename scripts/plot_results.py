@@ -8,16 +8,16 @@ run is repeated they go with its tables, and none of another run is left beside 
 and are in no list. Needs Debian's python3-matplotlib (scripts/setup.sh).
 """
 
-import argparse
 import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "python"))
-from squeal.command_line import make_of_results
+from squeal.command_line import Parser, exit_on_error, make_of_results
 
 
+@exit_on_error()
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = Parser(__doc__)
     parser.add_argument("--format", choices=("svg", "png", "pdf"), default="svg", help="of the pictures (default: %(default)s)")
     parser.add_argument("--output", metavar="DIR", help="where to put them (default: RESULTS/plots)")
     make_of_results("plots", parser, lambda results, arguments: results.plot(arguments.format, arguments.output))

@@ -7,7 +7,6 @@ The disc is that of sliding_state.vtu beside the file, the sliding direction tha
 .png, .svg or .pdf. Needs Debian's python3-matplotlib.
 """
 
-import argparse
 import math
 import pathlib
 import sys
@@ -17,7 +16,7 @@ from matplotlib.collections import LineCollection, PolyCollection
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "python"))
 from pictures import GREY, INK, ONE_SIGN, TWO_SIGNS, Page, nice_range
-from squeal.command_line import exit_on_error
+from squeal.command_line import Parser, exit_on_error
 from squeal.errors import Error
 from squeal.parameter_file import read_parameters
 from squeal.surface import edges_of, outer_faces, sharp_edges
@@ -113,7 +112,7 @@ def draw(path, picture, field, view, title):
 
 @exit_on_error()
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = Parser(__doc__)
     parser.add_argument("contact", metavar="CONTACT.vtu", type=pathlib.Path)
     parser.add_argument("-o", "--output", metavar="PICTURE", type=pathlib.Path, help="(default: CONTACT.png beside CONTACT.vtu)")
     parser.add_argument("--field", default="pressure", help=", ".join(QUANTITIES) + " or another point field (default: %(default)s)")

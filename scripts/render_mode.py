@@ -7,7 +7,6 @@ MODE are files of modes of a run, `modes/NAME.vtu`: complex, real or component m
 itself again under xvfb-run. Needs Debian's python3-vtk9, xvfb and xauth (scripts/setup.sh pictures).
 """
 
-import argparse
 import dataclasses
 import math
 import pathlib
@@ -17,7 +16,7 @@ import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "python"))
 from pictures import ONE_SIGN, PHASE, TWO_SIGNS, Page, nice_range
-from squeal.command_line import ensure_display, exit_on_error
+from squeal.command_line import Parser, ensure_display, exit_on_error
 from squeal.errors import Error
 from squeal.surface import edges_of, outer_faces, sharp_edges
 from squeal.vtu_file import VtuFile
@@ -282,7 +281,7 @@ def draw_several(modes, picture, view, width):
 
 @exit_on_error()
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = Parser(__doc__)
     parser.add_argument("modes", metavar="MODE", type=pathlib.Path, nargs="+")
     parser.add_argument("-o", "--output", metavar="PICTURE.png", type=pathlib.Path, help="(default: MODE.png beside the first MODE)")
     parser.add_argument("--field", default="displacement",

@@ -9,16 +9,16 @@ that -o names goes into no list. Needs Debian's python3-plotly, libjs-three, lib
 (scripts/setup.sh).
 """
 
-import argparse
 import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "python"))
-from squeal.command_line import make_of_results
+from squeal.command_line import Parser, exit_on_error, make_of_results
 
 
+@exit_on_error()
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = Parser(__doc__)
     parser.add_argument("-o", "--output", metavar="FILE.html", help="(default: RESULTS/report.html)")
     make_of_results("report", parser, lambda results, arguments: results.report(arguments.output))
 

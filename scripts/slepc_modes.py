@@ -15,7 +15,6 @@ matrices in memory to the eigenvalues and eigenvectors. Like every Krylov method
 multiple eigenvalues; the number found is printed. Needs Debian's python3-slepc4py (real scalars).
 """
 
-import argparse
 import importlib.util
 import json
 import math
@@ -33,7 +32,7 @@ import scipy.optimize
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "python"))
 from squeal import exported_matrices, quadratic
-from squeal.command_line import exit_on_error
+from squeal.command_line import Parser, exit_on_error
 from squeal.errors import Error
 from squeal.results import Table
 
@@ -194,7 +193,7 @@ def largest_difference(eigenvalues, table):
 
 @exit_on_error()
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = Parser(__doc__)
     parser.add_argument("directory", metavar="DIRECTORY", help="output of a run with Output/Write matrices = true")
     parser.add_argument("--formulation", choices=FORMULATIONS, help="(default: the fastest one)")
     parser.add_argument("--mu", type=float, help="friction coefficient (default: that of the run)")

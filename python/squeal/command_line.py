@@ -10,7 +10,10 @@ from squeal.errors import Error
 
 
 class Parser(argparse.ArgumentParser):
-    """A parser whose errors look like all others."""
+    """A parser whose description is printed as it is, and whose errors look like all others."""
+
+    def __init__(self, description, **more):
+        super().__init__(description=description, formatter_class=argparse.RawDescriptionHelpFormatter, **more)
 
     def error(self, message):
         raise Error(message, "command line", "see --help")
@@ -37,8 +40,7 @@ def make_of_results(what, parser, make):
     parser.add_argument("results", metavar="RESULTS", help="folder that a run has left")
     arguments = parser.parse_args()
     try:
-        with exit_on_error():
-            found, remarks = make(Results(arguments.results), arguments)
+        found, remarks = make(Results(arguments.results), arguments)
     except ModuleNotFoundError as missing:
         sys.exit(f"No {what}: install python3-{missing.name} (or call scripts/setup.sh), then: "
                  f"scripts/{os.path.basename(sys.argv[0])} {arguments.results}")

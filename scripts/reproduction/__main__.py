@@ -1,6 +1,5 @@
 """Lists or reproduces the numbers of pages: see scripts/reproduce.sh."""
 
-import argparse
 import importlib
 import pathlib
 import pkgutil
@@ -10,7 +9,7 @@ import textwrap
 from reproduction import pages
 from reproduction.numbers import ENTRIES
 from reproduction.runs import SOURCE, Runs
-from squeal.command_line import exit_on_error
+from squeal.command_line import Parser, exit_on_error
 from squeal.errors import Error
 
 
@@ -27,7 +26,7 @@ def reproduce(runs, page, chosen):
 
 @exit_on_error()
 def main():
-    parser = argparse.ArgumentParser(prog="scripts/reproduce.sh")
+    parser = Parser(__doc__, prog="scripts/reproduce.sh")
     parser.add_argument("pages", nargs="*", metavar="PAGE")
     parser.add_argument("--list", action="store_true", help="prints pages and sentences, runs nothing")
     parser.add_argument("--only", default="", metavar="WORDS", help="only the sentences that contain WORDS")
