@@ -2,12 +2,11 @@
 
 import numpy as np
 
+from squeal.importing.mesh_shapes import faces_of
+from squeal.vtu_file import SHAPES
+
 # Of VTK's cells; triangles repeat their last corner
-FACES = {5: ((0, 1, 2, 2),), 9: ((0, 1, 2, 3),),
-         10: ((0, 1, 2, 2), (0, 1, 3, 3), (1, 2, 3, 3), (2, 0, 3, 3)),
-         12: ((0, 1, 2, 3), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)),
-         13: ((0, 1, 2, 2), (3, 4, 5, 5), (0, 1, 4, 3), (1, 2, 5, 4), (2, 0, 3, 5)),
-         14: ((0, 1, 2, 3), (0, 1, 4, 4), (1, 2, 4, 4), (2, 3, 4, 4), (3, 0, 4, 4))}
+FACES = {kind: [(*face, face[-1])[:4] for face in faces_of(shape)] for kind, shape in SHAPES.items()}
 SAME_PLACE = 1e-5  # of the size of the bodies: points of several processes
 
 

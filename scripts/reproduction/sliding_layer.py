@@ -32,10 +32,6 @@ class Layer:
         return self.modulus / 2 / (1 + self.ratio)
 
     @property
-    def shear_speed(self):
-        return math.sqrt(self.shear_modulus / self.density)
-
-    @property
     def lame(self):
         return self.modulus * self.ratio / (1 - self.ratio**2)
 
