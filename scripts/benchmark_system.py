@@ -23,7 +23,7 @@ os.environ.update(benchmarking.environment())  # before NumPy loads OpenBLAS
 import numpy as np
 
 import slepc_modes
-from squeal import exported_matrices
+from squeal import exported_matrices, quadratic
 from squeal.command_line import exit_on_error
 from squeal.errors import Error
 from squeal.results import Table
@@ -93,8 +93,7 @@ def main():
             eigenvalues = [listed(solution.eigenvalues, end) for solution in found]
             uncovered = sum(not solution.covers(end / (2 * np.pi)) for solution in found)
             unequal = sum(len(of_slepc) != len(of_sweep) for of_slepc, of_sweep in zip(eigenvalues, expected))
-            distance = max((abs(of_slepc - value).min(initial=np.inf) / abs(value)
-                            for of_slepc, of_sweep in zip(eigenvalues, expected) for value in of_sweep), default=0.0)
+            distance = max(quadratic.match(*pair)[2].max(initial=0.0) for pair in zip(eigenvalues, expected))
             print(f"run {run}: squeal {sweeps[-1]:.2f} s, SLEPc {sums[-1]:.2f} s; {min(map(len, expected))} to {max(map(len, expected))} modes, "
                   f"other numbers of them at {unequal} values, band not covered at {uncovered}, largest relative difference {distance:.1e}", flush=True)
     print(f"\nmedian CPU [s]: sweep {benchmarking.spread(sweeps, 2)}; {len(values)} solutions by SLEPc {benchmarking.spread(sums, 2)}, "

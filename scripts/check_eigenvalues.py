@@ -23,7 +23,6 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import numpy as np
-import scipy.optimize
 import scipy.sparse.linalg
 
 import slepc_modes
@@ -117,24 +116,22 @@ def problem_of_run(arguments):
 
 def compare(name, labels, eigenvalues, found, tolerance):
     """Prints the differences to the eigenvalues found and says whether they and the counts are as they should be."""
-    distances = abs(eigenvalues[:, None] - found[None, :])
-    rows, columns = scipy.optimize.linear_sum_assignment(distances)
-    matched = {row: found[column] for row, column in zip(rows, columns)}
+    rows, columns, differences = quadratic.match(eigenvalues, found)
+    matched = {row: pair for row, *pair in zip(rows, found[columns], differences)}
 
     print(f"\n{'mode':<10} {'frequency [Hz]':>16} {'growth rate [1/s]':>18} {name + ' [Hz]':>16} {name + ' [1/s]':>18} {'difference':>11}")
-    largest = 0.0
     for row in np.argsort(eigenvalues.imag, kind="stable"):
-        value, line = eigenvalues[row], f"{labels[row]:<10} {eigenvalues[row].imag / (2 * math.pi):16.6f} {eigenvalues[row].real:18.6f}"
+        line = f"{labels[row]:<10} {eigenvalues[row].imag / (2 * math.pi):16.6f} {eigenvalues[row].real:18.6f}"
         if row in matched:
-            difference = abs(value - matched[row]) / abs(matched[row])
-            largest = max(largest, difference)
-            print(f"{line} {matched[row].imag / (2 * math.pi):16.6f} {matched[row].real:18.6f} {difference:11.1e}"
+            other, difference = matched[row]
+            print(f"{line} {other.imag / (2 * math.pi):16.6f} {other.real:18.6f} {difference:11.1e}"
                   + ("" if difference <= tolerance else "  <-"))
         else:
             print(f"{line} {'not found':>16}")
     for column in sorted(set(range(len(found))) - set(columns), key=lambda column: found[column].imag):
         print(f"{'missing':<10} {'':>16} {'':>18} {found[column].imag / (2 * math.pi):16.6f} {found[column].real:18.6f}")
 
+    largest = differences.max(initial=0)
     right = len(found) == len(eigenvalues) and largest <= tolerance
     print(f"{name}: {len(found)} modes, the table has {len(eigenvalues)}; largest relative difference {largest:.1e}, "
           f"{'as it should be' if right else f'too much (tolerance {tolerance:g})' if largest > tolerance else 'the counts differ'}")

@@ -28,7 +28,6 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import numpy as np
-import scipy.optimize
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "python"))
 from squeal import exported_matrices, quadratic
@@ -183,12 +182,8 @@ def solve_band(problem, band, n_modes, shift=0.0):
 
 def largest_difference(eigenvalues, table):
     """Largest relative difference to the eigenvalues in a table of modes, matched one to one; None if the numbers differ."""
-    expected = np.array(Table(table).eigenvalues(), dtype=complex)
-    if len(expected) != len(eigenvalues):
-        return None
-    differences = abs(expected[:, None] - eigenvalues[None, :])
-    pairs = scipy.optimize.linear_sum_assignment(differences)
-    return float((differences[pairs] / abs(expected[pairs[0]])).max(initial=0))
+    expected = Table(table).eigenvalues()
+    return float(quadratic.match(expected, eigenvalues)[2].max(initial=0)) if len(expected) == len(eigenvalues) else None
 
 
 @exit_on_error()

@@ -9,6 +9,7 @@ import math
 
 import numpy as np
 import scipy.linalg
+import scipy.optimize
 import scipy.sparse as sparse
 import scipy.sparse.linalg
 
@@ -58,6 +59,15 @@ def errors(M, C, K, eigenvalues, vectors):
     scales = (sizes**2 * norms[0] + sizes * norms[1] + norms[2]) * np.linalg.norm(vectors, axis=0)
     tiny = np.finfo(float).tiny
     return defects / np.maximum(sum(np.linalg.norm(part, axis=0) for part in parts), tiny), defects / np.maximum(scales, tiny)
+
+
+def match(values, others):
+    """Which of two lists of eigenvalues belong together, one to one: numbers in both, and relative differences."""
+    values, others = np.asarray(values, dtype=complex), np.asarray(others, dtype=complex)
+    distances = abs(values[:, None] - others[None, :])
+    pairs = scipy.optimize.linear_sum_assignment(distances)
+    sizes = np.maximum(abs(values[pairs[0]]), abs(others[pairs[1]]))
+    return *pairs, distances[pairs] / np.maximum(sizes, np.finfo(float).tiny)
 
 
 def scaling(M, C, K):

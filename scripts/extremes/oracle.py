@@ -22,7 +22,7 @@ import scipy.sparse as sparse
 import scipy.sparse.linalg
 
 import check_eigenvalues
-from squeal import exported_matrices
+from squeal import exported_matrices, quadratic
 
 LARGEST_DENSE = 1600
 # Eigenvalues closer than this part of their modulus are refined together
@@ -147,9 +147,8 @@ class Oracle:
                                     for matrix in (self.extended.mass, self.extended.damping, self.extended.stiffness))
         constant = (stiffness + c * damping + c * c * mass).astype(complex)
         linear = (damping + 2 * c * mass).astype(complex)
-        quadratic = mass.astype(complex)
         # Delta = -L^-1 (A + M Delta^2), a fixed point since Delta is small beside the centre
-        first, second = -scipy.linalg.solve(linear, constant), -scipy.linalg.solve(linear, quadratic)
+        first, second = -scipy.linalg.solve(linear, constant), -scipy.linalg.solve(linear, mass.astype(complex))
         delta = np.zeros((m, m), dtype=complex)
         for _ in range(3):
             delta = first + second @ delta @ delta
@@ -170,16 +169,5 @@ def upper_root(squares):
     return np.concatenate([roots, -roots[is_real]])
 
 
-def match(actual, expected):
-    """Pairs of equally many values, each with the nearest one that is left, and the largest relative difference."""
-    left, largest = list(expected), 0.0
-    for value in sorted(actual, key=lambda value: (value.imag, value.real)):
-        nearest = min(left, key=lambda other: abs(other - value))
-        left.remove(nearest)
-        if value != nearest:
-            largest = max(largest, abs(value - nearest) / max(abs(value), abs(nearest)))
-    return largest
-
-
 def largest_change(before, after):
-    return match(list(before), list(after)) if len(before) else 0.0
+    return quadratic.match(before, after)[2].max(initial=0.0)

@@ -14,16 +14,15 @@ GOALS = {"5": ("11952", "2520", "3.72", "0.747", "2.98", "0.171", "63", "5", "19
 
 @entry("accuracy", "Errors that a run with an accuracy asked for estimates, and those that a finer mesh shows (40 min)")
 def goals(runs):
-    reference = check_accuracy.read(runs("accuracy_reference", "accuracy/reference.prm").folder)
+    reference = runs("accuracy_reference", "accuracy/reference.prm")
     for goal, quoted in GOALS.items():
         results = runs(f"accuracy_{goal}", f"accuracy/{goal}_percent.prm", "Output/Mode shapes=none")
         counts, quantities = results.record["counts"], results.record["quantities"]
-        converged = [pair for pair in check_accuracy.pairs(check_accuracy.read(results.folder), reference) if pair[0]["converged [-]"] == "1"]
-        errors = [check_accuracy.error(pair) for pair in converged]
+        errors = check_accuracy.compare(results, reference).query("converged == 1")
         found = [counts["dofs"], counts["dofs of the coarser mesh"],
                  100 * quantities["largest estimated error of a frequency by the mesh [-]"],
                  100 * quantities["largest estimated error of a divergence rate by the mesh [-]"],
-                 max(error[0] for error in errors), max(error[1] for error in errors), counts["modes converged on the mesh"],
+                 *(errors[column].max() for column in check_accuracy.FOUND), counts["modes converged on the mesh"],
                  *(counts[f"modes {verdict} with the error of the mesh"] for verdict in ("unstable", "stable", "undecided"))]
         for what, text, value in zip(("dofs", "dofs of the coarser mesh", "estimated f [%]", "estimated xi [points]", "found f [%]",
                                       "found xi [points]", "converged", "unstable", "stable", "undecided"), quoted, found):

@@ -4,9 +4,9 @@ import math
 import re
 
 import numpy as np
-import scipy.optimize
 
 from reproduction.numbers import Number, entry
+from squeal import quadratic
 
 NO_SHAPES = "Output/Mode shapes=none"
 UNCOMPARED = "Sweep/Compare dissipation=false"
@@ -44,10 +44,9 @@ def largest_differences(runs, name, results):
         swept, full = at_value(results, mu), np.array(full_order(runs, name, mu).eigenvalues())
         if len(swept) != len(full):
             return math.inf, math.inf
-        distances = abs(swept[:, None] - full[None, :])
-        pairs = scipy.optimize.linear_sum_assignment(distances)
-        of_lambda = max(of_lambda, float((distances[pairs] / abs(full[pairs[1]])).max()))
-        rates = [values.real / values.imag for values in (swept[pairs[0]], full[pairs[1]])]
+        rows, columns, differences = quadratic.match(swept, full)
+        of_lambda = max(of_lambda, float(differences.max()))
+        rates = [values.real / values.imag for values in (swept[rows], full[columns])]
         of_divergence = max(of_divergence, float(abs(rates[0] - rates[1]).max()))
     return of_lambda, of_divergence
 
