@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Runs the cases of doc/extremes.md, holds each against an independent solution, and prints the table of that page.
 
     scripts/measure_extremes.py                    # all cases, some twenty minutes on two idle cores

@@ -138,10 +138,7 @@ def main():
     numbers = [chosen(name, rows, files) for name in arguments.mode or ()]
     titles = {number: title_of(rows[number - 1]) for number in files}
     ensure_display("paraview", ("pvpython",), "1600x1200x24 -noreset")
-    try:
-        from paraview import simple
-    except ImportError:
-        raise Error("ParaView is missing", "paraview.simple", "apt-get install paraview python3-paraview (or scripts/setup.sh paraview)") from None
+    from paraview import simple
     simple._DisableFirstRenderCameraReset()
     if arguments.state or arguments.film:
         write_session_and_film(simple, results, numbers, rows, files, titles, arguments)

@@ -204,10 +204,8 @@ def scene_of_one(simple, file, row, title, arguments):
 
 def write_film(scene, times, path):
     """One picture for each time."""
-    try:
-        from PIL import Image
-    except ImportError:
-        raise Error("Python has no Pillow", "--film", "apt-get install python3-pil") from None
+    from PIL import Image
+
     with tempfile.TemporaryDirectory() as folder:
         frames = []
         for step, time in enumerate(times):

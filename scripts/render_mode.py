@@ -21,11 +21,9 @@ from squeal.errors import Error
 from squeal.surface import edges_of, outer_faces, sharp_edges
 from squeal.vtu_file import VtuFile
 
-try:
+with exit_on_error():
     import vtk
     from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
-except ImportError:
-    sys.exit(f'error: {Error("VTK is missing", "vtk", "apt-get install python3-vtk9 (or scripts/setup.sh pictures)")}')
 
 INK, GREY = (0.13, 0.13, 0.15), (0.45, 0.45, 0.48)
 LARGEST_DISPLACEMENT = 0.08  # of the size of the bodies

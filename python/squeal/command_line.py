@@ -19,6 +19,11 @@ class Parser(argparse.ArgumentParser):
         raise Error(message, "command line", "see --help")
 
 
+# Debian's packages, where a module has another name
+PACKAGES = {"PIL": "python3-pil", "netCDF4": "python3-netcdf4", "paraview": "paraview python3-paraview (or scripts/setup.sh paraview)",
+            "vtk": "python3-vtk9 (or scripts/setup.sh pictures)"}
+
+
 @contextlib.contextmanager
 def exit_on_error():
     """Turns an error into a message and the exit status 1."""
@@ -28,6 +33,9 @@ def exit_on_error():
         sys.exit(f"error: {error}")
     except OSError as error:
         sys.exit(f"error: {error.strerror}\n  where:  {error.filename}\n  change: check the file and its folder, and who may read and write there")
+    except ModuleNotFoundError as missing:
+        package = PACKAGES.get(missing.name, f"python3-{missing.name}")
+        sys.exit(f"error: Python has no {missing.name}\n  where:  {sys.argv[0]}\n  change: apt-get install {package}")
 
 
 def make_of_results(what, parser, make):

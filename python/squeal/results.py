@@ -168,10 +168,7 @@ class Results:
         path = self.folder / f"{name}.vtu"
         if not path.is_file():
             raise Error(f"there are no fields `{name}`", f"folder {self.folder}", f"name one of: {', '.join(self.field_names()) or '(none)'}")
-        try:
-            return VtuFile(path).as_meshio()
-        except ModuleNotFoundError as missing:
-            raise Error(f"Python has no {missing.name}", path, f"apt-get install python3-{missing.name}") from missing
+        return VtuFile(path).as_meshio()
 
     def system(self):
         """The system of matrices that the run has written. Throws Error if there is none."""

@@ -1,7 +1,6 @@
 """Reads the .vtu files of a run without VTK."""
 
 import array
-import re
 import struct
 import xml.etree.ElementTree
 import zlib
@@ -72,12 +71,3 @@ class VtuFile:
             of_blocks.append(numbers)
         cell_data = {name: [[values[cell] for cell in numbers] for numbers in of_blocks] for name, values in self.cell_fields.items()}
         return meshio.Mesh(self.points, blocks, point_data=dict(self.fields), cell_data=cell_data)
-
-    def corners(self, cell):
-        return [self.points[vertex] for vertex in self.cells[cell]]
-
-
-def arrays(path):
-    """Names of the fields of a file."""
-    return set(re.findall(r'<DataArray[^>]* Name="([^"]+)"', path.read_bytes().partition(b"<AppendedData")[0].decode())) - {
-        "points", "connectivity", "offsets", "types", "mode"}

@@ -18,7 +18,7 @@ COMPONENT_SHAPES = "Output/Component mode shapes=true"
 
 def cells_of(file):
     """Body and corners [um] of each cell, in an order of their own."""
-    return sorted((body, *(tuple(round(1e6 * x) for x in point) for point in file.corners(cell)))
+    return sorted((body, *(tuple(round(1e6 * x) for x in point) for point in (file.points[corner] for corner in file.cells[cell])))
                   for cell, body in enumerate(file.cell_fields["component"]))
 
 

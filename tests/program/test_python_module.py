@@ -38,7 +38,7 @@ class PythonModule(ProgramTest):
     def test_fields(self):
         name = next(name for name in self.results.field_names() if name.startswith("modes/complex") and not name.endswith("_contact"))
         if meshio is None:
-            with self.assertRaisesRegex(squeal.Error, "meshio"):
+            with self.assertRaises(ModuleNotFoundError):
                 self.results.fields(name)
             return
         mesh, file = self.results.fields(name), VtuFile(self.folder / "results" / f"{name}.vtu")

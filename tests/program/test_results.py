@@ -12,13 +12,19 @@ import xml.etree.ElementTree
 
 from program import COMPLEX_COLUMNS, EXECUTABLE, SAME, ProgramTest, distance, eigenvalues, header, numbers, read_table, real_frequencies
 from squeal.parameter_file import read_parameters
-from squeal.vtu_file import VtuFile, arrays
+from squeal.vtu_file import VtuFile
 
 # Of displacements in files [-]
 STEP = 1 / 65536
 
 TABLES = ["component_modes.csv", "real_modes.csv", "complex_modes.csv"]
 PARAVIEW_MODES = pathlib.Path(__file__).resolve().parents[2] / "scripts" / "paraview_modes.py"
+
+
+def arrays(path):
+    """Names of the fields of a file."""
+    file = VtuFile(path)
+    return {*file.fields, *file.cell_fields}
 
 
 class Results(ProgramTest):

@@ -24,13 +24,7 @@ def read_json(path):
 
 def read_yaml(path, what):
     """The content of a YAML or JSON file; keys that appear twice are rejected, yaml would take the last."""
-    path = pathlib.Path(path)
-    try:
-        import yaml
-    except ImportError as error:
-        if path.suffix == ".json":
-            return read_json(path)
-        raise Error("yaml is missing", path, "apt-get install python3-yaml") from error
+    import yaml
 
     class Loader(yaml.SafeLoader):
         def construct_mapping(self, node, deep=False):
@@ -39,6 +33,6 @@ def read_yaml(path, what):
             return super().construct_mapping(node, deep)
 
     try:
-        return yaml.load(path.read_text(encoding="utf-8").expandtabs(), Loader)
+        return yaml.load(pathlib.Path(path).read_text(encoding="utf-8").expandtabs(), Loader)
     except (ValueError, TypeError, yaml.YAMLError) as error:
         raise Error(f"the {what} cannot be read: " + " ".join(str(error).split()), path, "write YAML or JSON") from error

@@ -24,8 +24,6 @@ class ExodusFile:
         self.elements, self.element_sets, self.surfaces, self.materials, self.dropped = {}, {}, {}, {}, []
         try:
             self._read(path)
-        except ImportError as error:
-            raise Error("netCDF4 is missing", path, "apt-get install python3-netcdf4") from error
         except (OSError, RuntimeError, AttributeError, LookupError, ValueError) as error:
             raise Error(f"this Exodus file cannot be read ({error!r})", path, "write it anew") from error
 
