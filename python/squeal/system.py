@@ -370,8 +370,12 @@ def read_matrix(folder, name, where):
 
 def read_rows(folder, name, where):
     """Rows of a CSV file as dictionaries, numbers as such, NaN for an empty cell."""
-    table = Table(inside(folder, name, where))
-    columns = [table.texts(column) if column == "direction" else table.numbers(column) for column in table.columns]
+    path = inside(folder, name, where)
+    try:
+        table = Table(path)
+        columns = [table.texts(column) if column == "direction" else table.numbers(column) for column in table.columns]
+    except Error as problem:
+        raise Error(f"{path} cannot be read: {problem.what}", where, "write a number for each column of a row") from problem
     return [dict(zip(table.columns, row)) for row in zip(*columns)]
 
 

@@ -116,6 +116,12 @@ class Files(InFolder):
             np.testing.assert_array_equal(again.reduction["basis"], system.reduction["basis"])
             self.assertEqual(again.reduction["points"], system.reduction["points"])
 
+    def test_points_without_a_speed(self):
+        """As the program writes them, where a sweep has no speed."""
+        flutter(reduction={"points": [{"mu": 0.1, "speed": math.nan}]}).write(self.folder)
+        self.assertEqual((self.folder / "points.csv").read_text(encoding="utf-8"), "mu,speed\n0.1,\n")
+        self.assertTrue(math.isnan(System.read(self.folder).reduction["points"][0]["speed"]))
+
     def test_random_matrices_come_back_to_the_last_bit(self):
         system = chain(40)
         system.write(self.folder)
@@ -162,6 +168,7 @@ class Files(InFolder):
         self.assert_rejected(damaged(lambda data: data.update(terms=[])), "no terms", "system.json")
         self.assert_rejected(damaged(lambda data: data.update(version=2)), "version 1", "system.json")
         self.assert_rejected(damaged(lambda data: data.update(dofs="dofs.csv")), "dofs.csv is missing")
+        self.assert_rejected(damaged(lambda data: data.update(dofs="dofs.csv"), "dofs.csv", "x [m],direction\n0.1,x\nabc,y\n"), "`abc`", "dofs")
         self.assert_rejected(damaged(file="system.json", text='{"format": 1, "format": 2}'), "`format` appears twice")
         self.assert_rejected(damaged(file="system.json"), "missing", "system.json")
 
