@@ -76,7 +76,7 @@ def rigid_rows(matrices):
 def reactions(matrices):
     """S, n_c x n, with zero rows at contact nodes with springs."""
     rigid, P_n = rigid_rows(matrices), matrices["P_n"]
-    if len(rigid) == P_n.shape[0] and abs(P_n @ P_n.T - 2 * sparse.identity(len(rigid))).max() < 1e-12:
+    if len(rigid) == P_n.shape[0] and (abs(P_n @ P_n.T - 2 * sparse.identity(len(rigid))) > 1e-12).nnz == 0:
         return 0.5 * P_n  # pairs of nodes, in the precision of the matrices
     select = sparse.csr_matrix((np.ones(len(rigid)), (rigid, np.arange(len(rigid)))), (P_n.shape[0], len(rigid)))
     B = sparse.vstack([matrices[name][rigid] for name in ("P_n", "P_t", "P_b")]).tocsr()

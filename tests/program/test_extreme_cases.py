@@ -36,7 +36,7 @@ class Oracle(unittest.TestCase):
         squares, rates = np.array([1e2, 1e4, 1e4 * (1 + 1e-9), 4e4, 1e9]), np.array([0.0, 1.0, 1.0, 1e3, 1e6])
         none, unit = sparse.csr_matrix((0, len(squares))), sparse.identity(len(squares), format="csr")
         matrices = {"M": unit, "K": sparse.diags(squares).tocsr(), "C": sparse.diags(rates).tocsr(), "G": 0 * unit, "C_b": 0 * unit, "P_n": none, "P_t": none,
-                    "P_b": none, "T_c": unit}
+                    "P_b": none, "K_n": sparse.csr_matrix((0, 0)), "T_c": unit}
         found = oracle.Oracle(matrices, 0, 100.0).solve(980.0)
         roots = -rates / 2 + np.sqrt((rates**2 / 4 - squares).astype(complex))
         expected = [10j, roots[1], roots[2], roots[3], -rates[3] - roots[3]]
