@@ -201,13 +201,29 @@ class Results:
         """Draws the plots of the tables; returns their files and remarks on files that were renamed."""
         from squeal.plotting import draw
 
-        return draw.draw(self, ending, output)
+        folder = pathlib.Path(output) if output else self.folder / "plots"
+        pictures = {folder / f"{name}.{ending}": draw.render(figure, ending) for name, figure in draw.figures(self).items()}
+        return list(pictures), self.save(pictures, is_listed=not output)
 
     def report(self, output=None):
         """Writes the report; returns its file and remarks on files that were renamed."""
-        from squeal.reporting import write
+        from squeal.reporting import content, page
 
-        return write.write(self, output)
+        place = pathlib.Path(output) if output else self.folder / "report.html"
+        return place, self.save({place: page.page(content.content(self)).encode()}, is_listed=not output)
+
+    def save(self, files, is_listed):
+        """Writes files, path -> content, and adds them to those of the run if they are to be listed; returns remarks."""
+        try:
+            for path in files:
+                path.parent.mkdir(parents=True, exist_ok=True)
+            remarks = self.enlist({str(path.relative_to(self.folder)): content for path, content in files.items()}) if is_listed else []
+            for path, content in files.items():
+                replace(path, content)
+        except OSError as problem:
+            change = "check permissions and free space, or name another place for them"
+            raise Error(f"the files cannot be written: {problem}", ", ".join(map(str, files)), change) from problem
+        return remarks
 
     def enlist(self, files):
         """Adds pictures, or a report, to the files of the run in run.json; returns what to say."""
