@@ -40,3 +40,15 @@ def entry(page, sentence):
         ENTRIES.setdefault(page, []).append((sentence, function))
         return function
     return register
+
+
+def of_mode(name, mode, frequency=None, rate=None):
+    """Frequency and divergence rate of a mode, of which the page may say one only."""
+    for unit, quoted, column in (("Hz", frequency, "frequency [Hz]"), ("%", rate, "divergence rate [%]")):
+        if quoted is not None:
+            yield Number(f"{name} [{unit}]", quoted, mode[column])
+
+
+def several(prefix, names, quoted, found):
+    """A number for each name."""
+    return map(Number, (f"{prefix}{name}" for name in names), quoted, found)

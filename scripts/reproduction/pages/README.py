@@ -2,7 +2,7 @@
 
 import math
 
-from reproduction.numbers import Number, entry
+from reproduction.numbers import Number, entry, of_mode
 
 
 @entry("README", "A mode grows by a factor of e in 1 / (2 pi xi) periods")
@@ -17,6 +17,4 @@ def brake(runs):
     results = runs("brake", "brake.prm", "Output/Mode shapes=none")
     yield Number("modes", "18", len(results.complex_modes()))
     yield Number("unstable modes", "1", results.n_unstable())
-    mode = results.leading("A0-3")
-    yield Number("A0-3 [Hz]", "4441", mode["frequency [Hz]"])
-    yield Number("divergence rate [%]", "0.74", mode["divergence rate [%]"])
+    yield from of_mode("A0-3", results.leading("A0-3"), "4441", "0.74")

@@ -3,7 +3,7 @@
 import statistics
 
 import check_accuracy
-from reproduction.numbers import Number, entry
+from reproduction.numbers import Number, entry, several
 
 # dofs, of the coarser mesh, estimated and found errors of f [%] and xi [points], converged, unstable, stable, undecided
 GOALS = {"5": ("11952", "2520", "3.72", "0.747", "2.98", "0.171", "63", "5", "19", "42"),
@@ -24,14 +24,14 @@ def goals(runs):
                  100 * quantities["largest estimated error of a divergence rate by the mesh [-]"],
                  *(errors[column].max() for column in check_accuracy.FOUND), counts["modes converged on the mesh"],
                  *(counts[f"modes {verdict} with the error of the mesh"] for verdict in ("unstable", "stable", "undecided"))]
-        for what, text, value in zip(("dofs", "dofs of the coarser mesh", "estimated f [%]", "estimated xi [points]", "found f [%]",
-                                      "found xi [points]", "converged", "unstable", "stable", "undecided"), quoted, found):
-            yield Number(f"Accuracy = {goal} %: {what}", text, value)
+        yield from several(f"Accuracy = {goal} %: ", ("dofs", "dofs of the coarser mesh", "estimated f [%]", "estimated xi [points]", "found f [%]",
+                                                      "found xi [points]", "converged", "unstable", "stable", "undecided"), quoted, found)
 
 
 # By row of complex_modes.csv: found frequency error and those estimated with elements 2 and 1.3 times as large [%]
 BRAKE = {7: ("0.0011", "0.0002", "0.0099"), 8: ("0.356", "1.23", "0.320"), 10: ("0.540", "3.30", "0.647"), 12: ("1.09", "5.01", "1.09"),
          17: ("0.169", "0.963", "0.194")}
+WHICH = ("found", "2 times", "1.3 times")
 BRAKE_DIVERGENCE = ("0.0045", "0.028", "0.0028")  # of the last of them [points]
 
 
@@ -44,12 +44,10 @@ def brake(runs):
     estimated = "estimated frequency error by the mesh [%]"
     for row, quoted in BRAKE.items():
         found = 100 * abs(twice[row]["frequency [Hz]"] / fine[row]["frequency [Hz]"] - 1)
-        for what, text, value in zip(("found", "2 times", "1.3 times"), quoted, (found, twice[row][estimated], slightly[row][estimated])):
-            yield Number(f"{fine[row]['label']}, {what} [%]", text, value)
+        yield from several(f"{fine[row]['label']} [%], ", WHICH, quoted, (found, twice[row][estimated], slightly[row][estimated]))
     found = abs(twice[17]["divergence rate [%]"] - fine[17]["divergence rate [%]"])
     estimated = "estimated divergence rate error by the mesh [%]"
-    for what, text, value in zip(("found", "2 times", "1.3 times"), BRAKE_DIVERGENCE, (found, twice[17][estimated], slightly[17][estimated])):
-        yield Number(f"{fine[17]['label']}, divergence rate, {what} [points]", text, value)
+    yield from several(f"{fine[17]['label']}, divergence rate [points], ", WHICH, BRAKE_DIVERGENCE, (found, twice[17][estimated], slightly[17][estimated]))
 
 
 # Of full order by element and mesh factor: dofs, largest and rms frequency errors [%], largest divergence error [points]
@@ -75,8 +73,7 @@ LARGEST, RMS = "frequency error [%]", "rms frequency error [%]"
 def compared(results, quoted, columns):
     rows = {(row["element"], row["mesh factor [-]"]): row for row in results.rows("accuracy") if row["method"] == "full order"}
     for key, texts in quoted.items():
-        for column, text in zip(columns, texts):
-            yield Number(f"{key[0]}, mesh factor {key[1]}: {column}", text, rows[key][column])
+        yield from several(f"{key[0]}, mesh factor {key[1]}: ", columns, texts, map(rows[key].get, columns))
 
 
 @entry("accuracy", "Errors of every element on three meshes of the default scene (20 min)")

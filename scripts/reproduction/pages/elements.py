@@ -1,6 +1,6 @@
 """doc/elements.md"""
 
-from reproduction.numbers import Number, entry
+from reproduction.numbers import Number, entry, of_mode
 
 NO_SHAPES = "Output/Mode shapes=none"
 ONE_PIN = (NO_SHAPES, "Operation/Friction coefficient=0", "Geometry/Top pin radii=0.2275", "Geometry/Top pin angles=0",
@@ -69,10 +69,8 @@ def disc(runs):
     for (element, outlines, layers), quoted in DISC.items():
         results = runs(f"elements_{element}_{outlines}".replace(" ", "_"), "disc_pins.prm", NO_SHAPES, f"Discretization/Element={element}",
                        f"Geometry/Outlines={outlines}", f"Geometry/Disc layers={layers}")
-        leading = [results.leading(label) for label in ("A0-4", "A0-5", "F1")]
-        found = [mode[column] for mode in leading for column in ("frequency [Hz]", "divergence rate [%]")]
-        for name, number, value in zip(("A0-4 [Hz]", "A0-4 [%]", "A0-5 [Hz]", "A0-5 [%]", "F1 [Hz]", "F1 [%]"), quoted, found):
-            yield Number(f"{name}, {element}, {outlines}", number, value)
+        for label, frequency, rate in zip(("A0-4", "A0-5", "F1"), quoted[::2], quoted[1::2]):
+            yield from of_mode(f"{element}, {outlines}, {label}", results.leading(label), frequency, rate)
 
 
 TETRAHEDRA = {1: ("2256.8", "3495.3", "1.117"), 1.3: ("2254.7", "3486.2", "1.131"), 1.65: ("2253.5", "3481.9", "1.134")}
@@ -86,5 +84,4 @@ def tetrahedra(runs):
         free = [mode["frequency [Hz]"] for mode in results.rows("component_modes") if mode["label"].startswith("A0-4")]
         yield Number(f"refinement {refinement}, A0-4 [Hz]", disc, sum(free) / len(free))
         leading = max(results.rows("complex_modes"), key=lambda mode: mode["divergence rate [%]"])
-        yield Number(f"refinement {refinement}, F1 [Hz]", frequency, leading["frequency [Hz]"])
-        yield Number(f"refinement {refinement}, F1 [%]", divergence, leading["divergence rate [%]"])
+        yield from of_mode(f"refinement {refinement}, F1", leading, frequency, divergence)

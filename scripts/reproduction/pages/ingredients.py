@@ -1,6 +1,6 @@
 """doc/ingredients.md"""
 
-from reproduction.numbers import Number, entry
+from reproduction.numbers import Number, entry, several
 
 TRIALS = ("Study=ingredients", "Ingredients/Trial friction slope=-0.01", "Ingredients/Trial damping ratio=0.001")
 FREQUENCY, DIVERGENCE = "change of frequency [%]", "change of divergence rate [percentage points]"
@@ -21,6 +21,12 @@ QUOTED = {"consistent": ("0.49", "2.07", "12"),
 CHANGES = {"consistent", "-0.01 s/m", "on", "quadratic", "real modes alone", "real modes to 7500 Hz", "real modes + 1st order", "to 2500 Hz"}
 
 
+def of_row(name, row, frequency, divergence, unstable, changes):
+    yield from several(f"{name}, ", ("frequency [%]", "divergence rate [points]", "unstable modes", "verdict changes (1) or not (0)"),
+                       (frequency, divergence, unstable, str(int(changes))),
+                       (row[FREQUENCY], row[DIVERGENCE], row["unstable modes tried [-]"], row["verdict changed [-]"]))
+
+
 def rows_of(runs):
     rows = runs("ingredients", "disc_pins.prm", *TRIALS).rows("ingredients")
     # A table's numbers are numbers, also where they name what was tried
@@ -30,12 +36,8 @@ def rows_of(runs):
 @entry("ingredients", "The table of the default scene")
 def default_scene(runs):
     rows = rows_of(runs)
-    for tried, (frequency, divergence, unstable) in QUOTED.items():
-        row = rows[tried]
-        yield Number(f"{row['ingredient']}: {tried}, frequency [%]", frequency, row[FREQUENCY])
-        yield Number(f"{row['ingredient']}: {tried}, divergence rate [points]", divergence, row[DIVERGENCE])
-        yield Number(f"{row['ingredient']}: {tried}, unstable modes", unstable, row["unstable modes tried [-]"])
-        yield Number("  verdict changes (1) or not (0)", "1" if tried in CHANGES else "0", row["verdict changed [-]"])
+    for tried, quoted in QUOTED.items():
+        yield from of_row(f"{rows[tried]['ingredient']}: {tried}", rows[tried], *quoted, tried in CHANGES)
     row = rows["residual iteration"]
     yield Number("residual iteration, frequency [%]", "0.000005", row[FREQUENCY])
     yield Number("residual iteration, divergence rate [points]", "0.000003", row[DIVERGENCE])
@@ -73,10 +75,6 @@ CHANGES_WITH_DAMPING = {"Rayleigh damping", "rotation of the disc", "band"}
 def with_all_damping(runs):
     rows = {(row["ingredient"], row["tried"] if isinstance(row["tried"], str) else f"{row['tried']:g}"): row
             for row in runs("ingredients_damped", "studies/ingredients.prm").rows("ingredients")}
-    for (ingredient, tried), (frequency, divergence, unstable) in QUOTED_WITH_DAMPING.items():
-        row = rows[ingredient, tried]
-        yield Number(f"{ingredient}: {tried}, frequency [%]", frequency, row[FREQUENCY])
-        yield Number(f"{ingredient}: {tried}, divergence rate [points]", divergence, row[DIVERGENCE])
-        yield Number(f"{ingredient}: {tried}, unstable modes", unstable, row["unstable modes tried [-]"])
-        yield Number("  verdict changes (1) or not (0)", "1" if ingredient in CHANGES_WITH_DAMPING else "0", row["verdict changed [-]"])
+    for (ingredient, tried), quoted in QUOTED_WITH_DAMPING.items():
+        yield from of_row(f"{ingredient}: {tried}", rows[ingredient, tried], *quoted, ingredient in CHANGES_WITH_DAMPING)
     yield Number("unstable modes of the scene", "4", rows["friction slope", "none"]["unstable modes here [-]"])

@@ -1,6 +1,6 @@
 """doc/reduction.md, but for times"""
 
-from reproduction.numbers import Number, entry
+from reproduction.numbers import Number, entry, several
 
 STUDIES = {"without": ("friction", "studies/friction.prm"), "with": ("friction_damped", "studies/friction_damped.prm")}
 
@@ -34,10 +34,9 @@ def at_one_glance(runs):
                        ("residual-grown 1e-06", "330", "7.3e-7", "5.1e-7"))}
     for dissipation, bases in quoted.items():
         rows = study(runs, dissipation, "errors")
-        for basis, size, eigenvalue, divergence in bases:
-            yield Number(f"{dissipation}: {basis}, n_r", size, largest(rows, basis, "n_r [-]"))
-            yield Number(f"{dissipation}: {basis}, error of lambda", eigenvalue, largest(rows, basis, "lambda [-]"))
-            yield Number(f"{dissipation}: {basis}, eps_div", divergence, largest(rows, basis, "div [-]"))
+        for basis, *texts in bases:
+            columns = ("n_r [-]", "lambda [-]", "div [-]")
+            yield from several(f"{dissipation}: {basis}, ", columns, texts, [largest(rows, basis, column) for column in columns])
 
 
 @entry("reduction", "Groups: share of the disc in A0-5, and errors of disc modes")
@@ -63,9 +62,9 @@ def disc_and_unstable_pins(runs):
                        ("real + t.a.m.", "1.5e-4", "1.2e-4"), ("real + 1st-ord.", "9.2e-4", "1.3e-4"))}
     for dissipation, bases in quoted.items():
         rows = study(runs, dissipation, "errors")
-        for basis, residual, divergence in bases:
-            yield Number(f"{dissipation}: {basis}, eps_res", residual, largest(rows, basis, "res [-]", "disc and unstable pins"))
-            yield Number(f"{dissipation}: {basis}, eps_div", divergence, largest(rows, basis, "div [-]", "disc and unstable pins"))
+        for basis, *texts in bases:
+            columns = ("res [-]", "div [-]")
+            yield from several(f"{dissipation}: {basis}, ", columns, texts, [largest(rows, basis, column, "disc and unstable pins") for column in columns])
 
 
 @entry("reduction", "Wrong verdicts")

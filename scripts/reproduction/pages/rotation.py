@@ -1,6 +1,6 @@
 """doc/rotation.md"""
 
-from reproduction.numbers import Number, entry
+from reproduction.numbers import Number, entry, of_mode
 
 NO_SHAPES = "Output/Mode shapes=none"
 
@@ -15,8 +15,6 @@ def default_scene(runs):
                            ("A0-5 +", "3452.13", "3454.30", "0.8563", "0.8560"), ("A0-5 -", "3452.13", "3449.93", "-0.8563", "-0.8565"),
                            ("F1", "3569.05", "3568.1", "1.0677", "1.0622"), ("A0-6 +", "4769.24", "4772.00", "0", "0.0251")):
         for name, results, frequency, rate in (("without", still, quoted[0], quoted[2]), ("with", turning, quoted[1], quoted[3])):
-            mode = results.leading(label)
-            yield Number(f"{label}, {name} [Hz]", frequency, mode["frequency [Hz]"])
-            yield Number(f"{label}, {name} [%]", rate, mode["divergence rate [%]"])
+            yield from of_mode(f"{label}, {name}", results.leading(label), frequency, rate)
     yield Number("growing modes without", "9", still.n_unstable())
     yield Number("growing modes with", "25", turning.n_unstable())

@@ -1,6 +1,6 @@
 """doc/sensitivity.md"""
 
-from reproduction.numbers import Number, entry
+from reproduction.numbers import Number, entry, of_mode
 
 # What one per cent changes of the divergence rate [percentage points] and of the frequency [Hz] of F1 at 3569 Hz
 QUOTED = {"Geometry/Disc outer radius": ("-0.1276", "-19.8"),
@@ -21,8 +21,7 @@ QUOTED = {"Geometry/Disc outer radius": ("-0.1276", "-19.8"),
 def leading_mode(runs):
     rows = [row for row in runs("sensitivity", "studies/sensitivity.prm").rows("sensitivities")
             if row["mode [-]"] == 1 and not row["only of"]]
-    yield Number("frequency [Hz]", "3569", rows[0]["frequency [Hz]"])
-    yield Number("divergence rate [%]", "1.068", rows[0]["divergence rate [%]"])
+    yield from of_mode("the mode", rows[0], "3569", "1.068")
     for parameter, (rate, frequency) in QUOTED.items():
         row = next(row for row in rows if row["parameter"] == parameter)
         yield Number(f"{parameter}, divergence rate [percentage points]", rate, row["divergence rate per 1 % [percentage points]"])

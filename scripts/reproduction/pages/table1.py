@@ -1,7 +1,7 @@
 """doc/table1.md"""
 
 import paper
-from reproduction.numbers import Number, entry
+from reproduction.numbers import Number, entry, of_mode
 
 NO_SHAPES = "Output/Mode shapes=none"
 FINE = ("Geometry/Element size=0.008", "Geometry/Disc layers=4", "Geometry/Pin layers=6")
@@ -41,8 +41,7 @@ def unstable_pairs(runs):
     growing = sorted((mode for mode in modes if mode["divergence rate [%]"] > 0.01), key=lambda mode: -mode["divergence rate [%]"])
     for place, (label, frequency, rate) in enumerate((("F1", "3569", "1.07"), ("A0-5", "3452", "0.86"), ("A0-4", "2353", "0.68"),
                                                       ("F1", "3548", "0.32"), ("F1", "3542", "0.12"))):
-        yield Number(f"{place + 1}. {growing[place]['label']} ({label} in the page) [Hz]", frequency, growing[place]["frequency [Hz]"])
-        yield Number("  [%]", rate, growing[place]["divergence rate [%]"])
+        yield from of_mode(f"{place + 1}. {growing[place]['label']} ({label} in the page)", growing[place], frequency, rate)
 
 
 @entry("table1", "With C_b, consistent and about steady sliding")
@@ -83,9 +82,7 @@ def convergence(runs):
         folder = "default" if name == "19 nodes" else f"mesh_{name.replace(', ', '_').replace(' ', '_')}"
         results = runs(folder, parameter_file, NO_SHAPES, *settings)
         for label, frequency, rate in zip(("A0-4", "A0-5", "F1"), quoted[::2], quoted[1::2]):
-            mode = results.leading(label)
-            yield Number(f"{name}: {label} [Hz]", frequency, mode["frequency [Hz]"])
-            yield Number(f"{name}: {label} [%]", rate, mode["divergence rate [%]"])
+            yield from of_mode(f"{name}: {label}", results.leading(label), frequency, rate)
 
 
 @entry("table1", "F1 at 3353 Hz: the coupled modes up to there in the paper's table")

@@ -2,7 +2,7 @@
 
 import math
 
-from reproduction.numbers import Number, entry
+from reproduction.numbers import Number, entry, of_mode
 
 RATE = "divergence rate [%]"
 
@@ -13,10 +13,7 @@ def first_run(runs):
     yield Number("modes", "66", len(results.complex_modes()))
     yield Number("that grow", "9", results.n_unstable())
     for label, rate, frequency in (("F1", "1.068", "3569"), ("A0-5", "0.856", None), ("A0-4", "0.680", "2353")):
-        mode = results.leading(label)
-        yield Number(f"{label}, divergence rate [%]", rate, mode[RATE])
-        if frequency:
-            yield Number("  frequency [Hz]", frequency, mode["frequency [Hz]"])
+        yield from of_mode(label, results.leading(label), frequency, rate)
     yield Number("periods of a factor of e", "15", 1 / (2 * math.pi * results.leading("F1")[RATE] / 100))
     own = {row["body"]: row["all of it [%]"] / results.leading("F1")[RATE] for row in results.rows("energy") if row["mode [-]"] == 44}
     for pin, share in ((4, "14.9"), (5, "15.7"), (2, "1.9")):
@@ -32,8 +29,7 @@ def sweep(runs):
     for label, mu in (("A0-4", "0.0883"), ("A0-5", "0.0893")):
         yield Number(f"onset of {label}", mu, min(row["mu [-]"] for row in thresholds if row["label"].startswith(label)))
     leading = max(results.rows("branches"), key=lambda row: row[RATE])
-    yield Number("largest divergence rate [%]", "1.168", leading[RATE])
-    yield Number("  frequency [Hz]", "3568", leading["frequency [Hz]"])
+    yield from of_mode("leading mode", leading, "3568", "1.168")
     yield Number("  friction coefficient", "0.45", leading["mu [-]"])
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import scipy.linalg
 
 from squeal import exported_matrices
-from reproduction.numbers import Number, entry
+from reproduction.numbers import Number, entry, of_mode
 from reproduction.sliding_layer import Layer
 
 # Ring: pin layers, element size [m], end of the band [Hz]
@@ -94,9 +94,7 @@ def in_band(runs):
             name = f"mu = {friction_coefficient}, mesh {factor}"
             yield Number(f"{name}, modes", n_modes, len(results.complex_modes()))
             yield Number(f"{name}, A0-4 [Hz]", axial, max(mode["frequency [Hz]"] for mode in results.complex_modes("A0-4")))
-            if frequency is not None:
-                yield Number(f"{name}, leading mode [Hz]", frequency, leading(results)["frequency [Hz]"])
-                yield Number(f"{name}, leading mode [%]", rate, leading(results)["divergence rate [%]"])
+            yield from of_mode(f"{name}, leading mode", leading(results), frequency, rate)
 
 
 @entry("well_posedness", "One pin on each side: modes beyond 5 kHz")
