@@ -89,8 +89,15 @@ namespace Squeal
             shift = shift_of_free_bodies * count.limit;
             pairs = find_all();
           }
-        const Residuals result = refine(pairs);
-        modes                  = accept(pairs, result);
+        Residuals result = refine(pairs);
+        if (!(result.excess <= 1.) && options.solver != RealSolver::lanczos && !is_dense())
+          {
+            // Of copies of an eigenvalue libraries may leave a mixture with others, which refinement does not part
+            options.solver = RealSolver::lanczos;
+            pairs          = find_all();
+            result         = refine(pairs);
+          }
+        modes = accept(pairs, result);
       }
     modes.n_counted = count.n_modes;
     return modes;

@@ -72,7 +72,7 @@ namespace Squeal
     bool is_rigid(double value) const;
 
     const SparseMatrix            &K, &M;
-    const SymmetricModesOptions    options;
+    SymmetricModesOptions          options;
     double                         shift; ///< s in K + s M, of the factor that is made here [rad²/s²]
     ModeCount                      count;
     const double                   hidden_square; ///< eigenvalues up to this are zero: rounding errors of K
