@@ -209,40 +209,51 @@ namespace Squeal
                             factors.begin());
   }
 
-  bool ProjectedResiduals::is_column_term(const Term &term) const
+  bool ProjectedResiduals::has_columns(const LowRankFactor &factor) const
   {
-    return term.weights.empty() && term.left->rank() > r;
+    int n_terms = 0;
+    for (const Term *term : low_rank)
+      if (&factor == term->left.get() || &factor == term->right.get())
+        {
+          if (!term->weights.empty())
+            return false;
+          ++n_terms;
+        }
+    return factor.rank() > n_terms * r;
   }
 
   void ProjectedResiduals::find_blocks() const
   {
     blocks.clear();
-    n_columns      = 0;
-    const auto add = [&](const Block &block) {
-      blocks.push_back(block);
-      blocks.back().first = n_columns;
-      n_columns += block.n;
-    };
     for (int s = 0; s < static_cast<int>(sparse.size()); ++s)
-      add({s, -1, nullptr, true, true, r});
+      blocks.push_back({s, -1, nullptr, true, true, r});
     for (const Term *term : low_rank)
-      if (const bool is_symmetric = term->left == term->right; is_column_term(*term))
-        {
-          add({-1, number_of(*term->left), term, is_symmetric, true, r});
-          if (!is_symmetric)
-            add({-1, number_of(*term->right), term, true, false, r});
-        }
+      for (const bool transposed : {false, true})
+        if (const LowRankFactor &factor = term->target(transposed); has_columns(factor))
+          {
+            const bool is_symmetric = term->left == term->right;
+            if (!is_symmetric || !transposed)
+              blocks.push_back({-1, number_of(factor), term, transposed || is_symmetric, !transposed, r});
+          }
     for (int f = 0; f < static_cast<int>(factors.size()); ++f)
-      {
-        Block block{-1, f, nullptr, false, false, factors[f].factor->rank()};
-        for (const Term *term : low_rank)
-          if (!is_column_term(*term))
+      if (!has_columns(*factors[f].factor))
+        {
+          Block block{-1, f, nullptr, false, false, factors[f].factor->rank()};
+          for (const Term *term : low_rank)
             {
               block.in_left  = block.in_left || &term->target(true) == factors[f].factor;
               block.in_right = block.in_right || &term->target(false) == factors[f].factor;
             }
-        if (block.in_left || block.in_right)
-          add(block);
+          blocks.push_back(block);
+        }
+    std::stable_sort(blocks.begin(), blocks.end(), [](const Block &a, const Block &b) { return a.place() < b.place(); });
+    n_columns = n_of_right = n_of_left = 0;
+    for (Block &block : blocks)
+      {
+        block.first = n_columns;
+        n_columns += block.n;
+        n_of_right += block.in_right ? block.n : 0;
+        n_of_left += block.in_left ? block.n : 0;
       }
   }
 
@@ -295,6 +306,11 @@ namespace Squeal
     G -= H.transpose() * lu.solve(H);
     bracket     = std::move(G);
     is_prepared = true;
+    if (in_single_precision)
+      {
+        right_bracket = bracket.leftCols(n_of_right).cast<float>();
+        left_bracket  = bracket.bottomRightCorner(n_of_left, n_of_left).cast<float>();
+      }
   }
 
   DenseMatrix ProjectedResiduals::coefficients(const ParameterValues      &values,
@@ -330,7 +346,7 @@ namespace Squeal
           rows = vectors * theta(*block.term).asDiagonal();
         else
           for (const Term *term : low_rank)
-            if (&term->target(transposed) == factors[block.factor].factor && !is_column_term(*term) && !term->vanishes(values))
+            if (&term->target(transposed) == factors[block.factor].factor && !term->vanishes(values))
               rows += term->weighted(motions_of_modes(term->source(transposed)), values) * theta(*term).asDiagonal();
       }
     return halves(result);
@@ -343,6 +359,16 @@ namespace Squeal
   {
     prepare();
     const DenseMatrix y = coefficients(values, lambda, right, false), z = coefficients(values, lambda, left, true);
+    if (in_single_precision)
+      {
+        const auto times = [](const Eigen::MatrixXf &A) {
+          return [&A](const DenseMatrix &X) -> DenseMatrix { return (A * X.cast<float>()).cast<double>(); };
+        };
+        const DenseMatrix y_right = y.topRows(n_of_right), z_left = z.bottomRows(n_of_left);
+        const DenseMatrix Gy = sparing_zeros(y_right, times(right_bracket)), Gz = sparing_zeros(z_left, times(left_bracket));
+        return {product_of_halves(z_left.transpose() * Gy.bottomRows(n_of_left)), hermitian_products(y_right, Gy.topRows(n_of_right)),
+                hermitian_products(z_left, Gz)};
+      }
     const DenseMatrix Gy = multiply_sparing_zeros(bracket, y), Gz = multiply_sparing_zeros(bracket, z);
     return {product_of_halves(Gz.transpose() * y), hermitian_products(y, Gy), hermitian_products(z, Gz)};
   }

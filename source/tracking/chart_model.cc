@@ -139,8 +139,13 @@ namespace Squeal
                       estimates.left_residuals,   estimates.errors, estimates.uncertainties, estimates.verdicts, estimates.couplings,
                       modes.real_values,          modes.n_zeros};
     for (std::size_t j = 0; j < modes.lambda.size(); ++j)
-      if (!estimates.claimed[j])
-        result.errors[j] = estimates.uncertainties[j] / std::abs(modes.lambda[j]);
+      {
+        if (!estimates.claimed[j])
+          result.errors[j] = estimates.uncertainties[j] / std::abs(modes.lambda[j]);
+        if (!allows_cancellation)
+          result.errors[j] = std::max(result.errors[j], 0.5 * estimates.conditions[j] *
+                                                          std::sqrt(estimates.energy_residuals[j] * estimates.left_residuals[j]));
+      }
     return result;
   }
 

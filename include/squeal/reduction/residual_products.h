@@ -24,8 +24,8 @@ namespace Squeal
    *   Q(λ) T φ_r  = S T φ_r + W y,   Q(λ)ᵀ T ψ_r = S T ψ_r + W z,   S = K_c + s² M_c,
    *
    * with short y, z. The columns of W are A T of the terms θ A, with the rows (θ λ^p − σ) φ_r of y, σ A being the part of the term in S,
-   * but those of which nothing is left. Of terms θ L diag(d) Rᵀ they are the factors where the weights d are parameters or
-   * the factors have fewer columns: L with the rows θ λ^p diag(d) RᵀT φ_r of y, R with θ λ^p diag(d) LᵀT ψ_r of z; else they are
+   * but those of which nothing is left. Of terms θ L diag(d) Rᵀ they are a factor where the weights d are parameters or
+   * it has fewer columns than all its terms: L with the rows θ λ^p diag(d) RᵀT φ_r of y, R with θ λ^p diag(d) LᵀT ψ_r of z; else they are
    * L RᵀT for y and R LᵀT for z. Reduced modes make residuals orthogonal to T, so that the part along S T is known to cancel that of
    * W y along it, and
    *
@@ -45,6 +45,14 @@ namespace Squeal
      * The arguments must outlive it.
      */
     ProjectedResiduals(const CoupledSystem &system, const UpdatedInverse &inverse, double shift, const ParameterValues &values);
+
+    /// Errors of the bracket up to 10⁻⁷ of its size will do: products cost half as much. Of the modes of a model in whose span they nearly lie
+    /// the parts of a residual cancel by some powers of ten, so that estimates of 10⁻⁶ and more are right.
+    void use_single_precision()
+    {
+      in_single_precision = true;
+      is_prepared         = false;
+    }
 
     /// Takes over the vectors by which the basis of @p model has grown.
     void extend(const ReducedModel &model);
@@ -125,12 +133,18 @@ namespace Squeal
       bool        in_left, in_right; ///< whether left or right residuals have them
       int         n;
       int         first = 0; ///< in W
+
+      /// Those of right residuals alone come first, those of left ones alone last.
+      int place() const
+      {
+        return static_cast<int>(in_left) - static_cast<int>(in_right);
+      }
     };
 
     int number_of(const LowRankFactor &factor) const;
 
-    /// Whether W has A T of a term of low rank instead of its factors.
-    bool is_column_term(const Term &term) const;
+    /// Whether W has products of a factor with those of its terms instead of the factor.
+    bool has_columns(const LowRankFactor &factor) const;
 
     void find_blocks() const;
 
@@ -146,8 +160,10 @@ namespace Squeal
     int                                          r = 0;       ///< size of the basis
     DenseMatrix                                  pencil;      ///< TᵀST
     mutable std::vector<Block>                   blocks;
-    mutable int                                  n_columns   = 0; ///< of W
-    mutable bool                                 is_prepared = false;
+    mutable int                                  n_columns = 0, n_of_right = 0, n_of_left = 0; ///< of W: all, the first, the last
+    bool                                         in_single_precision = false;
+    mutable bool                                 is_prepared         = false;
     mutable DenseMatrix                          bracket;
+    mutable Eigen::MatrixXf                      right_bracket, left_bracket; ///< its first columns, its last rows and columns
   };
 } // namespace Squeal

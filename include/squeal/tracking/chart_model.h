@@ -13,6 +13,9 @@ namespace Squeal
   /// Modes are followed up to (1 + this) times the end of the band, so that none is lost that enters or leaves it.
   inline constexpr double band_margin = 0.05;
 
+  /// Tolerance of λ from which on single precision will do for its estimates [-].
+  inline constexpr double single_precision_tolerance = 1e-6;
+
   /// Where a chart is evaluated.
   struct OperatingPoint
   {
@@ -61,6 +64,22 @@ namespace Squeal
     void leave_out_faster_decay(const double rate)
     {
       largest_decay = rate;
+    }
+
+    /**
+     * For systems that differ from S in more than friction and damping: of a mode in a dense cluster that they change, the parts of its
+     * estimate may cancel each other. Errors are then no less than κ/2 √(ε_R ε_L), with the energies of the right and left residuals, which is
+     * what they would be without cancellation.
+     */
+    void estimate_without_cancellation()
+    {
+      allows_cancellation = false;
+    }
+
+    /// For estimates that need not be right below single_precision_tolerance.
+    void estimate_in_single_precision()
+    {
+      residuals.use_single_precision();
     }
 
     /// Vectors in the basis.
@@ -126,6 +145,7 @@ namespace Squeal
     const UpdatedInverse &inverse;
     const MultiVector    *real_modes = nullptr; ///< null: of a member of a family
     double                shift, largest_circular_frequency, largest_decay = std::numeric_limits<double>::infinity();
+    bool                  allows_cancellation = true;
     ReducedModel          model;
     ProjectedResiduals    residuals;
   };
