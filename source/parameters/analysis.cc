@@ -29,10 +29,10 @@ namespace Squeal
                      {0.});
     declarations.add(
       "Maximum rate", maximum_rate, "1/s",
-      "Largest |Re lambda| of the modes of the band. Modes that decay faster are not listed; modes that grow faster are. "
-      "Counts by the argument principle, of Sweep/Count modes at and of a stability run on a system file, are those of the "
-      "rectangle up to this rate; the stability run fails if it has found another number of modes there. 0: all modes with "
-      "|lambda| up to 1.005 times the circular frequency of the end of the band are listed, and counts use 0.1 times that frequency.",
+      "Largest |Re lambda| of the modes in the band. Modes that decay faster are not listed; modes that grow faster are. The argument "
+      "principle (Sweep/Count modes at; stability run on a system file, on one process) counts the modes up to this rate; the stability "
+      "run fails if the count differs from the number of modes found. 0: all modes with |lambda| up to 1.005 times the circular "
+      "frequency of the band end are listed, and counts use 0.1 times that frequency.",
       {0.});
   }
 

@@ -188,6 +188,7 @@ namespace Squeal
     accuracy.declare(declarations);
     designs.declare(declarations);
     search.declare(declarations);
+    robustness.declare(declarations);
     solvers.declare(declarations);
     output.declare(declarations);
   }
@@ -341,7 +342,7 @@ namespace Squeal
       {
         if (study->run_of_system == nullptr)
           throw ParameterError(text("Study = ", study->name, " needs a mesh"), "parameter System",
-                               "set Study = stability, reduction, sweep or sensitivity, or leave System empty");
+                               "set Study = stability, reduction, sweep, sensitivity, geometry or robustness, or leave System empty");
         if (goal != AccuracyGoal::as_given)
           throw ParameterError("Accuracy chooses a mesh, but the system comes from a file", "parameter Accuracy", "set it to as given");
         discretization.check();

@@ -7,6 +7,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <algorithm>
+#include <numeric>
 
 namespace Squeal
 {
@@ -82,17 +83,13 @@ namespace Squeal
     }
   } // namespace
 
-  std::vector<ChartPoint> evaluate(const ChartModel                                   &model,
-                                   const std::vector<OperatingPoint>                  &points,
-                                   const MPI_Comm                                      communicator,
-                                   const std::function<void(int, const ChartPoint &)> &each)
+  void evaluate(const ChartModel &model, const std::vector<OperatingPoint> &points, const MPI_Comm communicator, const KeepPoint &each)
   {
     const int n = dealii::Utilities::MPI::n_mpi_processes(communicator), me = dealii::Utilities::MPI::this_mpi_process(communicator);
     const int n_points = static_cast<int>(points.size());
     // Some for each thread, so that none waits long for the last of them
     constexpr int points_of_thread = 4;
     const int     n_at_once        = n * points_of_thread * static_cast<int>(dealii::Utilities::MPI::min(n_task_threads(), communicator));
-    std::vector<ChartPoint> result;
     model.prepare();
     for (int first = 0; first < n_points; first += n_at_once)
       {
@@ -102,12 +99,16 @@ namespace Squeal
         for (int i = 0; i < n_here; ++i)
           {
             const int owner = i % n;
-            result.push_back(n == 1 ? std::move(mine[i]) :
-                                      dealii::Utilities::MPI::broadcast(communicator, owner == me ? mine[i / n] : ChartPoint(), owner));
-            if (each)
-              each(first + i, result.back());
+            each(first + i, n == 1 ? std::move(mine[i]) :
+                                     dealii::Utilities::MPI::broadcast(communicator, owner == me ? mine[i / n] : ChartPoint(), owner));
           }
       }
+  }
+
+  std::vector<ChartPoint> evaluate(const ChartModel &model, const std::vector<OperatingPoint> &points, const MPI_Comm communicator)
+  {
+    std::vector<ChartPoint> result;
+    evaluate(model, points, communicator, [&](int, ChartPoint &&point) { result.push_back(std::move(point)); });
     return result;
   }
 
@@ -126,52 +127,60 @@ namespace Squeal
                                               const std::vector<OperatingPoint> &points,
                                               const std::vector<int>            &training,
                                               const ErrorControlledSweepOptions &options,
+                                              const KeepPoint                   &keep,
                                               const MPI_Comm                     communicator,
                                               Progress                          &progress)
   {
     if (points.empty())
       throw SolverError("there is no operating point to evaluate", "sweep", "give one at least");
-    ErrorControlledSweep result{std::vector<std::optional<ChartPoint>>(points.size()), 0., 0, ""};
+    ErrorControlledSweep result{points.size(), 0., 0, ""};
     const auto           report = [&](const double error) {
-      const auto n_finished =
-        std::count_if(result.points.begin(), result.points.end(), [](const auto &point) { return point.has_value(); });
-      progress.update(text(n_finished, " of ", points.size(), " operating points, ", model.size(), " vectors, estimated error ", error));
+      progress.update(text(points.size() - result.n_left, " of ", points.size(), " operating points, ", model.size(),
+                                     " vectors, estimated error ", error));
     };
 
-    result.n_growths    = train(model, points, training, options, communicator, report);
+    if (!training.empty())
+      result.n_growths = train(model, points, training, options, communicator, report);
+    std::vector<int> left(points.size());
+    std::iota(left.begin(), left.end(), 0);
     int    grown        = -1; // the point that the basis was grown for
     int    n_in_vain    = 0;
     double error_before = 0.;
     for (;; ++result.n_growths)
       {
-        std::vector<int>            left;
         std::vector<OperatingPoint> points_left;
-        for (std::size_t i = 0; i < points.size(); ++i)
-          if (!result.points[i])
-            {
-              left.push_back(static_cast<int>(i));
-              points_left.push_back(points[i]);
-            }
+        for (const int i : left)
+          points_left.push_back(points[i]);
         // The first point with the largest error
-        int        worst = -1;
-        ChartPoint worst_point;
-        double     worst_error = 0.;
-        evaluate(model, points_left, communicator, [&](const int k, const ChartPoint &point) {
+        std::vector<int> missed;
+        int              worst = -1;
+        ChartPoint       worst_point;
+        double           worst_error = 0.;
+        evaluate(model, points_left, communicator, [&](const int k, ChartPoint &&point) {
           const double error = model.largest_error(point);
           if (left[k] == grown)
             n_in_vain = in_vain(n_in_vain, error_before, error);
           if (error <= options.tolerance)
-            result.points[left[k]] = point;
-          else if (worst < 0 || !(error <= worst_error))
             {
-              worst       = left[k];
-              worst_point = point;
-              worst_error = error;
+              result.worst_error = std::max(result.worst_error, error);
+              --result.n_left;
+              keep(left[k], std::move(point));
+            }
+          else
+            {
+              missed.push_back(left[k]);
+              if (worst < 0 || !(error <= worst_error))
+                {
+                  worst       = left[k];
+                  worst_point = std::move(point);
+                  worst_error = error;
+                }
             }
           report(error);
         });
         if (worst < 0)
           break;
+        left               = missed;
         grown              = worst;
         error_before       = worst_error;
         result.why_stopped = n_in_vain >= max_growths_in_vain ?
@@ -180,10 +189,6 @@ namespace Squeal
         if (!result.why_stopped.empty())
           break;
       }
-
-    for (const auto &point : result.points)
-      if (point)
-        result.worst_error = std::max(result.worst_error, model.largest_error(*point));
     return result;
   }
 } // namespace Squeal

@@ -59,7 +59,8 @@ namespace
     std::set<std::string> expected() const
     {
       Paths beginnings = {"System values", "Sweep/Parameter", "Sweep/Second parameter"}; // of a system file
-      for (const char *section : {"Accuracy study/", "Designs/", "Ingredients/", "Reduction/", "Search/", "Sensitivity/", "Sweep/"})
+      for (const char *section :
+           {"Accuracy study/", "Designs/", "Ingredients/", "Reduction/", "Robustness/", "Search/", "Sensitivity/", "Sweep/"})
         if (std::find(sections.begin(), sections.end(), section) == sections.end())
           beginnings.emplace_back(section);
       if (!run.empty() && run.front().rfind("Study=", 0) == 0) // no stability study
@@ -85,13 +86,15 @@ TEST(ParameterUsage, EveryStudyIsFoundByItsNameAndUsesItsDefaults)
       Paths run = {std::string("Study=") + study->name};
       if (run.front() == "Study=geometry" || run.front() == "Study=search") // which have no default
         run.emplace_back("Designs/Variables=Geometry/Pin height = 0.03 to 0.04 in 2");
+      if (run.front() == "Study=robustness")
+        run.emplace_back("Robustness/Distributions=Pin material/Density = uniform 90 % to 110 %");
       EXPECT_EQ(parameters_of(run).study, study) << study->name;
       EXPECT_EQ(unused(run), std::set<std::string>()) << study->name; // by default
       EXPECT_NE(study->run, nullptr) << study->name;
       EXPECT_TRUE(names.insert(study->name).second) << study->name;
     }
-  EXPECT_EQ(names,
-            (std::set<std::string>{"accuracy", "geometry", "ingredients", "reduction", "search", "sensitivity", "stability", "sweep"}));
+  EXPECT_EQ(names, (std::set<std::string>{"accuracy", "geometry", "ingredients", "reduction", "robustness", "search", "sensitivity",
+                                          "stability", "sweep"}));
 }
 
 TEST(ParameterUsage, OfASystemFile)
@@ -186,7 +189,11 @@ TEST(ParameterUsage, OfEveryStudy)
     // A search has ranges in the place of a plan
     {{"Study=search", "Designs/Variables=Geometry/Pin height=0.03 to 0.04"},
      {"Designs/", "Search/", "Sweep/"},
-     {reduced, no_sweep, no_sliding, undamped, one_mu, {"Designs/Plan", "Designs/Number", "Designs/File"}}}};
+     {reduced, no_sweep, no_sliding, undamped, one_mu, {"Designs/Plan", "Designs/Number", "Designs/File"}}},
+
+    {{"Study=robustness", "Robustness/Distributions=Pin material/Density = uniform 90 % to 110 %"},
+     {"Robustness/"},
+     {reduced, no_sliding, undamped}}};
   std::set<std::string> conditional;
   for (const Usage &usage : table)
     {

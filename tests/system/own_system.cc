@@ -191,7 +191,8 @@ TEST(OwnSystem, ThresholdOfFlutter)
       const std::vector<double>   grid = {0., 0.1, 0.2, 0.3, 0.4, 0.5};
       ErrorControlledSweepOptions sweep_options;
       sweep_options.tolerance = 1e-9;
-      error_controlled_sweep(model, points(grid), {5, 0, 2}, sweep_options, MPI_COMM_WORLD, solved.progress);
+      error_controlled_sweep(
+        model, points(grid), {5, 0, 2}, sweep_options, [](int, ChartPoint &&) {}, MPI_COMM_WORLD, solved.progress);
 
       ChartOptions options;
       options.largest_circular_frequency = band;

@@ -67,10 +67,19 @@ namespace
     SymmetricModes real;
   };
 
-  ErrorControlledSweep sweep(ChartModel &model, const std::vector<OperatingPoint> &points, const ErrorControlledSweepOptions &options)
+  struct Swept : ErrorControlledSweep
+  {
+    std::vector<std::optional<ChartPoint>> points;
+  };
+
+  Swept sweep(ChartModel &model, const std::vector<OperatingPoint> &points, const ErrorControlledSweepOptions &options)
   {
     Progress progress;
-    return error_controlled_sweep(model, points, {static_cast<int>(points.size()) - 1, 0}, options, MPI_COMM_WORLD, progress);
+    Swept    result{{}, std::vector<std::optional<ChartPoint>>(points.size())};
+    static_cast<ErrorControlledSweep &>(result) = error_controlled_sweep(
+      model, points, {static_cast<int>(points.size()) - 1, 0}, options,
+      [&](const int i, ChartPoint &&point) { result.points[i] = std::move(point); }, MPI_COMM_WORLD, progress);
+    return result;
   }
 
   /// A model that is accurate everywhere, with contact damping 0.8 c_b [N s/m] at most, in proportion to the friction coefficient.

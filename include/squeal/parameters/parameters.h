@@ -9,6 +9,7 @@
 #include <squeal/parameters/contact.h>
 #include <squeal/parameters/operation.h>
 #include <squeal/parameters/reduction.h>
+#include <squeal/parameters/robustness.h>
 #include <squeal/parameters/sensitivity.h>
 #include <squeal/parameters/sliding.h>
 #include <squeal/parameters/study.h>
@@ -42,6 +43,7 @@ namespace Squeal
     AccuracyStudyParameters  accuracy;
     DesignParameters         designs;
     SearchParameters         search;
+    RobustnessParameters     robustness;
     SolverParameters         solvers;
     OutputParameters         output;
 

@@ -22,38 +22,13 @@ namespace Squeal
 
     /// Vectors beyond which small matrices are no longer small.
     constexpr int most_vectors = 900;
-
-    /// One, or zero where a part of the model is missing.
-    double presence(const double coefficient)
-    {
-      return coefficient == 0. ? 0. : 1.;
-    }
   } // namespace
 
-  std::string family_key(Parameters design)
+  std::string family_key(const Parameters &design)
   {
     if (design.needs_steady_sliding() || design.operation.rotating_disc || !design.damping.modal_ratios.empty())
       return "";
-    std::ostringstream presences;
-    for (Material *material : design.materials.each())
-      {
-        if (Orthotropy *o = material->orthotropy ? &*material->orthotropy : nullptr)
-          for (double *modulus : {&o->E2, &o->E3, &o->G12, &o->G13, &o->G23})
-            *modulus = std::round(1e12 * *modulus / material->young_modulus); // without rounding errors
-        material->young_modulus = material->density = 1.;
-        for (double *damping : {&material->rayleigh_alpha, &material->rayleigh_beta})
-          {
-            presences << presence(*damping) << ' ';
-            *damping = 0.;
-          }
-      }
-    for (double *value : design.materials.mount_values())
-      *value = presence(*value);
-    design.operation.load_per_side  = presence(design.operation.load_per_side);
-    design.operation.rotation_speed = 1.;
-    std::ostringstream stream;
-    design.print(stream, false);
-    return stream.str() + presences.str();
+    return text_without_coefficients(design);
   }
 
   DesignFamily::DesignFamily(const std::vector<Parameters> &designs, Run &run)
@@ -66,23 +41,21 @@ namespace Squeal
     std::vector<ParameterValues> values;
     for (const Parameters &design : designs)
       values.push_back(body_values(*scene.model, design.materials));
-    terms = term_family(bodies.terms, values);
 
     // Which kinds of damping of the contact there are, is the same for all
-    const SweepPlan       plan          = sweep_plan(scene, run);
-    const OperatingPoint &most          = most_damped(plan.regimes.front());
-    Linearisation         linearisation = linearise(scene, {}, plan.lines[most.line].at(most.friction_coefficient));
-    const CoupledSystem   system        = coupled_family(terms, linearisation.contact, linearisation.damping);
-    linearisation.coupled               = undamped(system);
-    middle                              = frictionless_modes(linearisation, run, band_margin);
-    middle.linearisation.coupled        = system;
+    const SweepPlan       plan = sweep_plan(scene, run);
+    const OperatingPoint &most = most_damped(plan.regimes.front());
+    SystemFamily          family =
+      system_family(bodies, values, linearise(scene, {}, plan.lines[most.line].at(most.friction_coefficient)), band_margin, run);
+    terms  = std::move(family.terms);
+    middle = std::move(family.middle);
 
     run.progress.begin("Reduced model");
-    const CoupledSystem &family = middle.linearisation.coupled;
-    model                       = std::make_unique<ReducedModel>(starting_model(family, *middle.inverse, *middle.real.vectors, true));
-    residuals                   = std::make_unique<ProjectedResiduals>(family, *middle.inverse, middle.shift, family.values);
+    const CoupledSystem &system = middle.linearisation.coupled;
+    model                       = std::make_unique<ReducedModel>(starting_model(system, *middle.inverse, *middle.real.vectors, true));
+    residuals                   = std::make_unique<ProjectedResiduals>(system, *middle.inverse, middle.shift, system.values);
     residuals->extend(*model);
-    run.progress.finish(text(model->size(), " vectors to start from, ", family.terms.size(), " terms"));
+    run.progress.finish(text(model->size(), " vectors to start from, ", system.terms.size(), " terms"));
   }
 
   std::unique_ptr<ChartModel> DesignFamily::restricted(const SystemMember &member, const DenseMatrix &Z) const

@@ -1,6 +1,7 @@
 #include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/studies/designs/design_work.h>
+#include <squeal/studies/robustness/robustness.h>
 
 #include <deal.II/base/utilities.h>
 
@@ -190,6 +191,19 @@ namespace Squeal
     });
   }
 
+  /// Of a system file: its modes at lists of values of its parameters, by one reduced model.
+  static void run_designs_of_system(Run &run)
+  {
+    SystemFile       file = read_system(run);
+    const SamplePlan designs =
+      listed_samples(design_plan(run.parameters), [&](const std::string &name) { return value_in(file, name, run); });
+    const auto systems = sampled_file(std::move(file), designs, run);
+    const auto found   = solve_samples(systems, designs.n(), run.parameters.sweep.tolerance, run);
+    run.write_table("samples", sample_table(designs, found));
+    run.store_table("sample_modes", cloud_table(designs, found));
+    run.finish();
+  }
+
   extern const Study design_study = [] {
     const auto of_samples = [](const Parameters &p) {
       return unless(p.designs.is_sampled(), "only a Latin hypercube and a Sobol sequence are samples");
@@ -200,7 +214,8 @@ namespace Squeal
        {"Designs/Variables", [](const Parameters &p) { return unless(p.designs.choice != DesignChoice::file, "Designs/Plan = file"); }},
        {"Designs/Number of designs", of_samples},
        {"Designs/Seed", of_samples}});
-    study.check = [](const Parameters &p) { check_designs(p, design_plan(p)); };
+    study.check         = [](const Parameters &p) { check_designs(p, design_plan(p)); };
+    study.run_of_system = run_designs_of_system;
     return study;
   }();
 } // namespace Squeal

@@ -264,9 +264,9 @@ namespace Squeal
                            [](const Parameters &) { return "designs go from Sweep/First to Sweep/Last friction coefficient"; }});
     study.rules.push_back({"Operation/Rotation speed", no_sliding_speed});
     study.rules.push_back({"Complex modes/", [](const Parameters &) { return "designs are solved as reduced models"; }});
-    for (const char *path :
-         {"Sweep/Compare dissipation", "Sweep/Mode shapes at", "Sweep/Complex plane at", "Sweep/Count modes at", "Sweep/Map parameter",
-          "Sweep/First map value", "Sweep/Last map value", "Sweep/Number of map values", "Sweep/Map friction coefficients"})
+    for (const char *path : {"Sweep/Parameter", "Sweep/Second parameter", "Sweep/Compare dissipation", "Sweep/Mode shapes at",
+                             "Sweep/Complex plane at", "Sweep/Count modes at", "Sweep/Map parameter", "Sweep/First map value",
+                             "Sweep/Last map value", "Sweep/Number of map values", "Sweep/Map friction coefficients"})
       study.rules.push_back({path, [](const Parameters &) { return "designs have no maps, planes and mode shapes; Study = sweep has"; }});
     study.rules.push_back(
       {"Output/", [](const Parameters &) { return "the study writes no mode shapes; parameter files of its designs do"; }});

@@ -89,8 +89,8 @@ namespace Squeal
     /// Of a system file.
     bool is_used_with_system(const std::string &path, const Parameters &parameters)
     {
-      for (const char *used :
-           {"System", "System values", "Study", "Band/", "Real modes/", "Complex modes/", "Linear algebra/", "Output/Write system"})
+      for (const char *used : {"System", "System values", "Study", "Band/", "Real modes/", "Complex modes/", "Linear algebra/",
+                               "Output/Write system", "Designs/", "Robustness/"})
         if (concerns(used, path))
           return true;
       for (const char *of_study :

@@ -1,5 +1,7 @@
 #include <squeal/base/conventions.h>
+#include <squeal/base/exceptions.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
+#include <squeal/modes/contour_count.h>
 #include <squeal/studies/sweep/sweep_charts.h>
 #include <squeal/tracking/mode_links.h>
 
@@ -31,6 +33,14 @@ namespace Squeal
               result.push_back(numbers[place]);
         }
       return result;
+    }
+
+    /// Before anything is computed.
+    void check_countable(const CoupledSystem &system, const Run &run)
+    {
+      if (run.parameters.study->has("Sweep/Count modes at") && !run.parameters.sweep.counts.empty() && !is_countable(system))
+        throw ParameterError("modes of this system can only be counted on one process", "parameter Sweep/Count modes at",
+                             "run on one process, or leave it empty");
     }
 
     /// The modes of a point in the band, at full order, and their products by the reduced model.
@@ -83,6 +93,12 @@ namespace Squeal
     , reduced(std::move(reduced))
   {}
 
+  SweepModel::SweepModel(const SweepPlan &plan, const ContactRegime &regime, Run &run, FrictionlessModes frictionless)
+    : SweepModel(plan, regime, run, std::move(frictionless), nullptr)
+  {
+    start();
+  }
+
   SweepModel::SweepModel(const SweepPlan &plan, const ContactRegime &regime, Run &run)
     : plan(plan)
     , regime(regime)
@@ -92,7 +108,8 @@ namespace Squeal
     if (plan.file)
       {
         const CoupledSystem whole = imported_system(*plan.file, plan.values, plan.axis.name, largest_circular_frequency);
-        frictionless              = imported_modes(undamped(whole), whole, run, band_margin);
+        check_countable(whole, run);
+        frictionless = imported_modes(undamped(whole), whole, run, band_margin);
         start();
         return;
       }
@@ -100,6 +117,7 @@ namespace Squeal
     const OperationParameters operation = plan.lines[most.line].at(most.friction_coefficient);
     const Linearisation       damped    = linearise(*plan.scene, plan.sliding_state(operation), operation);
 
+    check_countable(damped.coupled, run);
     // Neither real modes nor the factor know of damping
     Linearisation bare         = damped;
     bare.coupled               = undamped(damped.coupled);
@@ -114,8 +132,8 @@ namespace Squeal
     run.progress.begin("Reduced model");
     reduced = std::make_unique<ChartModel>(frictionless.linearisation.coupled, *frictionless.inverse, frictionless.shift,
                                            *frictionless.real.vectors, largest_circular_frequency);
-    if (plan.file)
-      reduced->leave_out_faster_decay(largest_rate_of_band * largest_circular_frequency);
+    if (const auto &discretization = run.parameters.discretization; plan.file || discretization.maximum_rate > 0.)
+      reduced->leave_out_faster_decay(discretization.band().rate);
     run.progress.finish(text(reduced->size(), " vectors to start from"));
   }
 
@@ -125,8 +143,8 @@ namespace Squeal
     for (const double mu : friction_coefficients)
       if (known.count({line, mu}) == 0)
         missing.push_back(plan.point(line, mu, regime.closed));
-    Squeal::evaluate(*reduced, missing, run.communicator, [&](const int i, const ChartPoint &found) {
-      known.emplace(std::make_pair(line, missing[i].friction_coefficient), found);
+    Squeal::evaluate(*reduced, missing, run.communicator, [&](const int i, ChartPoint &&found) {
+      known.emplace(std::make_pair(line, missing[i].friction_coefficient), std::move(found));
     });
     std::vector<ChartPoint> result;
     for (const double mu : friction_coefficients)
@@ -212,20 +230,22 @@ namespace Squeal
     options.tolerance     = run.parameters.sweep.tolerance;
     options.maximum_basis = static_cast<int>(run.parameters.sweep.maximum_basis);
     run.progress.begin("Sweep");
-    const ErrorControlledSweep sweep =
-      error_controlled_sweep(*model.reduced, points, training(model.regime), options, run.communicator, run.progress);
-    for (std::size_t i = 0; i < points.size(); ++i)
-      if (sweep.points[i])
-        model.known.emplace(std::make_pair(points[i].line, points[i].friction_coefficient), *sweep.points[i]);
+    int                        last  = -1;
+    const ErrorControlledSweep sweep = error_controlled_sweep(
+      *model.reduced, points, training(model.regime), options,
+      [&](const int i, ChartPoint &&point) {
+        last = std::max(last, i);
+        model.known.emplace(std::make_pair(points[i].line, points[i].friction_coefficient), std::move(point));
+      },
+      run.communicator, run.progress);
     run.progress.finish(text(model.known.size(), " of ", points.size(), " operating points, ", model.reduced->size(),
                              " vectors, estimated error ", sweep.worst_error));
     run.count("basis vectors", model.reduced->size());
     run.measure("largest estimated error of lambda [-]", sweep.worst_error);
     // Of the last value: friction makes eigenvalues ill-conditioned. The basis leaves errors up to the tolerance, and rounding may add to them
-    const auto last = std::find_if(sweep.points.rbegin(), sweep.points.rend(), [](const auto &point) { return point.has_value(); });
-    if (last != sweep.points.rend())
+    if (last >= 0)
       {
-        const auto [modes, products] = modes_in_band(model, **last);
+        const auto [modes, products] = modes_in_band(model, model.known.at({points[last].line, points[last].friction_coefficient}));
         const CoupledSystem &coupled = model.frictionless.linearisation.coupled;
         record_conditioning(coupled, modes,
                             estimate_conditioning(coupled, *model.frictionless.inverse, model.frictionless.shift, modes, products),

@@ -92,6 +92,8 @@ namespace Squeal
         plan.sliding = std::make_unique<SlidingModel>(sliding_model(scene, run.parameters));
         run.progress.finish(text(2 * scene.interface.size(), " attachment modes"));
       }
+    if (lines.empty())
+      return plan;
     run.progress.begin("States of contact");
     for (std::size_t l = 0; l < plan.lines.size(); ++l)
       for (const double mu : plan.lines[l].friction_coefficients)

@@ -122,21 +122,16 @@ namespace Squeal
     /// Counts the modes at the friction coefficients that the parameters choose, where they belong to the contact set.
     void append_counts(SweepModel &model, std::vector<CountAt> &counts)
     {
-      Run         &run       = model.run;
-      const double omega_max = model.largest_circular_frequency;
+      Run &run = model.run;
       for (const double mu : run.parameters.sweep.counts)
         {
           if (model.plan.closed_at(mu) != model.regime.closed)
             continue;
           run.progress.begin("Argument principle");
-          const CoupledSystem system  = model.linearisation_at(mu).coupled;
-          const auto          options = contour_of_band(system, model.frictionless, omega_max, run.parameters.solvers);
-          const ContourCount  count   = count_by_contour(system, {mu}, options, run.progress).front();
-          const ChartPoint    point   = modes_at(model, mu);
-          const int           n_found = std::count_if(point.lambda.begin(), point.lambda.end(), [&](const std::complex<double> &lambda) {
-            return lambda.imag() >= options.lowest_frequency && lambda.imag() <= omega_max &&
-                   std::abs(lambda.real()) <= options.largest_growth;
-          });
+          const CoupledSystem system = model.linearisation_at(mu).coupled;
+          const auto options = contour_of_band(system, model.frictionless, run.parameters.discretization.band(), run.parameters.solvers);
+          const ContourCount count   = count_by_contour(system, {mu}, options, run.progress).front();
+          const int          n_found = n_in_rectangle(modes_at(model, mu).lambda, options);
           counts.push_back({mu, n_found, count});
           run.progress.finish(text(count.n_modes, " modes counted, ", n_found, " found at ", model.plan.axis.name, " = ", mu, ", ",
                                    count.n_points, " points"));

@@ -3,6 +3,7 @@
 #include <squeal/estimates/body_frames.h>
 #include <squeal/parameters/design_plan.h>
 #include <squeal/studies/designs/design_results.h>
+#include <squeal/studies/steps/system_family.h>
 #include <squeal/studies/sweep/sweep_charts.h>
 
 namespace Squeal
@@ -43,7 +44,7 @@ namespace Squeal
 
   /// What must agree for designs to share a mesh and its matrices: their parameters but for those that are coefficients of terms. Empty
   /// where a design cannot share them.
-  std::string family_key(Parameters design);
+  std::string family_key(const Parameters &design);
 
   /**
    * A reduced model that serves several designs on one mesh, which differ in moduli, densities, Rayleigh's coefficients, stiffnesses of

@@ -83,6 +83,9 @@ namespace Squeal
     /// Linearises where contact damps most: the basis starts from the responses to that damping. All arguments must outlive the model.
     SweepModel(const SweepPlan &plan, const ContactRegime &regime, Run &run);
 
+    /// Starts a reduced model from the modes without friction and damping.
+    SweepModel(const SweepPlan &plan, const ContactRegime &regime, Run &run, FrictionlessModes frictionless);
+
     /// From what is found already; @p reduced is a model of the system that @p frictionless has.
     SweepModel(const SweepPlan            &plan,
                const ContactRegime        &regime,

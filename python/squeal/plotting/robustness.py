@@ -1,0 +1,60 @@
+"""Clouds of modes over uncertain parameters, the distribution of the largest divergence rate, and the parameters that decide it."""
+
+import math
+
+from squeal.plotting import style
+
+RATE = "divergence rate [%]"
+COLOURS = {"stable": style.GREY, "neutral": style.GREY, "undecided": style.ORANGE, "unstable": style.VERMILLION}
+N_BINS, MOST_SCATTERS = 30, 4
+
+
+def figures(results):
+    """Of a study of uncertain parameters."""
+    if not results.has("sample_modes"):
+        return {}
+    modes, samples = results.table("sample_modes"), results.table("samples")
+    indices = results.table("sobol_indices").rows if results.has("sobol_indices") else []
+    indices = [row for row in indices if row["of"] == "largest divergence rate"]
+    parameters = samples.columns[1:samples.columns.index("unstable modes [-]")]
+    if indices:
+        parameters = [row["uncertain parameter"] for row in sorted(indices, key=lambda row: -float(row["total index [-]"]))]
+    parameters = parameters[:MOST_SCATTERS]
+
+    picture = style.Picture("Uncertain parameters: modes of all samples", 2 + bool(indices) + len(parameters), 3)
+    panels = iter(picture.panels)
+    cloud(next(panels), modes)
+    rates = [0. if math.isnan(rate) else rate for rate in samples.numbers(RATE)]
+    panel = next(panels)
+    style.prepare(panel, "", "largest divergence rate of a sample [%]", "samples")
+    panel.hist(rates, bins=N_BINS, color=style.BLUE)
+    if indices:
+        bars(next(panels), indices)
+    for name in parameters:
+        panel = next(panels)
+        style.prepare(panel, "", name, "largest divergence rate [%]")
+        panel.plot(samples.numbers(name), rates, linestyle="", marker=".", markersize=3, color=style.BLUE)
+    return {"robustness": picture.add_key()}
+
+
+def cloud(panel, modes):
+    style.prepare(panel, "", style.FREQUENCY, style.DIVERGENCE)
+    style.zero_line(panel)
+    frequencies, rates, verdicts = modes.numbers("frequency [Hz]"), modes.numbers(RATE), modes.texts("verdict")
+    for verdict in ("stable", "neutral", "undecided", "unstable"):
+        chosen = [number for number, said in enumerate(verdicts) if said == verdict]
+        if chosen:
+            panel.plot([frequencies[number] for number in chosen], [rates[number] for number in chosen], linestyle="", marker=".", markersize=3,
+                       color=COLOURS[verdict], label=verdict, rasterized=True)
+
+
+def bars(panel, indices):
+    """First-order and total indices with their intervals."""
+    style.prepare(panel, "", "Sobol' index of the largest divergence rate [-]", "")
+    for offset, kind, colour in ((-0.2, "first-order index", style.SKY), (0.2, "total index", style.BLUE)):
+        values = [float(row[f"{kind} [-]"]) for row in indices]
+        lower = [max(0., value - float(row[f"lower end of the {kind} [-]"])) for value, row in zip(values, indices)]
+        upper = [max(0., float(row[f"upper end of the {kind} [-]"]) - value) for value, row in zip(values, indices)]
+        panel.barh([number + offset for number in range(len(indices))], values, height=0.36, xerr=(lower, upper), color=colour, label=kind)
+    panel.set_yticks(range(len(indices)), [row["uncertain parameter"].replace("/", "\n", 1) for row in indices], fontsize=style.SMALL)
+    panel.invert_yaxis()

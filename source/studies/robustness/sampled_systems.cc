@@ -1,0 +1,231 @@
+#include <squeal/base/conventions.h>
+#include <squeal/base/exceptions.h>
+#include <squeal/parameters/design_plan.h>
+#include <squeal/studies/robustness/robustness.h>
+#include <squeal/studies/steps/system_family.h>
+
+#include <map>
+
+namespace Squeal
+{
+  namespace
+  {
+    /// Numbers of a material of which each pin may have its own.
+    const std::map<std::string, double Material::*> numbers_of_pins = {{"Pin material/Young modulus", &Material::young_modulus},
+                                                                       {"Pin material/Density", &Material::density},
+                                                                       {"Pin material/Rayleigh alpha", &Material::rayleigh_alpha},
+                                                                       {"Pin material/Rayleigh beta", &Material::rayleigh_beta}};
+
+    constexpr const char *where_uncertain = "parameter Robustness/Distributions";
+
+    /// The scene with a material of its own for each pin, which are alike.
+    Parameters with_single_pins(Parameters parameters, const std::vector<UncertainNumber> &numbers)
+    {
+      std::vector<VolumeMaterial> &volumes = parameters.materials.volumes;
+      for (const UncertainNumber &number : numbers)
+        if (!number.pin.empty() && !parameters.materials.has_own(number.pin))
+          volumes.push_back({parameters.materials.of(number.pin), number.pin});
+      return parameters;
+    }
+
+    /// Throws ParameterError if a parameter changes more than coefficients of terms.
+    void check_coefficients(const Parameters &parameters, const SamplePlan &samples)
+    {
+      const std::string scene = text_without_coefficients(parameters);
+      for (Eigen::Index j = 0; j < samples.values.cols(); ++j)
+        {
+          const UncertainNumber &number = samples.numbers[static_cast<std::size_t>(j)];
+          if (number.pin.empty() &&
+              text_without_coefficients(with_design(parameters, {number.parameter}, {exact_text(samples.values(0, j))})) != scene)
+            throw ParameterError(in_quotes(number.parameter) +
+                                   " cannot be uncertain: it changes matrices and not only coefficients, or its term is zero in the model",
+                                 where_uncertain,
+                                 "choose moduli, densities, Rayleigh coefficients, mounts, friction coefficient, load, speed or slope with "
+                                 "nonzero nominal values; use Study = geometry for other parameters");
+        }
+    }
+  } // namespace
+
+  SamplePlan sample_plan(const RobustnessParameters                       &parameters,
+                         const std::function<double(const std::string &)> &current,
+                         const std::vector<std::string>                   &pins)
+  {
+    SamplePlan result;
+    for (const UncertainParameter &uncertain : parameters.uncertain_parameters())
+      {
+        Distribution distribution = uncertain.distribution;
+        const double value        = current(uncertain.name);
+        if (uncertain.is_relative)
+          {
+            if (!(value > 0.))
+              throw ParameterError(in_quotes(uncertain.name) + " is " + exact_text(value) +
+                                     "; percentages require a positive nominal value",
+                                   where_uncertain, "give numbers without %");
+            for (double &x : distribution.numbers)
+              x *= value / 100.;
+          }
+        if (!uncertain.for_each_pin)
+          {
+            result.numbers.push_back({uncertain.name, uncertain.name, "", distribution});
+            continue;
+          }
+        if (numbers_of_pins.count(uncertain.name) == 0)
+          throw ParameterError(in_quotes(uncertain.name) + " cannot differ from pin to pin", where_uncertain,
+                               "remove `for each pin`; it applies to Young modulus, Density, Rayleigh alpha and Rayleigh beta of Pin "
+                               "material");
+        if (pins.empty())
+          throw ParameterError("there are no pins with the material Pin material", where_uncertain, "leave out `for each pin`");
+        for (const std::string &pin : pins)
+          result.numbers.push_back({uncertain.name + " of " + pin, uncertain.name, pin, distribution});
+      }
+
+    const auto  d            = static_cast<int>(result.numbers.size());
+    DenseMatrix correlations = DenseMatrix::Identity(d, d);
+    const auto  place        = [&](const std::string &name) {
+      return std::find_if(result.numbers.begin(), result.numbers.end(), [&](const UncertainNumber &x) { return x.name == name; }) -
+             result.numbers.begin();
+    };
+    const auto given = parameters.parsed_correlations();
+    for (const Correlation &c : given)
+      correlations(place(c.first), place(c.second)) = correlations(place(c.second), place(c.first)) = c.value;
+    std::vector<Distribution> distributions;
+    for (const UncertainNumber &number : result.numbers)
+      distributions.push_back(number.distribution);
+
+    result.has_indices = parameters.has_indices && given.empty();
+    const int n = static_cast<int>(parameters.n_samples), half = (n + 1) / 2;
+    result.values        = result.has_indices ? saltelli_samples(distributions, half, parameters.seed) :
+                                                independent_samples(distributions, correlations, n, parameters.seed);
+    result.n_independent = result.has_indices ? 2 * half : n;
+    return result;
+  }
+
+  SamplePlan listed_samples(const DesignPlan &plan, const std::function<double(const std::string &)> &current)
+  {
+    SamplePlan result;
+    result.values        = DenseMatrix(plan.designs.size(), plan.names.size());
+    result.n_independent = result.n();
+    result.has_indices   = false;
+    for (std::size_t j = 0; j < plan.names.size(); ++j)
+      {
+        const std::string &name = plan.names[j];
+        result.numbers.push_back({name, name, "", {}});
+        for (std::size_t i = 0; i < plan.designs.size(); ++i)
+          {
+            const std::string &given = plan.designs[i][j];
+            const auto         value = given.empty() ? std::optional(current(name)) : parse_number(given);
+            if (!value)
+              throw ParameterError(in_quotes(given) + " for " + in_quotes(name) + " is not a finite number",
+                                   plan.where.empty() ? plan.where_names : plan.where[i], "give a number");
+            result.values(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = *value;
+          }
+      }
+    return result;
+  }
+
+  double value_in(const SystemFile &file, const std::string &name, const Run &run)
+  {
+    std::map<std::string, double> given     = run.parameters.system.values;
+    const FileParameter          *parameter = file.find(name);
+    given.emplace(name, parameter != nullptr ? parameter->value : 0.);
+    return file.values(given).at(name).front(); // refuses what is no parameter
+  }
+
+  Parameters with_sample(const Parameters &parameters, const SamplePlan &samples, const int sample)
+  {
+    std::vector<std::string> names, values;
+    for (std::size_t j = 0; j < samples.numbers.size(); ++j)
+      if (samples.numbers[j].pin.empty())
+        {
+          names.push_back(samples.numbers[j].parameter);
+          values.push_back(exact_text(samples.values(sample, static_cast<Eigen::Index>(j))));
+        }
+    Parameters result = with_single_pins(with_design(parameters, names, values), samples.numbers);
+    for (std::size_t j = 0; j < samples.numbers.size(); ++j)
+      for (VolumeMaterial &own : result.materials.volumes)
+        if (own.volume == samples.numbers[j].pin)
+          own.*numbers_of_pins.at(samples.numbers[j].parameter) = samples.values(sample, static_cast<Eigen::Index>(j));
+    result.materials.check();
+    result.operation.check();
+    return result;
+  }
+
+  SampledSystems sampled_scene(const Scene &scene, const BodyTerms &bodies, const SamplePlan &samples, Run &run)
+  {
+    const Parameters &parameters = run.parameters;
+    check_coefficients(parameters, samples);
+
+    run.progress.begin("Samples");
+    SampledSystems                   result{sweep_plan(scene, std::vector<SweepLine>(), run), {}};
+    std::vector<ParameterValues>     members;
+    std::vector<OperationParameters> operations;
+    for (int s = 0; s < samples.n(); ++s)
+      {
+        const Parameters sample = with_sample(parameters, samples, s);
+        members.push_back(body_values(*scene.model, sample.materials));
+        if (parameters.operation.rotating_disc)
+          members.back()[BodyParameter::angular_velocity] = {sample.operation.angular_velocity()};
+        operations.push_back(sample.operation);
+      }
+    const bool bodies_vary = std::any_of(members.begin(), members.end(), [&](const auto &values) { return values != members.front(); });
+    if (bodies_vary && (parameters.needs_steady_sliding() || !parameters.damping.modal_ratios.empty()))
+      throw ParameterError("steady sliding and modal damping require fixed materials and mounts", where_uncertain,
+                           "vary only friction coefficient, load, speed and slope; or set Steady sliding/Contact state = equal load and "
+                           "leave Damping/Modal damping ratio empty");
+    std::vector<ContactRegime> &regimes = result.plan.regimes;
+    std::vector<int>            most; // sample of each regime at which the contact damps most
+    for (int s = 0; s < samples.n(); ++s)
+      {
+        const StateOfContact state =
+          state_of_contact(*scene.model, scene.interface, result.plan.sliding_state(operations[s]), operations[s]);
+        auto regime =
+          std::find_if(regimes.begin(), regimes.end(), [&](const ContactRegime &other) { return other.closed == state.closed; });
+        if (regime == regimes.end())
+          regime = regimes.insert(regime, {regimes.size() + 1, state.closed, {}});
+        regime->points.push_back({operations[s].friction_coefficient, selected(state.damping, state.closed).values(), s});
+      }
+    run.progress.finish(text(samples.n(), " of ", samples.numbers.size(), " uncertain numbers, ", regimes.size(),
+                             regimes.size() == 1 ? " contact set" : " contact sets"));
+
+    for (ContactRegime &regime : regimes)
+      {
+        std::vector<ParameterValues> here;
+        for (const OperatingPoint &point : regime.points)
+          here.push_back(members[point.line]);
+        const OperationParameters &operation     = operations[most_damped(regime).line];
+        const Linearisation        linearisation = linearise(scene, result.plan.sliding_state(operation), operation);
+        SystemFamily               family        = system_family(bodies, here, linearisation, band_margin, run);
+        add_modal_damping(family.middle, parameters);
+        for (std::size_t i = 0; i < here.size(); ++i)
+          regime.points[i].values.insert(family.terms.members[i].begin(), family.terms.members[i].end());
+        result.middles.push_back(std::move(family.middle));
+      }
+    return result;
+  }
+
+  SampledSystems sampled_file(SystemFile file, const SamplePlan &samples, Run &run)
+  {
+    const std::string varied    = file.default_varied();
+    const auto        values_at = [&](const Eigen::RowVectorXd &numbers) {
+      std::map<std::string, double> values = run.parameters.system.values;
+      for (std::size_t j = 0; j < samples.numbers.size(); ++j)
+        values[samples.numbers[j].parameter] = numbers[static_cast<Eigen::Index>(j)];
+      return file.values(values);
+    };
+    SampledSystems result;
+    result.plan.scene  = nullptr;
+    result.plan.values = values_at(samples.values.colwise().mean());
+    ContactRegime all{1, {}, {}};
+    for (int s = 0; s < samples.n(); ++s)
+      {
+        const ParameterValues values = values_at(samples.values.row(s));
+        all.points.push_back({values.at(varied).front(), values, s});
+      }
+    result.plan.regimes.push_back(std::move(all));
+    const CoupledSystem whole =
+      imported_system(file, result.plan.values, varied, circular_frequency(run.parameters.discretization.maximum_frequency));
+    result.plan.file = std::move(file);
+    result.middles.push_back(imported_modes(undamped(whole), whole, run, band_margin));
+    return result;
+  }
+} // namespace Squeal

@@ -1,0 +1,98 @@
+"""Samples of uncertain parameters: against closed forms, and against runs at full order."""
+
+import math
+import unittest
+
+from program import ProgramTest, read_table
+import test_systems  # its classes of tests stay there
+from test_systems import FLUTTER, flutter_terms
+
+BOX = ("Operation/Friction coefficient = uniform 0.1 to 0.6; Pin material/Young modulus = normal 100 %, 5 % for each pin; "
+       "Disc material/Young modulus = uniform 95 % to 105 %; Mounts/Elastic mounts[2] = lognormal 7.8e10, 1e10")
+
+
+class OfSystem(test_systems.SystemTest):
+    """mu kappa > c is unstable, with mu uniform in (0, 1) and kappa in (0.5, 2)."""
+
+    def setUp(self):
+        self.write_system({"mu": (0.6, 0., 1.), "kappa": (1., 0.5, 2.)}, flutter_terms())
+
+    def solve(self, *overrides):
+        return self.study("robustness", "Robustness/Distributions=mu = uniform 0 to 1; kappa = uniform 0.5 to 2", *overrides)
+
+    def test_probability_is_the_integral(self):
+        results = self.solve("Robustness/Number of samples=1000", "Robustness/Frequency bands=0, 1, 2")
+        c = test_systems.Flutter.MU_C
+        exact = (2. - c - c * math.log(2. / c)) / 1.5
+        bands = self.rows(results, "probabilities")
+        self.assertLess(bands[0]["lower end of confidence [%]"], 100. * exact)
+        self.assertGreater(bands[0]["upper end of confidence [%]"], 100. * exact)
+        self.assertEqual([(row["from [Hz]"], row["to [Hz]"]) for row in bands], [(0., 3.), (0., 1.), (1., 2.)])
+        samples = self.rows(results, "samples")
+        self.assertEqual(len(samples), 500 * 4)
+        for row in samples:
+            self.assertEqual(row["unstable modes [-]"], 1. if row["mu"] * row["kappa"] > c else 0.)
+            k11, k22, k12, k_c = FLUTTER
+            discriminant = ((k11 - k22) / 2.) ** 2 + k12 * (k12 + row["mu"] * row["kappa"] * k_c)
+            if discriminant < 0.:
+                growth = complex(-(k11 + k22) / 2., math.sqrt(-discriminant)) ** 0.5
+                self.assertAlmostEqual(row["growth rate [1/s]"], abs(growth.real), delta=1e-9)
+        worst = max(samples, key=lambda row: row["divergence rate [%]"] or 0.)
+        self.assertTrue((results / "worst" / f"{int(worst['sample [-]'])}.prm").exists())
+        indices = [row for row in self.rows(results, "sobol_indices") if row["of"] == "largest divergence rate"]
+        self.assertEqual([row["uncertain parameter"] for row in indices], ["mu", "kappa"])
+        self.assertTrue(all(row["total index [-]"] > row["first-order index [-]"] - 0.1 for row in indices))
+
+    def test_lists_of_values(self):
+        results = self.study("geometry", "Designs/Variables=mu = 0.2, 0.5, 0.8; kappa = 0.5 to 2 in 4", "Band/Maximum rate=10")
+        samples = self.rows(results, "samples")
+        self.assertEqual([(row["mu"], row["kappa"]) for row in samples], [(mu, kappa) for mu in (0.2, 0.5, 0.8) for kappa in (0.5, 1., 1.5, 2.)])
+        for row in samples:
+            self.assertEqual(row["unstable modes [-]"], 1. if row["mu"] * row["kappa"] > test_systems.Flutter.MU_C else 0.)
+        self.assertEqual(len(self.rows(results, "sample_modes")), 24)
+        for override, words in (("Variables=nu = 0.2, 0.5", "nu"), ("Variables=mu = 0.2, 5", "mu"), ("Variables=mu = a, b", "mu")):
+            self.assert_message(self.call("study.prm", "--output", "refused", "--set", f"Designs/{override}"), [words])
+
+    def test_refusals(self):
+        self.write("study.prm", "set System = system\nset Study = robustness\nsubsection Robustness\n"
+                                "  set Distributions = mu = uniform 0 to 1\nend\n")
+        for override, words in (("Distributions=nu = uniform 0 to 1", "nu"), ("Distributions=mu = uniform 0 to 3", "mu"),
+                                ("Distributions=mu = uniform 0 to 1 for each pin", "for each pin"),
+                                ("Distributions=mu = exponential 1", "exponential"), ("Correlations=mu, nu = 0.3", "nu")):
+            self.assert_message(self.call("study.prm", "--output", "refused", "--set", f"Robustness/{override}"), [words])
+            self.assertFalse((self.folder / "refused").exists())
+
+
+class OfScene(ProgramTest):
+    def test_worst_samples_at_full_order(self):
+        results = self.run_scene("box", "Study=robustness", f"Robustness/Distributions={BOX}", "Robustness/Number of samples=24",
+                                 "Robustness/Worst samples=2", "Robustness/Sobol indices=false")
+        samples = read_table(results / "samples.csv")
+        self.assertEqual(len(samples), 24)
+        modes = read_table(results / "sample_modes.csv")
+        self.assertLessEqual(max(float(row["estimated error of lambda [-]"]) for row in modes), 1e-4)
+        files = sorted((results / "worst").glob("*.prm"))
+        self.assertEqual(len(files), 2)
+        for file in files:
+            full = read_table(self.run_scene(f"full_{file.stem}", file=str(file)) / "complex_modes.csv")
+            reduced = [row for row in modes if row["sample [-]"] == file.stem]
+            self.assertEqual(len(full), len(reduced))
+            for one, other in zip(full, reduced):
+                size = 2. * math.pi * float(one["frequency [Hz]"])
+                difference = math.hypot(2. * math.pi * float(other["frequency [Hz]"]) - size,
+                                        float(other["growth rate [1/s]"]) - float(one["growth rate [1/s]"]))
+                self.assertLessEqual(difference / size, 2. * float(other["estimated error of lambda [-]"]) + 1e-8)
+
+    def test_refusals(self):
+        for distributions, words in (("Pin material/Poisson ratio = uniform 0.2 to 0.3", "Poisson ratio"),
+                                     ("Geometry/Pin height = uniform 0.03 to 0.031", "Pin height"),
+                                     ("Disc material/Rayleigh alpha = uniform 0 to 1", "Rayleigh alpha"),
+                                     ("Disc material/Density = uniform 80 % to 120 % for each pin", "for each pin"),
+                                     ("Pin material/Young modulus = normal 1e9, 1e9", "Young"),
+                                     ("Mounts/Elastic mounts = uniform 1 to 2", "Elastic mounts"),
+                                     ("Pin material/Stiffness = uniform 1 to 2", "Stiffness")):
+            self.assert_refused([words], "Study=robustness", f"Robustness/Distributions={distributions}")
+
+
+if __name__ == "__main__":
+    unittest.main()
