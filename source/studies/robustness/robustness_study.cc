@@ -45,23 +45,27 @@ namespace Squeal
       if (options.tolerance >= single_precision_tolerance)
         model.reduced->estimate_in_single_precision();
       run.progress.begin("Samples");
-      std::size_t n_left = 0;
-      double      worst  = 0.;
-      std::string why_stopped;
-      const auto  n = static_cast<std::ptrdiff_t>(points.size());
-      for (std::ptrdiff_t first = 0, size = std::min<std::ptrdiff_t>(growth_of_sets * n_training, n); first < n;
-           first += size, size            = std::min(growth_of_sets * first, n - first))
+      std::size_t      n_left = 0;
+      double           worst  = 0.;
+      std::string      why_stopped;
+      std::vector<int> training(std::min<std::size_t>(n_training, points.size()));
+      std::iota(training.begin(), training.end(), 0);
+      for (std::size_t first = 0, size = growth_of_sets * n_training; first < points.size();)
         {
-                     const std::vector<OperatingPoint> set(points.begin() + first, points.begin() + first + size);
-                     std::vector<int>                  training(first == 0 ? std::min<std::ptrdiff_t>(n_training, n) : 0);
-                     std::iota(training.begin(), training.end(), 0);
-                     const ErrorControlledSweep found = error_controlled_sweep(
-                       *model.reduced, set, training, options, [&](const int i, ChartPoint &&point) { samples[set[i].line] = modes_of(model, point); },
-                       run.communicator, run.progress);
-                     n_left += found.n_left;
-                     worst = std::max(worst, found.worst_error);
-                     if (!found.why_stopped.empty())
+          size                                    = std::min(size, points.size() - first);
+          const auto                        begin = points.begin() + static_cast<std::ptrdiff_t>(first);
+          const std::vector<OperatingPoint> set(begin, begin + static_cast<std::ptrdiff_t>(size));
+          const auto                        keep = [&](const int i, ChartPoint &&point) { samples[set[i].line] = modes_of(model, point); };
+
+          const ErrorControlledSweep found =
+            error_controlled_sweep(*model.reduced, set, training, options, keep, run.communicator, run.progress);
+          n_left += found.n_left;
+          worst = std::max(worst, found.worst_error);
+          if (!found.why_stopped.empty())
             why_stopped = found.why_stopped;
+          training.clear();
+          first += size;
+          size = growth_of_sets * first;
         }
       run.progress.finish(
         text(points.size() - n_left, " of ", points.size(), " samples, ", model.reduced->size(), " vectors, estimated error ", worst));

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <numeric>
 
@@ -82,65 +81,70 @@ namespace Squeal
       int                 usual_number = 0;          ///< of them in a sample
       int                 n_unusual    = 0;          ///< samples with another number: modes have exchanged their identity
       Estimate            grows{};                   ///< probability that one of the name does
-
-      double mean(const std::vector<double> &x) const
-      {
-        return std::accumulate(x.begin(), x.end(), 0.) / static_cast<double>(x.size());
-      }
-
-      double deviation(const std::vector<double> &x) const
-      {
-        double sum = 0.;
-        for (const double value : x)
-          sum += std::pow(value - mean(x), 2);
-        return std::sqrt(sum / static_cast<double>(x.size()));
-      }
     };
+
+    double mean(const std::vector<double> &x)
+    {
+      return std::accumulate(x.begin(), x.end(), 0.) / static_cast<double>(x.size());
+    }
+
+    double deviation(const std::vector<double> &x)
+    {
+      const double middle = mean(x);
+      double       sum    = 0.;
+      for (const double value : x)
+        sum += std::pow(value - middle, 2);
+      return std::sqrt(sum / static_cast<double>(x.size()));
+    }
 
     std::vector<NamedMode> named_modes(const SamplePlan &plan, const Samples &samples)
     {
-      std::map<std::string, NamedMode> modes;
+      std::map<std::string, NamedMode>          modes;
+      std::map<std::string, std::map<int, int>> numbers; // samples by how many modes of the name they have
+      std::map<std::string, int>                n_growing;
+      int                                       n_known = 0;
       for (int s = 0; s < plan.n_independent; ++s)
         if (samples[s])
-          for (const SampledMode &mode : *samples[s])
-            {
-              const ModalQuantities quantities = modal_quantities(mode.lambda);
-              NamedMode            &named      = modes[mode.label];
-              named.frequencies.push_back(quantities.frequency);
-              named.growth_rates.push_back(quantities.growth_rate);
-            }
+          {
+            ++n_known;
+            std::map<std::string, std::pair<int, bool>> here; // how many of a name, and whether one grows
+            for (const SampledMode &mode : *samples[s])
+              {
+                const ModalQuantities quantities = modal_quantities(mode.lambda);
+                NamedMode            &named      = modes[mode.label];
+                named.label                      = mode.label;
+                named.frequencies.push_back(quantities.frequency);
+                named.growth_rates.push_back(quantities.growth_rate);
+                auto &[n, grows] = here[mode.label];
+                ++n;
+                grows = grows || mode.verdict == Verdict::unstable;
+              }
+            for (const auto &[label, found] : here)
+              {
+                ++numbers[label][found.first];
+                n_growing[label] += found.second;
+              }
+          }
       std::vector<NamedMode> result;
       for (auto &[label, mode] : modes)
         {
-          mode.label                 = label;
-          int                n_grows = 0;
-          std::map<int, int> numbers; // samples by how many modes of the name they have
-          for (int s = 0; s < plan.n_independent; ++s)
-            if (samples[s])
-              {
-                int  n    = 0;
-                bool does = false;
-                for (const SampledMode &other : *samples[s])
-                  if (other.label == label)
-                    {
-                      ++n;
-                      does = does || other.verdict == Verdict::unstable;
-                    }
-                ++numbers[n];
-                n_grows += does;
-              }
-          const auto usual =
-            std::max_element(numbers.begin(), numbers.end(), [](const auto &a, const auto &b) { return a.second < b.second; });
+          std::map<int, int> &samples_by_number = numbers[label];
+          int                 n_with            = 0;
+          for (const auto &[n, times] : samples_by_number)
+            n_with += times;
+          if (n_known > n_with)
+            samples_by_number[0] = n_known - n_with;
+          const auto usual  = std::max_element(samples_by_number.begin(), samples_by_number.end(),
+                                               [](const auto &a, const auto &b) { return a.second < b.second; });
           mode.usual_number = usual->first;
-          for (const auto &[n, times] : numbers)
-            mode.n_unusual += n != usual->first ? times : 0;
-          mode.grows = probability(n_grows, plan.n_independent);
+          mode.n_unusual    = n_known - usual->second;
+          mode.grows        = probability(n_growing[label], plan.n_independent);
           std::sort(mode.frequencies.begin(), mode.frequencies.end());
           std::sort(mode.growth_rates.begin(), mode.growth_rates.end());
           result.push_back(mode);
         }
       std::sort(result.begin(), result.end(),
-                [](const NamedMode &a, const NamedMode &b) { return a.mean(a.frequencies) < b.mean(b.frequencies); });
+                [](const NamedMode &a, const NamedMode &b) { return mean(a.frequencies) < mean(b.frequencies); });
       return result;
     }
 
@@ -157,8 +161,8 @@ namespace Squeal
                      {"probability of growth", "%", percent([](const Row &row) { return row.grows.value; }), 2},
                      {"lower end of confidence", "%", percent([](const Row &row) { return row.grows.lower; }), 2},
                      {"upper end of confidence", "%", percent([](const Row &row) { return row.grows.upper; }), 2},
-                     {"mean frequency", "Hz", [](const Row &row) { return row.mean(row.frequencies); }, 2},
-                     {"deviation of the frequency", "Hz", [](const Row &row) { return row.deviation(row.frequencies); }, 2},
+                     {"mean frequency", "Hz", [](const Row &row) { return mean(row.frequencies); }, 2},
+                     {"deviation of the frequency", "Hz", [](const Row &row) { return deviation(row.frequencies); }, 2},
                      {"frequency at 5 %", "Hz", frequency_at(0.05), 2},
                      {"frequency at 95 %", "Hz", frequency_at(0.95), 2},
                      {"growth rate at 5 %", "1/s", growth_at(0.05), 3},
