@@ -45,13 +45,17 @@ namespace Squeal
   /// What a search for designs makes as good as it can.
   enum class SearchGoal
   {
-    onset,          ///< the smallest μ at which a divergence rate exceeds weak_divergence: as large as possible
-    divergence_rate ///< the largest divergence rate of the sweep: as small as possible
+    onset,           ///< the smallest μ at which a divergence rate exceeds weak_divergence: as large as possible
+    divergence_rate, ///< the largest divergence rate of the sweep: as small as possible
+    probability,     ///< of squeal with uncertain parameters: as small as possible
+    quantile         ///< of the largest divergence rate with uncertain parameters: as small as possible
   };
 
   template <>
   inline constexpr EnumName<SearchGoal> enum_table<SearchGoal>[] = {{SearchGoal::onset, "onset"},
-                                                                    {SearchGoal::divergence_rate, "divergence rate"}};
+                                                                    {SearchGoal::divergence_rate, "divergence rate"},
+                                                                    {SearchGoal::probability, "probability"},
+                                                                    {SearchGoal::quantile, "quantile"}};
 
   /// Methods of NLopt that need no derivatives and keep within a box.
   enum class SearchMethod
@@ -73,6 +77,7 @@ namespace Squeal
     SearchMethod method        = SearchMethod::subplex;
     unsigned int n_samples     = 10;    ///< of Sobol's sequence, before the methods start from the best of them
     unsigned int n_evaluations = 40;    ///< at most, with those samples
+    double       quantile      = 0.95;  ///< of the goal of that name [-]
     double       first_step    = 0.15;  ///< of the methods, part of each range [-]
     double       smallest_step = 0.002; ///< at which they end, part of each range [-]
 

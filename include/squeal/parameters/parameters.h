@@ -14,6 +14,7 @@
 #include <squeal/parameters/sliding.h>
 #include <squeal/parameters/study.h>
 #include <squeal/parameters/sweep.h>
+#include <squeal/parameters/updating.h>
 
 #include <functional>
 #include <iosfwd>
@@ -44,6 +45,7 @@ namespace Squeal
     DesignParameters         designs;
     SearchParameters         search;
     RobustnessParameters     robustness;
+    UpdatingParameters       updating;
     SolverParameters         solvers;
     OutputParameters         output;
 

@@ -56,7 +56,8 @@ namespace Squeal
     double              tolerance   = 1e-4; ///< on the estimated |δλ| / |λ| at every sample [-]
     bool                has_indices = true; ///< Sobol' indices, for which there are more samples
     std::vector<double> frequency_bands;    ///< ends of bands with probabilities of their own [Hz]
-    unsigned int        n_worst = 5;        ///< samples written as parameter files
+    unsigned int        n_worst  = 5;       ///< samples written as parameter files
+    unsigned int        n_onsets = 0;       ///< samples whose modes are followed over the friction coefficient
 
     void declare(Declarations &declarations);
 

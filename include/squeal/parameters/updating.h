@@ -1,0 +1,20 @@
+#pragma once
+
+#include <squeal/parameters/declarations.h>
+
+#include <string>
+
+namespace Squeal
+{
+  /// A fit of parameters to measured modes (section `Updating`), within the ranges of Designs/Variables.
+  struct UpdatingParameters
+  {
+    std::string  measured_modes;       ///< CSV: modes with their frequencies and damping ratios
+    std::string  sensors;              ///< CSV: places and directions of sensors, and shapes there; empty: modes are named by labels
+    double       tolerance     = 1e-8; ///< step at which the fit ends, part of each range [-]
+    double       least_overlap = 0.5;  ///< MAC below which a shape has no partner [-]
+    unsigned int n_iterations  = 50;   ///< at most
+
+    void declare(Declarations &declarations);
+  };
+} // namespace Squeal
