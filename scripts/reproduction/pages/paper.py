@@ -1,7 +1,7 @@
-"""doc/paper.md, but for what has a page of its own"""
+"""doc/paper.md, except what has its own page"""
 
 import paper
-from reproduction.numbers import Number, entry
+from reproduction.numbers import Number, entry, of_mode
 
 NO_SHAPES = "Output/Mode shapes=none"
 
@@ -24,28 +24,81 @@ def sizes(runs):
         yield Number(basis, quoted, rows[basis]["n_r [-]"])
 
 
-@entry("paper", "Figures 7 and 8: where A0-4 and A0-5 coalesce, and pairs of F1 separate again")
-def coalescences(runs):
-    rows = runs("sweep_without", "sweep.prm", NO_SHAPES).rows("thresholds")
-    for label, quoted in (("A0-4", "0.088"), ("A0-5", "0.089")):
-        yield Number(f"onset of {label}", quoted, next(row["mu [-]"] for row in rows if row["label"].startswith(label)))
-    ends = sorted(row["mu [-]"] for row in rows if row["event"] == "restabilisation" and row["label"] == "F1")
-    yield Number("first restabilisation of F1", "0.001", ends[0])
-    yield Number("the next one", "0.24", ends[1])
-    yield Number("the last one", "0.42", ends[-1])
+def solutions(runs):
+    return runs(*paper.READINGS[paper.WITHOUT]), runs(*paper.READINGS[paper.WITH])
 
 
-@entry("paper", "Statements of section 4")
-def section_four(runs):
-    rows = paper.statements(runs(*paper.READINGS[paper.WITHOUT]), runs(*paper.READINGS[paper.WITH]))
+@entry("paper", "The statements of sections 4.1 to 4.3")
+def statements(runs):
+    rows = paper.statements(*solutions(runs))
 
     def here(words):
         return next(row["here"] for row in rows if words in row["statement"])
 
-    for words, quoted in (("bending modes F1 per pin", "2"), ("splits double disc modes", "38.0"), ("spreads the bending modes", "0.60"),
-                          ("hardly shifts in-plane", "0.002"), ("real coupled ones, without C_b", "1.02"),
-                          ("real coupled ones, with C_b", "0.83"),
-                          ("unstable disc modes without", "2"), ("unstable pin modes without", "3"), ("unstable modes with C_b", "12")):
+    for words, quoted in (("bending modes F1 per pin", "2"), ("torsional modes T1 per pin", "1"), ("splits double disc modes", "38.0"),
+                          ("spreads the bending modes", "0.60"), ("hardly splits in-plane", "0.03"), ("coupling hardly shifts", "0.002"),
+                          ("coupled ones, without C_b", "1.02"), ("coupled ones, with C_b", "0.83"), ("friction hardly shifts", "0.007"),
+                          ("unstable disc modes without", "2"), ("unstable pin modes without", "3"), ("stable partner", "0"),
+                          ("sum of the divergence rates of A0-4", "-0.01"), ("sum of the divergence rates of A0-5", "-0.12"),
+                          ("growing A0-4", "-0.006"), ("growing A0-5", "-0.038"), ("leading F1", "-0.098"),
+                          ("second unstable pin mode", "0.087"), ("F1, most damped", "-1.41"), ("F1, least damped", "-0.89"),
+                          ("T1, most damped", "-1.80"), ("T1, least damped", "-1.36"), ("unstable modes with C_b", "12")):
         yield Number(words, quoted, here(words))
     for label, quoted in (("A0-4 +", "99"), ("A0-5 +", "96")):
         yield Number(f"{label}: share of the wave that travels one way [%]", quoted, 100 * here(f"{label} looks like a rotating wave"))
+
+
+@entry("paper", "Statement of section 4: eighteen pins")
+def eighteen_pins(runs):
+    results = runs("disc_pins_18", "disc_pins_18.prm", NO_SHAPES)
+    for label, rate in (("A0-4", "2.06"), ("F1", "1.99")):
+        yield from of_mode(label, results.leading(label), None, rate)
+
+
+@entry("paper", "Rotating waves")
+def waves(runs):
+    for name, results, quoted in zip(("without C_b", "with C_b"), solutions(runs),
+                                     (("0.989", "0.011", "0.961", "0.039"), ("0.989", "0.011", "0.956", "0.034"))):
+        modes = {mode["label"]: mode for mode in results.complex_modes()}
+        for label, share in zip(("A0-4 +", "A0-4 -", "A0-5 +", "A0-5 -"), quoted):
+            yield Number(f"{label}, {name}: share with the rotation", share, modes[label]["wave with rotation [-]"])
+
+
+@entry("paper", "Bifurcation: thresholds without and with C_b")
+def bifurcation(runs):
+    results = runs("sweep_damped", "sweep_damped.prm")
+    for name, n, quoted in (("thresholds_without_dissipation", "24", {"A0-4": "0.0883", "A0-5": "0.0893", "F1": "0.0172"}),
+                            ("thresholds", "12", {"A0-4": "0.0837", "A0-5": "0.0875", "F1": "0.0208"})):
+        rows = results.rows(name)
+        yield Number(name, n, len(rows))
+        for label, mu in quoted.items():
+            # The leading pair of F1 lies above the others
+            onset = max((row for row in rows if row["event"] == "onset" and row["label"].startswith(label)), key=lambda row: row["frequency [Hz]"])
+            yield Number(f"onset of {label}", mu, onset["mu [-]"])
+    rows = results.rows("thresholds_without_dissipation")
+    ends = sorted(row["mu [-]"] for row in rows if row["event"] == "restabilisation")
+    yield Number("restabilisations of F1", "8", len(ends))
+    for place, mu in ((0, "0.0010"), (1, "0.238"), (-1, "0.422")):
+        yield Number("  at", mu, ends[place])
+    yield Number("onsets of F1", "12", sum(row["event"] == "onset" and row["label"] == "F1" for row in rows))
+    yield Number("restabilisations with C_b", "0", sum(row["event"] == "restabilisation" for row in results.rows("thresholds")))
+
+
+@entry("paper", "Statement of section 5.2: how the errors of free and fixed bases decrease from 6 to 10 kHz")
+def decreasing_errors(runs):
+    rows = [row for row in runs("frictionless_frequency", "studies/frictionless_frequency.prm").rows("reduction_errors") if row["group"] == "disc"]
+    first, last = ({row["basis"]: row for row in rows if row["component modes"] == name} for name in ("6000 Hz", "10000 Hz"))
+    for column, quoted in (("res [-]", "208"), ("mac [-]", "2050"), ("frq [-]", "225")):
+        yield Number(f"free: {column} falls by", quoted, first["free"][column] / last["free"][column])
+    for name, row, quoted in (("6 kHz", first, "0.48"), ("10 kHz", last, "0.61")):
+        yield Number(f"fixed, {name}: eps_mac", quoted, row["fixed"]["mac [-]"])
+
+
+@entry("paper", "Statement of section 7: verdicts of modes with errors of the divergence rate above 0.1 %")
+def wrong_verdicts(runs):
+    rows = runs("friction", "studies/friction.prm").rows("reduction_modes")
+    for is_large, n_modes, n_wrong in ((True, "110", "47"), (False, "1078", "9")):
+        modes = [row for row in rows if (row["eps_div [-]"] > 1e-3) == is_large]
+        yield Number(f"modes with an error {'above' if is_large else 'up to'} 0.1 %", n_modes, len(modes))
+        yield Number("  wrong verdicts", n_wrong,
+                     sum((row["divergence rate [%]"] > 0.01) != (row["reference divergence rate [%]"] > 0.01) for row in modes))
