@@ -6,7 +6,7 @@ MkDocs calls on_page_content() with the HTML of each page; code, commands and fi
 import re
 
 PARTS = re.compile(r"(<pre.*?</pre>|<code.*?</code>|<[^>]+>)", re.DOTALL)
-SUBSCRIPT = re.compile(r"(?<![A-Za-z0-9_])([A-Za-zÀ-žα-ωΑ-Ω][\u0300-\u036f]*|\))_([A-Za-z0-9]{1,4})(?![A-Za-z0-9_])")
+SUBSCRIPT = re.compile(r"((?<![A-Za-z0-9_])[A-Za-zÀ-žα-ωΑ-Ω][\u0300-\u036f]*|\))_([A-Za-z0-9]{1,4})(?![A-Za-z0-9_])")
 SUPERSCRIPT = re.compile(r"\^(?:\(([^()]+)\)|\{([^{}]+)\}|([A-Z]\b))")
 IS_FORMULA = re.compile(r"[αβγδελμξπρσφψωΦΨΩΣ∫√‖ᵀᴴ½⁻·−×≤]")
 IS_COMMAND = re.compile(r"scripts/|build/|--set|^\s*set |squeal", re.MULTILINE)
