@@ -20,6 +20,11 @@ namespace Squeal
       return {result.begin(), result.end()};
     }
 
+    Eigen::VectorXcd powers(const std::vector<Complex> &lambda, const int exponent)
+    {
+      return as_column(lambda).unaryExpr([exponent](const Complex &l) { return exponent == 0 ? 1. : exponent == 1 ? l : l * l; });
+    }
+
     /// Of the stiffness (power 0) or the mass (2).
     bool is_symmetric(const Term &term, const int power)
     {
@@ -246,14 +251,11 @@ namespace Squeal
             }
           blocks.push_back(block);
         }
-    std::stable_sort(blocks.begin(), blocks.end(), [](const Block &a, const Block &b) { return a.place() < b.place(); });
-    n_columns = n_of_right = n_of_left = 0;
+    n_columns = 0;
     for (Block &block : blocks)
       {
         block.first = n_columns;
         n_columns += block.n;
-        n_of_right += block.in_right ? block.n : 0;
-        n_of_left += block.in_left ? block.n : 0;
       }
   }
 
@@ -307,10 +309,77 @@ namespace Squeal
     bracket     = std::move(G);
     is_prepared = true;
     if (in_single_precision)
+      bracket_in_single_precision = bracket.cast<float>();
+  }
+
+  std::vector<ProjectedResiduals::Group> ProjectedResiduals::groups(const ParameterValues &values, const bool transposed) const
+  {
+    std::vector<Group> result;
+    // Blocks that have the same rows but for a factor, by the number of the factor of low rank that reads φ_r, or -1, and the power
+    std::map<std::pair<int, int>, std::vector<std::pair<const Block *, double>>> alike;
+    const auto add = [&](const Block &block, const double scale, const int reader, const int power) {
+      if (scale != 0.)
+        alike[{reader, power}].emplace_back(&block, scale);
+    };
+    const auto n_readers = [&](const LowRankFactor &factor) {
+      return std::count_if(low_rank.begin(), low_rank.end(), [&](const Term *term) { return &term->source(transposed) == &factor; });
+    };
+    for (const Block &block : blocks)
       {
-        right_bracket = bracket.leftCols(n_of_right).cast<float>();
-        left_bracket  = bracket.bottomRightCorner(n_of_left, n_of_left).cast<float>();
+        if (!(transposed ? block.in_left : block.in_right))
+          continue;
+        if (block.sparse >= 0)
+          {
+            const Sparse &part = sparse[block.sparse];
+            add(block, (transposed ? part.sign : 1.) * part.term->coefficient.at(values), -1, part.term->power);
+            add(block, -part.sigma, -1, 0);
+            continue;
+          }
+        if (block.term != nullptr)
+          {
+            add(block, block.term->coefficient.at(values), -1, block.term->power);
+            continue;
+          }
+        Group own{{{&block, 1.}}, {}};
+        for (const Term *term : low_rank)
+          if (&term->target(transposed) == factors[block.factor].factor && !term->vanishes(values))
+            {
+              const LowRankFactor *source = &term->source(transposed);
+              const double         scale  = term->coefficient.at(values);
+              if (term->weights.empty() && n_readers(*source) > 1)
+                add(block, scale, number_of(*source), term->power);
+              else
+                own.shares.push_back({scale, term->power, source, term->weights.empty() ? nullptr : term});
+            }
+        if (!own.shares.empty())
+          result.push_back(std::move(own));
       }
+    for (auto &[rows, blocks_of_rows] : alike)
+      result.push_back({std::move(blocks_of_rows), {{1., rows.second, rows.first < 0 ? nullptr : factors[rows.first].factor, nullptr}}});
+    return result;
+  }
+
+  std::vector<ComplexDenseMatrix> ProjectedResiduals::group_rows(const std::vector<Group>   &groups,
+                                                                 const ParameterValues      &values,
+                                                                 const std::vector<Complex> &lambda,
+                                                                 const ComplexDenseMatrix   &vectors) const
+  {
+    std::map<const LowRankFactor *, ComplexDenseMatrix> moved;
+    std::vector<ComplexDenseMatrix>                     result;
+    for (const Group &group : groups)
+      {
+        ComplexDenseMatrix rows = ComplexDenseMatrix::Zero(group.blocks.front().first->n, vectors.cols());
+        for (const Group::Share &share : group.shares)
+          {
+            if (share.motions != nullptr && moved[share.motions].size() == 0)
+              moved[share.motions] = multiply(motions.at(share.motions), vectors);
+            const ComplexDenseMatrix &X      = share.motions != nullptr ? moved[share.motions] : vectors;
+            const Eigen::VectorXcd    factor = share.scale * powers(lambda, share.power);
+            rows += (share.weighted != nullptr ? share.weighted->weighted(X, values) : X) * factor.asDiagonal();
+          }
+        result.push_back(std::move(rows));
+      }
+    return result;
   }
 
   DenseMatrix ProjectedResiduals::coefficients(const ParameterValues      &values,
@@ -318,38 +387,60 @@ namespace Squeal
                                                const ComplexDenseMatrix   &vectors,
                                                const bool                  transposed) const
   {
-    ComplexDenseMatrix result = ComplexDenseMatrix::Zero(n_columns, vectors.cols());
-    // θ λ^p of each mode
-    const auto theta = [&](const Term &term) {
-      return as_column(lambda).unaryExpr([&](const Complex &l) { return term.factor(l, values); }).eval();
+    ComplexDenseMatrix                    result = ComplexDenseMatrix::Zero(n_columns, vectors.cols());
+    const std::vector<Group>              found  = groups(values, transposed);
+    const std::vector<ComplexDenseMatrix> rows   = group_rows(found, values, lambda, vectors);
+    for (std::size_t g = 0; g < found.size(); ++g)
+      for (const auto &[block, factor] : found[g].blocks)
+        result.middleRows(block->first, block->n) += factor * rows[g];
+    return halves(result);
+  }
+
+  template <typename Number>
+  ResidualProducts ProjectedResiduals::products_by(const Matrix<Number>       &B,
+                                                   const ParameterValues      &values,
+                                                   const std::vector<Complex> &lambda,
+                                                   const ComplexDenseMatrix   &right,
+                                                   const ComplexDenseMatrix   &left) const
+  {
+    using Matrix     = ProjectedResiduals::Matrix<Number>;
+    const auto stack = [&](const std::vector<Group> &C, const ComplexDenseMatrix &vectors) {
+      const std::vector<ComplexDenseMatrix> rows = group_rows(C, values, lambda, vectors);
+      Eigen::Index                          n    = 0;
+      for (const ComplexDenseMatrix &some : rows)
+        n += some.rows();
+      ComplexDenseMatrix result(n, vectors.cols());
+      n = 0;
+      for (const ComplexDenseMatrix &some : rows)
+        {
+          result.middleRows(n, some.rows()) = some;
+          n += some.rows();
+        }
+      return halves(result);
     };
-    std::map<const LowRankFactor *, ComplexDenseMatrix> moved;
-    const auto                                          motions_of_modes = [&](const LowRankFactor &factor) -> const ComplexDenseMatrix                                          &{
-      ComplexDenseMatrix &product = moved[&factor];
-      if (product.size() == 0)
-        product = multiply(motions.at(&factor), vectors);
-      return product;
+    // A C of a matrix A with as many columns as W
+    const auto times = [](const auto &A, const std::vector<Group> &C, const Eigen::Index n) {
+      Matrix       result = Matrix::Zero(A.rows(), n);
+      Eigen::Index first  = 0;
+      for (const Group &group : C)
+        {
+          const int width = group.blocks.front().first->n;
+          for (const auto &[block, factor] : group.blocks)
+            result.middleCols(first, width) += static_cast<Number>(factor) * A.middleCols(block->first, width);
+          first += width;
+        }
+      return result;
+    };
+    const auto apply = [](const Matrix &A, const DenseMatrix &X) {
+      return sparing_zeros(X, [&A](const DenseMatrix &Y) -> DenseMatrix { return (A * Y.cast<Number>()).template cast<double>(); });
     };
 
-    for (const Block &block : blocks)
-      {
-        if (!(transposed ? block.in_left : block.in_right))
-          continue;
-        auto rows = result.middleRows(block.first, block.n);
-        if (block.sparse >= 0)
-          {
-            const Sparse          &part   = sparse[block.sparse];
-            const Eigen::VectorXcd factor = (transposed ? part.sign : 1.) * theta(*part.term).array() - part.sigma;
-            rows                          = vectors * factor.asDiagonal();
-          }
-        else if (block.term != nullptr)
-          rows = vectors * theta(*block.term).asDiagonal();
-        else
-          for (const Term *term : low_rank)
-            if (&term->target(transposed) == factors[block.factor].factor && !term->vanishes(values))
-              rows += term->weighted(motions_of_modes(term->source(transposed)), values) * theta(*term).asDiagonal();
-      }
-    return halves(result);
+    const std::vector<Group> C = groups(values, false), D = groups(values, true);
+    const DenseMatrix        c = stack(C, right), d = stack(D, left);
+    const Matrix             BC = times(B, C, c.rows()), BD = times(B, D, d.rows());
+    return {product_of_halves(d.transpose() * apply(times(BC.transpose(), D, d.rows()).transpose(), c)),
+            hermitian_products(c, apply(times(BC.transpose(), C, c.rows()), c)),
+            hermitian_products(d, apply(times(BD.transpose(), D, d.rows()), d))};
   }
 
   ResidualProducts ProjectedResiduals::products(const ParameterValues      &values,
@@ -358,19 +449,8 @@ namespace Squeal
                                                 const ComplexDenseMatrix   &left) const
   {
     prepare();
-    const DenseMatrix y = coefficients(values, lambda, right, false), z = coefficients(values, lambda, left, true);
-    if (in_single_precision)
-      {
-        const auto times = [](const Eigen::MatrixXf &A) {
-          return [&A](const DenseMatrix &X) -> DenseMatrix { return (A * X.cast<float>()).cast<double>(); };
-        };
-        const DenseMatrix y_right = y.topRows(n_of_right), z_left = z.bottomRows(n_of_left);
-        const DenseMatrix Gy = sparing_zeros(y_right, times(right_bracket)), Gz = sparing_zeros(z_left, times(left_bracket));
-        return {product_of_halves(z_left.transpose() * Gy.bottomRows(n_of_left)), hermitian_products(y_right, Gy.topRows(n_of_right)),
-                hermitian_products(z_left, Gz)};
-      }
-    const DenseMatrix Gy = multiply_sparing_zeros(bracket, y), Gz = multiply_sparing_zeros(bracket, z);
-    return {product_of_halves(Gz.transpose() * y), hermitian_products(y, Gy), hermitian_products(z, Gz)};
+    return in_single_precision ? products_by(bracket_in_single_precision, values, lambda, right, left) :
+                                 products_by(bracket, values, lambda, right, left);
   }
 
   DenseMatrix ProjectedResiduals::coordinates(const ModesAt &modes) const

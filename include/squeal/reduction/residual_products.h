@@ -31,9 +31,9 @@ namespace Squeal
    *
    *   Lᵀ S⁻¹ R = zᵀ (Wᵀ S⁻¹ W − Wᵀ T (TᵀST)⁻¹ TᵀW) y.
    *
-   * What is left of cancellation is that of the bracket, about 10⁻¹⁵ of φᴴKφ:
-   * errors |δλ|/|λ| are reliable well below 10⁻¹². Each product costs as many
-   * operations as the square of the number of columns of W instead of block solves at full order.
+   * Terms with the same power of λ have the same rows but for their coefficients: at an operating point y = C c and z = D d with sums C, D
+   * of blocks that all modes share, and the bracket B shrinks to Dᵀ B C before it meets the modes, which costs no more than reading it.
+   * What is left of cancellation is that of the bracket, about 10⁻¹⁵ of φᴴKφ: errors |δλ|/|λ| are reliable well below 10⁻¹².
    */
   class ProjectedResiduals
   {
@@ -133,13 +133,42 @@ namespace Squeal
       bool        in_left, in_right; ///< whether left or right residuals have them
       int         n;
       int         first = 0; ///< in W
-
-      /// Those of right residuals alone come first, those of left ones alone last.
-      int place() const
-      {
-        return static_cast<int>(in_left) - static_cast<int>(in_right);
-      }
     };
+
+    /// Columns of W C, a sum of blocks of W, and the rows of c or d that belong to them.
+    struct Group
+    {
+      /// scale λ^power φ_r, or scale λ^power FᵀT φ_r, times weights of a term.
+      struct Share
+      {
+        double               scale;
+        int                  power;
+        const LowRankFactor *motions;  ///< F; null: none
+        const Term          *weighted; ///< null: none
+      };
+
+      std::vector<std::pair<const Block *, double>> blocks; ///< and their factors
+      std::vector<Share>                            shares;
+    };
+
+    std::vector<Group> groups(const ParameterValues &values, bool transposed) const;
+
+    /// Rows of c or d for some vectors, those of each group in turn.
+    std::vector<ComplexDenseMatrix> group_rows(const std::vector<Group>                &groups,
+                                               const ParameterValues                   &values,
+                                               const std::vector<std::complex<double>> &lambda,
+                                               const ComplexDenseMatrix                &vectors) const;
+
+    template <typename Number>
+    using Matrix = Eigen::Matrix<Number, Eigen::Dynamic, Eigen::Dynamic>;
+
+    /// products() with the bracket in some precision.
+    template <typename Number>
+    ResidualProducts products_by(const Matrix<Number>                    &bracket,
+                                 const ParameterValues                   &values,
+                                 const std::vector<std::complex<double>> &lambda,
+                                 const ComplexDenseMatrix                &right,
+                                 const ComplexDenseMatrix                &left) const;
 
     int number_of(const LowRankFactor &factor) const;
 
@@ -160,10 +189,10 @@ namespace Squeal
     int                                          r = 0;       ///< size of the basis
     DenseMatrix                                  pencil;      ///< TᵀST
     mutable std::vector<Block>                   blocks;
-    mutable int                                  n_columns = 0, n_of_right = 0, n_of_left = 0; ///< of W: all, the first, the last
+    mutable int                                  n_columns           = 0; ///< of W
     bool                                         in_single_precision = false;
     mutable bool                                 is_prepared         = false;
     mutable DenseMatrix                          bracket;
-    mutable Eigen::MatrixXf                      right_bracket, left_bracket; ///< its first columns, its last rows and columns
+    mutable Eigen::MatrixXf                      bracket_in_single_precision;
   };
 } // namespace Squeal
