@@ -1,5 +1,6 @@
 #include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
+#include <squeal/base/tasks.h>
 #include <squeal/parameters/design_plan.h>
 #include <squeal/studies/robustness/robustness.h>
 #include <squeal/studies/steps/system_family.h>
@@ -157,16 +158,15 @@ namespace Squeal
 
     run.progress.begin("Samples");
     SampledSystems                   result{sweep_plan(scene, std::vector<SweepLine>(), run), {}};
-    std::vector<ParameterValues>     members;
-    std::vector<OperationParameters> operations;
-    for (int s = 0; s < samples.n(); ++s)
-      {
-        const Parameters sample = with_sample(parameters, samples, s);
-        members.push_back(body_values(*scene.model, sample.materials));
-        if (parameters.operation.rotating_disc)
-          members.back()[BodyParameter::angular_velocity] = {sample.operation.angular_velocity()};
-        operations.push_back(sample.operation);
-      }
+    std::vector<ParameterValues>     members(samples.n());
+    std::vector<OperationParameters> operations(samples.n());
+    run_tasks(samples.n(), [&](const int s) {
+      const Parameters sample = with_sample(parameters, samples, s);
+      members[s]              = body_values(*scene.model, sample.materials);
+      if (parameters.operation.rotating_disc)
+        members[s][BodyParameter::angular_velocity] = {sample.operation.angular_velocity()};
+      operations[s] = sample.operation;
+    });
     const bool bodies_vary = std::any_of(members.begin(), members.end(), [&](const auto &values) { return values != members.front(); });
     if (bodies_vary && (parameters.needs_steady_sliding() || !parameters.damping.modal_ratios.empty()))
       throw ParameterError("steady sliding and modal damping require fixed materials and mounts", where_uncertain,
