@@ -18,7 +18,7 @@ Files are sought next to CONFIG. Formats by ending, or by `format`: .mat of MATL
 Abaqus' *MATRIX GENERATE as text (.mtx: node, dof, node, dof, value or row, column, value), DMIG of Nastran (.bdf, .pch), OUTPUT4 (.op4, with
 pyNastran), Harwell-Boeing (.hb, .rua, .rsa). A symmetric matrix may be given by one triangle, as Abaqus and Nastran write it. Their rows
 are sorted by node and dof and listed in FOLDER/rows.csv, and a group may be {nodes: [[5001, 6000]]}; dofs that Abaqus holds by 1e36 on
-the diagonal are left out. `nodes: model.inp` (or .bdf) with `unit: mm` adds the positions of the dofs.
+the diagonal are left out. `nodes: model.inp` (or .bdf) with `unit: mm` adds the nodes as points, which dofs 1 to 3 move.
 `coefficient` is an expression in the parameters with + - * / ^, sin, cos, tan, exp, log, sqrt, abs and _pi. Needs python3-yaml.
 """
 

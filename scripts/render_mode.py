@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Draws modes: the deformed bodies, coloured, over the outline of the undeformed ones.
+"""Draws modes: the deformed bodies, coloured, over the outline of the undeformed ones; points where there are no cells.
 
     scripts/render_mode.py MODE... [-o PICTURE] [--field FIELD] [--view VIEW] [--bodies all|moving]
 
@@ -13,6 +13,7 @@ import pathlib
 import sys
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "python"))
 from pictures import ONE_SIGN, PHASE, TWO_SIGNS, Page, nice_range
@@ -31,6 +32,7 @@ SHORTEST_EDGE, LARGEST_SHEAR = 0.35, 1.0  # of the length of an element edge at 
 VIEW_ANGLE = 24  # degree
 MANY_EDGES, FAINT, CLEAR = 2000, 0.16, 0.5  # edges of elements and their opacity, which grows where they are few
 MARGIN = 1.03  # around the bodies
+POINT_RADIUS = 0.35  # of the distance of the nearest point
 LEAST_MOTION = 0.01  # of the largest amplitude, below which a body is at rest
 OVERSAMPLING = 2
 PANEL, HEAD, FOOT = (800, 500), 84, 130  # one of several modes, its title, and what stands below all of them [pixels]
@@ -118,14 +120,32 @@ def colour_table(scale):
     return table
 
 
+def sphere_actor(points, radius):
+    """Spheres of a radius at points, and their data, to be coloured."""
+    vertices, data, sphere, mapper, actor = vtk.vtkPoints(), vtk.vtkPolyData(), vtk.vtkSphereSource(), vtk.vtkGlyph3DMapper(), vtk.vtkActor()
+    vertices.SetData(numpy_to_vtk(np.ascontiguousarray(points), deep=True))
+    data.SetPoints(vertices)
+    sphere.SetRadius(radius)
+    sphere.SetThetaResolution(12)
+    sphere.SetPhiResolution(8)
+    mapper.SetInputData(data)
+    mapper.SetSourceConnection(sphere.GetOutputPort())
+    mapper.ScalingOff()
+    actor.SetMapper(mapper)
+    return actor, data
+
+
 class Mode:
-    """A mode to be drawn: the surface of its bodies, the real part of its shape, how much that is magnified, and its colours."""
+    """A mode to be drawn: the surface of its bodies, or its points, the real part of its shape, how much that is magnified, and its colours."""
 
     def __init__(self, path, field, scale, bodies):
         mesh = VtuFile(path)
         self.points, is_complex = np.array(mesh.points), "displacement_real" in mesh.fields
         shape = mesh.field("displacement_real") + 1j * mesh.field("displacement_imag") if is_complex else mesh.field("displacement").astype(complex)
-        self.faces = outer_faces(mesh, moving_bodies(mesh, shape) if bodies == "moving" else None)
+        chosen = moving_bodies(mesh, shape) if bodies == "moving" else None
+        self.faces = outer_faces(mesh, chosen)
+        self.used = np.unique(self.faces) if len(self.faces) else np.unique(
+            [cell[0] for cell, body in zip(mesh.cells, mesh.cell_fields["component"]) if chosen is None or body in chosen])
         self.title = mesh.title or path.stem.replace("_", " ")
         self.displacement = shape.real
         self.edges, _ = edges_of(self.faces)
@@ -134,11 +154,12 @@ class Mode:
 
     def automatic_scale(self):
         """Displaces by 8 % of the size of the bodies at most, and by less where elements would be drawn inside out."""
-        used = np.unique(self.faces)
-        largest = np.linalg.norm(self.displacement[used], axis=1).max()
+        largest = np.linalg.norm(self.displacement[self.used], axis=1).max()
         if largest == 0:
             return 1.0
-        scale = LARGEST_DISPLACEMENT * np.ptp(self.points[used], axis=0).max() / largest
+        scale = LARGEST_DISPLACEMENT * np.ptp(self.points[self.used], axis=0).max() / largest
+        if len(self.faces) == 0:
+            return scale
         (sides,), (changes,) = (np.diff(values[self.edges.T], axis=0) for values in (self.points, self.displacement))
         squares = np.sum(sides**2, axis=1)
         shortening = (-np.sum(changes * sides, axis=1) / squares).max()
@@ -150,10 +171,12 @@ class Mode:
 
     def drawn(self):
         """What the largest displacement is drawn as [mm]."""
-        return 1000 * self.scale * np.linalg.norm(self.displacement[np.unique(self.faces)], axis=1).max()
+        return 1000 * self.scale * np.linalg.norm(self.displacement[self.used], axis=1).max()
 
     def actors(self, table):
-        """Deformed surface, its elements, its sharp edges, and the sharp edges of the undeformed bodies."""
+        """Deformed surface, its elements, its sharp edges, and the sharp edges of the undeformed bodies; or points, deformed and at rest."""
+        if len(self.faces) == 0:
+            return self.point_actors(table)
         deformed, sharp = self.points + self.scale * self.displacement, sharp_edges(self.points, self.faces)
         polygons, colours = polygons_of(deformed, self.faces), numpy_to_vtk(np.ascontiguousarray(self.colours.values, dtype=float), deep=True)
         polygons.GetPointData().SetScalars(colours)
@@ -177,9 +200,23 @@ class Mode:
         return [surface, line_actor(deformed, self.edges, INK, 0.6, FAINT if len(self.edges) > MANY_EDGES else CLEAR),
                 line_actor(deformed, sharp, INK, 1.3, 0.9), line_actor(self.points, sharp, GREY, 1.0, 0.55)]
 
+    def point_actors(self, table):
+        """Coloured spheres at the deformed points, small grey ones where they are at rest."""
+        distances, _ = cKDTree(self.points[self.used]).query(self.points[self.used], k=2)
+        spacing = np.median(distances[np.isfinite(distances).all(axis=1), 1]) if len(self.used) > 1 else 0.0
+        spacing = spacing or 0.02 * (np.ptp(self.points[self.used], axis=0).max() or 1.0)
+        moved, data = sphere_actor((self.points + self.scale * self.displacement)[self.used], POINT_RADIUS * spacing)
+        data.GetPointData().SetScalars(numpy_to_vtk(np.ascontiguousarray(self.colours.values[self.used], dtype=float), deep=True))
+        moved.GetMapper().SetLookupTable(table)
+        moved.GetMapper().UseLookupTableScalarRangeOn()
+        still, _ = sphere_actor(self.points[self.used], 0.4 * POINT_RADIUS * spacing)
+        still.GetMapper().ScalarVisibilityOff()
+        still.GetProperty().SetColor(*GREY)
+        return [moved, still]
+
     def draw(self, page, place, view):
         """Draws the mode into a place of a page: left, bottom, right and top."""
-        used, axes = np.unique(self.faces), page.axes(*place)
+        used, axes = self.used, page.axes(*place)
         around = np.vstack([self.points[used], (self.points + self.scale * self.displacement)[used]])  # at rest and deformed
         size = [round(page.size[i] * (place[i + 2] - place[i])) for i in (0, 1)]
         axes.imshow(rendered(self.actors(colour_table(page.scale)), around, size, *view), interpolation="antialiased", aspect="auto")
@@ -257,7 +294,7 @@ def draw_one(mode, picture, view, title, width):
     else:
         mode.draw(page, (0.01, 0.14, 0.99, 0.93), VIEWS[view])
     page.title(title or mode.title)
-    page.text(f"largest displacement drawn as {mode.drawn():.3g} mm; grey lines: the bodies at rest", 0.50, 0.05)
+    page.text(f"largest displacement drawn as {mode.drawn():.3g} mm; grey: at rest", 0.50, 0.05)
     page.colour_bar(mode.colours.caption)
     page.save(picture, width)
 
@@ -272,7 +309,7 @@ def draw_several(modes, picture, view, width):
         mode.draw(page, (left + 0.01, top - (PANEL[1] - 4) / size[1], left + 1 / columns - 0.01, top - HEAD / size[1]), VIEWS[view])
         page.title(f"({chr(ord('a') + number)})  {mode.title}", left + 0.03, top - 42 / size[1], 22)
         page.text(mode.colours.caption.removesuffix(", share of the largest"), left + 0.03, top - 72 / size[1])
-    page.text("deformation magnified; grey lines: the bodies at rest", 0.50, 50 / size[1])
+    page.text("deformation magnified; grey: at rest", 0.50, 50 / size[1])
     page.colour_bar("share of the largest" if limits[1] <= 1 else "")
     page.save(picture, width)
 

@@ -6,12 +6,13 @@ from squeal.importing.mesh_shapes import faces_of
 from squeal.vtu_file import SHAPES
 
 # Of VTK's cells; triangles repeat their last corner
-FACES = {kind: [(*face, face[-1])[:4] for face in faces_of(shape)] for kind, shape in SHAPES.items()}
+FACES = {kind: [(*face, face[-1])[:4] for face in faces_of(shape)] for kind, shape in SHAPES.items() if shape != "vertex"}
 SAME_PLACE = 1e-5  # of the size of the bodies: points of several processes
 
 
 def outer_faces(mesh, bodies=None):
-    """Faces that belong to one cell only (m x 4, a triangle repeats its last corner), of all bodies or of those chosen by their component.
+    """Faces that belong to one cell only (m x 4, a triangle repeats its last corner), of all bodies or of those chosen by their component;
+    none of points without cells.
 
     Coincident points of one body are one point, those of two bodies in contact stay apart.
     """
@@ -23,7 +24,8 @@ def outer_faces(mesh, bodies=None):
     places = np.round(points / (SAME_PLACE * np.ptp(points, axis=0).max()))
     _, first, number = np.unique(np.column_stack([body, places]), axis=0, return_index=True, return_inverse=True)
     cells = {kind: [mesh.cells[cell] for cell in chosen if mesh.cell_types[cell] == kind] for kind in FACES}
-    faces = first[number][np.concatenate([np.array(own)[:, FACES[kind]].reshape(-1, 4) for kind, own in cells.items() if own])]
+    none = np.zeros((0, 4), dtype=int)
+    faces = first[number][np.concatenate([none, *(np.array(own)[:, FACES[kind]].reshape(-1, 4) for kind, own in cells.items() if own)])]
     keys = faces.copy()
     keys[faces[:, 2] == faces[:, 3], 3] = -1
     keys.sort(axis=1)

@@ -23,7 +23,6 @@ SYMMETRIES = {"none": 0, "symmetric": 1, "skew": -1}
 KINDS = ("body", "mount", "rotation", "friction", "circulatory", "contact damping", "modal damping")
 # Largest entry of A - A^T, or of A + A^T, relative to that of A
 SYMMETRY_TOLERANCE = 1e-12
-DOF_COLUMNS = ("x [m]", "y [m]", "z [m]", "direction")
 # Dofs up to which M(p), C(p) and K(p) are written out as dense matrices
 LARGEST_DENSE = 5000
 
@@ -70,16 +69,19 @@ class Term:
 
 
 class System:
-    """Parameters by their names, terms, groups of dofs (name -> ranges from 1), `dofs` (dictionaries of DOF_COLUMNS), and of a reduced model
-    its `reduction` with the basis.
+    """Parameters by their names, terms, groups of dofs (name -> ranges from 1), and of a reduced model its `reduction` with the basis.
+
+    Shapes are shown on points with `positions` [m], n_points x 3, whose displacements are `displacements` (3 n_points x n, sparse; rows x, y
+    and z of point after point) times a vector; where these are None, dofs 3 i - 2 to 3 i are those of point i.
 
     Wherever `p` is an argument, it is a dictionary of values that differ from those of the file.
     """
 
-    def __init__(self, parameters, terms, groups=None, dofs=None, reduction=None, description="", where=FILE):
+    def __init__(self, parameters, terms, groups=None, positions=None, displacements=None, reduction=None, description="", where=FILE):
         """Throws Error where something is wrong; `where` names the file for it."""
         self.parameters = {name: parameter if isinstance(parameter, Parameter) else Parameter(parameter) for name, parameter in parameters.items()}
-        self.terms, self.groups, self.dofs, self.reduction = list(terms), dict(groups or {}), dofs, reduction
+        self.terms, self.groups, self.reduction = list(terms), dict(groups or {}), reduction
+        self.positions, self.displacements = positions, displacements
         self.description, self.where = description, where
         self._check_parameters()
         if not self.terms:
@@ -89,14 +91,27 @@ class System:
             if not (isinstance(ranges, list) and all(is_range(ends, self.size) for ends in ranges)):
                 raise Error(f"`{name}` is not a list of ranges of dofs", f"{where}, groups",
                             f"write [[first, last], ...] with dofs from 1 to {self.size}")
-        if dofs is not None and len(dofs) != self.size:
-            raise Error(f"there are {len(dofs)} rows of dofs for {self.size} dofs", f"{where}, dofs", "write a row for each dof")
+        self._check_points()
 
     @property
     def size(self):
         """Number of dofs."""
         first = self.terms[0]
         return (first.matrix if first.matrix is not None else first.left).shape[0]
+
+    def _check_points(self):
+        if self.positions is None:
+            if self.displacements is not None:
+                raise Error("displacements of points that are not given", f"{self.where}, displacements", "give positions, too")
+            return
+        self.positions = np.asarray(self.positions, dtype=float)
+        if self.positions.ndim != 2 or self.positions.shape[1] != 3 or not np.isfinite(self.positions).all():
+            raise Error("the positions are not n x 3 finite numbers", f"{self.where}, positions", "give x, y and z of each point")
+        n_rows = 3 * len(self.positions)
+        shape = (self.size, self.size) if self.displacements is None else self.displacements.shape
+        if shape != (n_rows, self.size):
+            raise Error(f"the displacements are {shape[0]} x {shape[1]}, expected {n_rows} x {self.size}", f"{self.where}, displacements",
+                        "give rows for x, y and z of each point, and a column for each dof")
 
     def _check_parameters(self):
         for name, parameter in self.parameters.items():
@@ -161,7 +176,7 @@ class System:
         data = read_json(path)
         if not isinstance(data, dict) or data.get("format") != FORMAT or data.get("version") != VERSION:
             raise Error(f"the file is not a `{FORMAT}` of version {VERSION}", path, f'write "format": "{FORMAT}", "version": {VERSION}')
-        known = ("format", "version", "description", "parameters", "terms", "groups", "dofs", "reduction")
+        known = ("format", "version", "description", "parameters", "terms", "groups", "positions", "displacements", "reduction")
         check_keys(data, known, path)
         parameters = {}
         for name, entry in as_kind(data.get("parameters", {}), dict, f"{path}, parameters").items():
@@ -184,8 +199,11 @@ class System:
                 reduction["basis"] = read_matrix(path.parent, reduction["basis"], f"{path}, reduction, basis").toarray()
             if "points" in reduction:
                 reduction["points"] = read_rows(path.parent, reduction["points"], f"{path}, reduction, points")
-        dofs = read_rows(path.parent, data["dofs"], f"{path}, dofs") if data.get("dofs") else None
-        return cls(parameters, terms, as_kind(data.get("groups", {}), dict, f"{path}, groups"), dofs, reduction, data.get("description", ""), path)
+        points = {key: read_matrix(path.parent, data[key], f"{path}, {key}") for key in ("positions", "displacements") if key in data}
+        if "positions" in points:
+            points["positions"] = points["positions"].toarray()
+        return cls(parameters, terms, as_kind(data.get("groups", {}), dict, f"{path}, groups"), reduction=reduction,
+                   description=data.get("description", ""), where=path, **points)
 
     def write(self, folder):
         """Writes the folder, which is made if it is not there."""
@@ -208,9 +226,12 @@ class System:
                 "parameters": {name: parameter.as_json() for name, parameter in self.parameters.items()}, "terms": entries}
         if self.groups:
             data["groups"] = {name: [[int(end) for end in ends] for ends in ranges] for name, ranges in self.groups.items()}
-        if self.dofs is not None:
-            data["dofs"] = "dofs.csv"
-            write_rows(folder / "dofs.csv", self.dofs)
+        if self.positions is not None:
+            data["positions"] = "positions.mtx"
+            write_array(folder / "positions.mtx", self.positions)
+        if self.displacements is not None:
+            data["displacements"] = "displacements.mtx"
+            write_matrix(folder / "displacements.mtx", self.displacements)
         if self.reduction is not None:
             data["reduction"] = dict(self.reduction)
             if "basis" in self.reduction:
@@ -373,7 +394,7 @@ def read_rows(folder, name, where):
     path = inside(folder, name, where)
     try:
         table = Table(path)
-        columns = [table.texts(column) if column == "direction" else table.numbers(column) for column in table.columns]
+        columns = [table.numbers(column) for column in table.columns]
     except Error as problem:
         raise Error(f"{path} cannot be read: {problem.what}", where, "write a number for each column of a row") from problem
     return [dict(zip(table.columns, row)) for row in zip(*columns)]
@@ -381,10 +402,9 @@ def read_rows(folder, name, where):
 
 def write_rows(path, rows):
     with open(path, "w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, list(rows[0]) if rows else DOF_COLUMNS, lineterminator="\n")
+        writer = csv.DictWriter(file, list(rows[0]) if rows else [], lineterminator="\n")
         writer.writeheader()
-        writer.writerows({key: value if isinstance(value, str) else "" if math.isnan(value) else repr(float(value)) for key, value in row.items()}
-                         for row in rows)
+        writer.writerows({key: "" if math.isnan(value) else repr(float(value)) for key, value in row.items()} for row in rows)
 
 
 def write_matrix(path, matrix, symmetry="none"):

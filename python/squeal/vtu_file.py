@@ -8,14 +8,14 @@ import zlib
 from squeal.errors import Error
 
 # Names of VTK's types
-SHAPES = {5: "triangle", 9: "quad", 10: "tetra", 12: "hexahedron", 13: "wedge", 14: "pyramid"}
+SHAPES = {1: "vertex", 5: "triangle", 9: "quad", 10: "tetra", 12: "hexahedron", 13: "wedge", 14: "pyramid"}
 TYPE_CODES = {"Float32": "f", "Int32": "i", "UInt8": "B"}
 
 
 class VtuFile:
     """
-    Points and point fields, as tuples of three numbers and as numbers; cells as lists of their points, with their fields and VTK types: 5
-    is a triangle, 9 a quadrilateral, 10 a tetrahedron, 12 a hexahedron, 13 a wedge, 14 a pyramid. Coincident points of several pieces are repeated. The title, or None.
+    Points and point fields, as tuples of three numbers and as numbers; cells as lists of their points, with their fields and VTK types: 1
+    is a vertex, 5 a triangle, 9 a quadrilateral, 10 a tetrahedron, 12 a hexahedron, 13 a wedge, 14 a pyramid. Coincident points of several pieces are repeated. The title, or None.
     """
 
     def __init__(self, path):

@@ -40,12 +40,11 @@ namespace Squeal
 
     using Partitioner = dealii::Utilities::MPI::Partitioner;
 
-    /// Free dofs of this process, and those of its cells that others have.
-    std::shared_ptr<const Partitioner> dofs_of_cells(const Model &model)
+    /// Dofs of this process, and those of its nodes that others have.
+    std::shared_ptr<const Partitioner> dofs_of(const std::vector<Node> &nodes, const RowMap &map)
     {
-      const RowMap                                &map = model.free_map();
       std::vector<dealii::types::global_dof_index> dofs;
-      for (const Node &node : model.nodes())
+      for (const Node &node : nodes)
         for (int d = 0; d < 3; ++d)
           node.for_each_dof(d, [&](const int dof, double) { dofs.push_back(dof); });
       std::sort(dofs.begin(), dofs.end());
@@ -53,7 +52,7 @@ namespace Squeal
       if (map.n_local() > 0)
         own.add_range(map.number(0), map.number(0) + map.n_local()); // ownership is contiguous
       relevant.add_indices(dofs.begin(), dofs.end());
-      return std::make_shared<Partitioner>(own, relevant, model.communicator());
+      return std::make_shared<Partitioner>(own, relevant, map.communicator());
     }
 
     template <typename Number>
@@ -111,10 +110,10 @@ namespace Squeal
                            const ContactInterface          &interface,
                            const std::vector<unsigned int> &closed_pairs,
                            const ResultFolder              &folder)
-    : model(model)
-    , interface(interface)
+    : model(&model)
+    , communicator(model.communicator())
     , folder(folder)
-    , dofs(dofs_of_cells(model))
+    , dofs(dofs_of(model.nodes(), model.free_map()))
     , closed(interface.size(), 0.)
     , contact_faces(contact_face_mesh(model))
   {
@@ -122,7 +121,10 @@ namespace Squeal
       closed[c] = 1.;
     std::map<std::int64_t, unsigned int> pair_of_node;
     for (unsigned int c = 0; c < interface.size(); ++c)
-      pair_of_node[interface[c].pin_node.number] = c;
+      {
+        areas.push_back(interface[c].area);
+        pair_of_node[interface[c].pin_node.number] = c;
+      }
     for (const Node &node : contact_faces.mesh.nodes)
       {
         const auto pair = pair_of_node.find(node.number);
@@ -130,11 +132,22 @@ namespace Squeal
       }
   }
 
+  FieldWriter::FieldWriter(const std::vector<Node> &points, const RowMap &map, const ResultFolder &folder)
+    : model(nullptr)
+    , communicator(map.communicator())
+    , folder(folder)
+    , dofs(dofs_of(points, map))
+    , surface(point_mesh(points))
+    , contact_faces(FieldMesh())
+  {
+    stages.emplace(std::nullopt, *surface);
+  }
+
   const FieldWriter::Stage &FieldWriter::bodies(const std::optional<Component> &component)
   {
     auto place = stages.find(component);
     if (place == stages.end())
-      place = stages.emplace(component, Stage(body_mesh(model, component))).first;
+      place = stages.emplace(component, Stage(body_mesh(*model, component))).first;
     return place->second;
   }
 
@@ -145,12 +158,12 @@ namespace Squeal
   {
     VtuPiece piece = stage.piece;
     piece.add(fields);
-    piece.write(folder, name + ".vtu", title, model.communicator());
+    piece.write(folder, name + ".vtu", title, communicator);
   }
 
   void FieldWriter::write_mode(const ModeField &mode)
   {
-    const double scale  = 1. / largest_modulus(mode.displacement, model.communicator());
+    const double scale  = 1. / largest_modulus(mode.displacement, communicator);
     const Stage &stage  = bodies({});
     const auto   values = vertex_values(stage.mesh, dofs, mode.displacement);
     write(stage, "modes/" + mode.name, mode.title,
@@ -175,7 +188,7 @@ namespace Squeal
 
   void FieldWriter::write_mode(const RealModeField &mode)
   {
-    const double scale  = 1. / largest_modulus(mode.displacement, model.communicator());
+    const double scale  = 1. / largest_modulus(mode.displacement, communicator);
     const Stage &stage  = bodies(mode.component);
     const auto   values = vertex_values(stage.mesh, dofs, mode.displacement);
     write(stage, "modes/" + mode.name, mode.title,
@@ -203,13 +216,13 @@ namespace Squeal
   void FieldWriter::write_animation(const std::string &name, const std::vector<ModeField> &modes, const AnimationOptions &options)
   {
     if (!surface)
-      surface.emplace(surface_mesh(model));
+      surface.emplace(surface_mesh(*model));
     std::vector<Vectors<Complex>> shapes;
     std::vector<double>           scales;
     for (const ModeField &mode : modes)
       {
         shapes.push_back(vertex_values(surface->mesh, dofs, mode.displacement));
-        scales.push_back(1. / largest_modulus(mode.displacement, model.communicator()));
+        scales.push_back(1. / largest_modulus(mode.displacement, communicator));
       }
     const unsigned int                          n_frames = options.frames_per_period * options.periods + (options.grows ? 1 : 0);
     std::vector<std::pair<double, std::string>> files;
@@ -245,7 +258,7 @@ namespace Squeal
         for (const int pair : pairs)
           on_vertices.back().values.push_back(pair < 0 ? 0.f : static_cast<float>((*values)[pair]));
       }
-    if (!interface.empty())
+    if (!closed.empty())
       write(contact_faces, name + "_contact", title, on_vertices);
   }
 
@@ -261,8 +274,8 @@ namespace Squeal
     write(stage, "sliding_state", {}, {vector_field("displacement", values, [](const double u) { return u; })});
 
     std::vector<double> pressure;
-    for (unsigned int c = 0; c < interface.size(); ++c)
-      pressure.push_back(-state.reactions[c] / interface[c].area);
+    for (std::size_t c = 0; c < areas.size(); ++c)
+      pressure.push_back(-state.reactions[c] / areas[c]);
     write_contact("sliding_state", {},
                   {{"pressure", &pressure},
                    {"normal_reaction", &state.reactions},

@@ -298,6 +298,21 @@ namespace Squeal
     return mesh_of(model, faces);
   }
 
+  FieldMesh point_mesh(const std::vector<Node> &points)
+  {
+    constexpr std::uint8_t vtk_vertex = 1;
+    FieldMesh              mesh;
+    mesh.nodes = points;
+    for (const Node &point : points)
+      {
+        mesh.corners.push_back(static_cast<std::int32_t>(mesh.corners.size()));
+        mesh.ends.push_back(static_cast<std::int32_t>(mesh.corners.size()));
+        mesh.types.push_back(vtk_vertex);
+        mesh.components.push_back(static_cast<std::int32_t>(point.component));
+      }
+    return mesh;
+  }
+
   FieldMesh contact_face_mesh(const Model &model)
   {
     return mesh_of(model, model.faces_of(PhysicalNames::pin_contact));

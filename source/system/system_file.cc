@@ -211,6 +211,37 @@ namespace Squeal
           read_factors(entry, term);
       }
 
+      /// `positions` of points with their `displacements`, by default of the dofs 3i − 2, 3i − 1 and 3i of point i.
+      ShapePoints read_points(const JsonEntry &root) const
+      {
+        const JsonEntry  entry     = root["positions"];
+        const SparseRows positions = read_matrix_file(entry);
+        const int        n_points = static_cast<int>(positions.rows()), n = system.map.n();
+        if (positions.cols() != 3 || n_points == 0)
+          entry.refuse(text("the positions are ", n_points, " x ", positions.cols(), ", not n x 3"),
+                       "give a row with x, y and z for each point");
+        if (!root.has("displacements") && 3 * n_points != n)
+          entry.refuse(text(n_points, " points have ", 3 * n_points, " displacements, the system has ", n, " dofs"),
+                       "give `displacements`, the matrix by which the dofs move the points");
+        ShapePoints  result{positions, nullptr};
+        const RowMap rows = ShapePoints::rows_of(n_points, communicator);
+        if (root.has("displacements"))
+          {
+            const JsonEntry  file = root["displacements"];
+            const SparseRows T    = read_matrix_file(file);
+            if (T.rows() != 3 * positions.rows() || T.cols() != n)
+              file.refuse(text("the matrix is ", T.rows(), " x ", T.cols(), ", not ", 3 * n_points, " x ", n),
+                          "give rows for x, y and z of each of the points, and a column for each dof");
+            result.displacements = std::make_shared<SparseMatrix>(rows, system.map, SparseRows(T.middleRows(rows.first(), rows.n_local())));
+            if (!(max_norm(*result.displacements) > 0.))
+              file.refuse("no dof moves a point: all entries are zero", "correct the matrix, or leave out `positions` and `displacements`");
+          }
+        else
+          result.displacements = std::make_shared<SparseMatrix>(
+            rows, system.map, [&](const int i, SparseMatrix::Row &row) { row.emplace_back(rows.number(i), 1.); });
+        return result;
+      }
+
     private:
       Coefficient coefficient(const JsonEntry &entry) const
       {
@@ -255,8 +286,9 @@ namespace Squeal
         return result;
       }
 
-      SparseRows read_file(const JsonEntry &entry, const std::string &name) const
+      SparseRows read_matrix_file(const JsonEntry &entry) const
       {
+        const std::string           name = entry.as<std::string>("the name of a file");
         const std::filesystem::path path = folder / name;
         if (!std::filesystem::is_regular_file(path))
           entry.refuse("there is no file " + in_quotes(path.string()), "write the matrix there, or change the name");
@@ -269,7 +301,7 @@ namespace Squeal
         const std::string name = file.as<std::string>("the name of a file");
         if (const auto known = read_files.find(name); known != read_files.end())
           return known->second;
-        const SparseRows &result = read_files.emplace(name, read_file(file, name)).first->second;
+        const SparseRows &result = read_files.emplace(name, read_matrix_file(file)).first->second;
         if (system.map.n() == 0 && result.rows() > 0)
           {
             system.map = RowMap::even(static_cast<int>(result.rows()), communicator);
@@ -331,7 +363,7 @@ namespace Squeal
           {
             const JsonEntry   file = entry["weights"];
             const std::string name = file.as<std::string>("the name of a file");
-            const SparseRows  d    = read_file(file, name);
+            const SparseRows  d    = read_matrix_file(file);
             if (d.rows() != term.left->rank() || d.cols() != 1)
               file.refuse(text("the weights are ", d.rows(), " x ", d.cols(), ", not ", term.left->rank(), " x 1"),
                           "give one for each column of the factors");
@@ -468,7 +500,7 @@ namespace Squeal
         throw FileError(text("not JSON: ", error.what()), "file " + file.string(), "correct the file at this position");
       }
     const JsonEntry root(json, file.string(), "");
-    root.check_keys({"format", "version", "description", "parameters", "terms", "groups", "dofs", "reduction"});
+    root.check_keys({"format", "version", "description", "parameters", "terms", "groups", "positions", "displacements", "reduction"});
     if (root["format"].as<std::string>("a text") != format || root["version"].integer() != format_version)
       root.refuse("not a system file of this version", text("write \"format\": \"", format, "\", \"version\": ", format_version));
 
@@ -484,7 +516,26 @@ namespace Squeal
     check_terms(system, terms);
     if (root.has("groups"))
       system.groups = read_groups(root["groups"], system.map.n());
+    if (root.has("positions"))
+      system.points = reader.read_points(root);
+    else if (root.has("displacements"))
+      root["displacements"].refuse("displacements of points that are not given", "give `positions`, too");
     return system;
+  }
+
+  RowMap ShapePoints::rows_of(const int n_points, const MPI_Comm communicator)
+  {
+    return RowMap(3 * RowMap::even(n_points, communicator).n_local(), communicator);
+  }
+
+  /// A dense matrix in Matrix Market form.
+  static std::string matrix_market_array(const DenseMatrix &A)
+  {
+    std::ostringstream content;
+    content << "%%MatrixMarket matrix array real general\n" << A.rows() << ' ' << A.cols() << '\n';
+    for (const double entry : A.reshaped())
+      content << exact_text(entry) << '\n';
+    return content.str();
   }
 
   void write_system(const std::vector<Term> &terms, const ParameterValues &weights, const SystemNotes &notes, const WriteFile &write)
@@ -547,12 +598,9 @@ namespace Squeal
             entry["right"] = factor_file(*term.right);
             if (!term.weights.empty())
               {
-                const std::string          name    = text("weights_", json["terms"].size() + 1, ".mtx");
-                const std::vector<double> &d       = weights.at(term.weights);
-                std::string                content = text("%%MatrixMarket matrix array real general\n", term.left->rank(), " 1\n");
-                for (int i = 0; i < term.left->rank(); ++i)
-                  content += exact_text(d.empty() ? 0. : d[i]) + "\n";
-                write_text(name, content);
+                const std::string          name = text("weights_", json["terms"].size() + 1, ".mtx");
+                const std::vector<double> &d    = weights.at(term.weights);
+                write_text(name, matrix_market_array(d.empty() ? DenseMatrix::Zero(term.left->rank(), 1) : DenseMatrix(as_column(d))));
                 entry["weights"] = name;
               }
           }
@@ -562,6 +610,13 @@ namespace Squeal
     for (const DofGroup &group : notes.groups)
       for (const auto &[first, last] : group.ranges)
         json["groups"][group.name].push_back({first + 1, last + 1});
+    if (notes.points)
+      {
+        json["positions"]     = "positions.mtx";
+        json["displacements"] = "displacements.mtx";
+        write_text("positions.mtx", matrix_market_array(notes.points->positions));
+        write_text("displacements.mtx", matrix_market(*notes.points->displacements));
+      }
     if (notes.reduction)
       json["reduction"] = {{"basis", notes.reduction->basis},
                            {"points", notes.reduction->points},

@@ -263,6 +263,17 @@ class Flutter(SystemTest):
                                      ({"coefficient": "mu=0.5"}, ["assigns"]), ({"coefficient": "10^400"}, ["not finite"]), ({"left": "A0.mtx"}, ["terms[1].left"])))):
             self.write("system/system.json", json.dumps({**good, **change}))
             self.assert_message(self.call("study.prm", "--output", "refused"), mentions)
+        self.write("system/points.mtx", matrix_text([[1., 2.]]))
+        self.write("system/no_motion.mtx", matrix_text([[0., 0.]] * 3))
+        self.write("system/one_point.mtx", matrix_text([[1., 2., 3.]]))
+        self.write("system/infinite.mtx", matrix_text([[1., math.inf, 3.]]))
+        for change, mentions in (({"positions": "points.mtx"}, ["positions", "1 x 2"]), ({"positions": "one_point.mtx"}, ["3 displacements", "2 dofs"]),
+                                 ({"positions": "infinite.mtx"}, ["infinite.mtx", "row 1 and column 2"]), ({"positions": 1}, ["entry positions"]),
+                                 ({"positions": "one_point.mtx", "displacements": "A0.mtx"}, ["displacements", "2 x 2, not 3 x 2"]),
+                                 ({"positions": "one_point.mtx", "displacements": "no_motion.mtx"}, ["displacements", "zero"]),
+                                 ({"positions": "missing.mtx"}, ["missing.mtx"]), ({"displacements": "A0.mtx"}, ["give `positions`"])):
+            self.write("system/system.json", json.dumps({**good, **change}))
+            self.assert_message(self.call("study.prm", "--output", "refused"), mentions)
         self.write("system/system.json", json.dumps(good).replace('"power"', '"power": 1, "power"', 1))
         self.assert_message(self.call("study.prm", "--output", "refused"), ["`power`", "twice"])
         self.write("system/system.json", "{")

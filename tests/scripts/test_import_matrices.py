@@ -180,7 +180,8 @@ class ImportMatrices(unittest.TestCase):
             self.write(f"{name}.mtx", abaqus(self.matrices[name], half=True))
         self.write("model.inp", "*NODE\n" + "".join(f"{node}, {node}., 2., -3.\n" for node in NODES))
         system, _ = self.assert_imported({name: {"file": f"{name}.mtx"} for name in ("M", "K")}, more={"nodes": "model.inp", "unit": "mm"})
-        self.assertEqual(system.dofs[4], {"x [m]": 0.012, "y [m]": 0.002, "z [m]": -0.003, "direction": "y"})
+        self.assertEqual(list(system.positions[1]), [0.012, 0.002, -0.003])
+        np.testing.assert_array_equal(system.displacements.toarray(), np.eye(9))
 
     def test_abaqus_coordinates(self):
         for name, matrix in self.matrices.items():

@@ -101,14 +101,16 @@ class Expressions(unittest.TestCase):
 
 class Files(InFolder):
     def test_round_trip(self):
-        system = flutter(groups={"disc": [[1, 1]], "pads": [[2, 2]]}, description="two dofs", dofs=[
-            {"x [m]": 0.1, "y [m]": 1 / 3, "z [m]": 0.0, "direction": "z"}, {"x [m]": 0.0, "y [m]": 0.0, "z [m]": 1e-9, "direction": ""}],
+        system = flutter(groups={"disc": [[1, 1]], "pads": [[2, 2]]}, description="two dofs", positions=[[0.1, 1 / 3, 0.0], [0.0, 0.0, 1e-9]],
+            displacements=sparse.csr_matrix(([1.0, 0.6], ([2, 3], [0, 1])), (6, 2)),
             terms=[Term("rotation", 1, "1e-3*mu", matrix=np.array([[0.0, 1 / 3], [-1 / 3, 0.0]]), symmetry="skew")],
             reduction={"basis": np.arange(6.0).reshape(3, 2) / 7, "tolerance": 1e-6, "points": [{"mu": 0.1, "error": 1e-9}]})
         system.write(self.folder / "s")
         for path in (self.folder / "s", self.folder / "s" / "system.json"):
             again = System.read(path)
-            self.assertEqual((again.parameters, again.groups, again.description, again.dofs), (system.parameters, system.groups, "two dofs", system.dofs))
+            self.assertEqual((again.parameters, again.groups, again.description), (system.parameters, system.groups, "two dofs"))
+            np.testing.assert_array_equal(again.positions, system.positions)
+            np.testing.assert_array_equal(again.displacements.toarray(), system.displacements.toarray())
             for name in ("name", "power", "coefficient", "symmetry", "kind"):
                 self.assertEqual([getattr(term, name) for term in again.terms], [getattr(term, name) for term in system.terms])
             for matrix, other in zip(again.matrices({"mu": 0.7}), system.matrices({"mu": 0.7})):
@@ -167,8 +169,10 @@ class Files(InFolder):
         self.assert_rejected(damaged(lambda data: data.update(terms={})), "write a list", "terms")
         self.assert_rejected(damaged(lambda data: data.update(terms=[])), "no terms", "system.json")
         self.assert_rejected(damaged(lambda data: data.update(version=2)), "version 1", "system.json")
-        self.assert_rejected(damaged(lambda data: data.update(dofs="dofs.csv")), "dofs.csv is missing")
-        self.assert_rejected(damaged(lambda data: data.update(dofs="dofs.csv"), "dofs.csv", "x [m],direction\n0.1,x\nabc,y\n"), "`abc`", "dofs")
+        self.assert_rejected(damaged(lambda data: data.update(positions="p.mtx")), "p.mtx is missing")
+        self.assert_rejected(damaged(lambda data: data.update(positions="p.mtx"), "p.mtx", array + "1 2\n1\n2\n"), "not n x 3", "positions")
+        self.assert_rejected(damaged(lambda data: data.update(positions="p.mtx"), "p.mtx", array + "1 3\n1\n2\n3\n"), "expected 3 x 2", "displacements")
+        self.assert_rejected(damaged(lambda data: data.update(displacements="mass.mtx")), "not given", "displacements")
         self.assert_rejected(damaged(file="system.json", text='{"format": 1, "format": 2}'), "`format` appears twice")
         self.assert_rejected(damaged(file="system.json"), "missing", "system.json")
 

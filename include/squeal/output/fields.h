@@ -80,6 +80,10 @@ namespace Squeal
     /// @param closed numbers of the pairs that are in contact, among those of @p interface
     FieldWriter(const Model &model, const ContactInterface &interface, const std::vector<unsigned int> &closed, const ResultFolder &folder);
 
+    /// Of points without cells, as a system file has them: no contact faces.
+    /// @param points of this process, with their dofs
+    FieldWriter(const std::vector<Node> &points, const RowMap &dofs, const ResultFolder &folder);
+
     /// Files `modes/NAME*.vtu`.
     void write_mode(const ModeField &mode);
 
@@ -129,10 +133,11 @@ namespace Squeal
                        const std::string                                                       &title,
                        const std::vector<std::pair<const char *, const std::vector<double> *>> &fields) const;
 
-    const Model                                               &model;
-    const ContactInterface                                    &interface;
+    const Model                                               *model; ///< null: points
+    const MPI_Comm                                             communicator;
     const ResultFolder                                        &folder;
     std::shared_ptr<const dealii::Utilities::MPI::Partitioner> dofs;   ///< free ones of the cells of this process
+    std::vector<double>                                        areas;  ///< of the pairs of contact nodes [m²]
     std::vector<double>                                        closed; ///< 1 for pairs in contact
     std::map<std::optional<Component>, Stage>                  stages;
     std::optional<Stage>                                       surface; ///< of animations

@@ -32,6 +32,9 @@ namespace Squeal
   /// The pins' contact faces.
   FieldMesh contact_face_mesh(const Model &model);
 
+  /// Points alone, each a cell of its own.
+  FieldMesh point_mesh(const std::vector<Node> &points);
+
   /// Values of the vertices of a mesh, vertex by vertex.
   struct VertexField
   {

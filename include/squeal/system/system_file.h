@@ -1,5 +1,6 @@
 #pragma once
 
+#include <squeal/linear_algebra/dense.h>
 #include <squeal/system/terms.h>
 
 #include <functional>
@@ -28,6 +29,16 @@ namespace Squeal
     std::vector<std::pair<int, int>> ranges; ///< first and last dof of each, counted from 0
   };
 
+  /// Points in space on which shapes are shown.
+  struct ShapePoints
+  {
+    DenseMatrix                         positions;     ///< x, y and z [m], n_points × 3, the same on every process
+    std::shared_ptr<const SparseMatrix> displacements; ///< by the dofs: 3 n_points × n, rows x, y and z of point after point
+
+    /// Distribution of three rows for each point, no point shared by processes.
+    static RowMap rows_of(int n_points, MPI_Comm communicator);
+  };
+
   /// Q(λ; p) = Σ_k θ_k(p) λ^(p_k) A_k in a folder: `system.json` with parameters and terms, and a Matrix Market file of each matrix.
   struct SystemFile
   {
@@ -36,10 +47,11 @@ namespace Squeal
     std::vector<FileParameter> parameters;
 
     /// Symmetric, skew or of low rank: an unsymmetric matrix makes two terms, its symmetric and its skew part.
-    std::vector<Term>     terms;
-    ParameterValues       weights; ///< of terms of low rank
-    std::vector<DofGroup> groups;
-    RowMap                map; ///< of the dofs
+    std::vector<Term>          terms;
+    ParameterValues            weights; ///< of terms of low rank
+    std::vector<DofGroup>      groups;
+    std::optional<ShapePoints> points;
+    RowMap                     map; ///< of the dofs
 
     const FileParameter *find(const std::string &parameter) const;
 
@@ -56,7 +68,7 @@ namespace Squeal
    *
    * Throws FileError or ParameterError, naming the file and the entry: what cannot be read or parsed, sizes that differ, entries that are not
    * finite, symmetries that do not hold, unknown parameters, coefficients that are not finite in the range of their parameters, no mass,
-   * and dofs that no matrix has.
+   * dofs that no matrix has, and displacements that are all zero.
    */
   SystemFile read_system(const std::string &path, MPI_Comm communicator);
 
@@ -76,6 +88,7 @@ namespace Squeal
     std::vector<FileParameter> parameters;
     std::string                description;
     std::vector<DofGroup>      groups    = {};
+    std::optional<ShapePoints> points    = {};
     std::optional<Reduction>   reduction = {};
   };
 

@@ -3,6 +3,9 @@
 import csv
 import pathlib
 
+import numpy as np
+import scipy.sparse as sparse
+
 from squeal.errors import Error
 from squeal.expressions import Expression
 from squeal.importing import foreign_mesh, matrices
@@ -10,7 +13,6 @@ from squeal.importing.configuration import read_yaml
 from squeal.system import SYMMETRY_TOLERANCE, Parameter, System, Term, as_kind, check_keys, read_entry, symmetry_defect, unique
 
 OF_FILE = ("file", "variable", "format", "scale")
-DIRECTIONS = {1: "x", 2: "y", 3: "z"}
 KNOWN = ("description", "parameters", "terms", "groups", "nodes", "unit")
 
 
@@ -43,10 +45,10 @@ def groups_of(entries, numbering, where):
     return groups
 
 
-def dofs_of(config, folder, numbering, where):
-    """Places and directions of the dofs, if the configuration names a file with the nodes."""
+def points_of(config, folder, numbering, where):
+    """Positions and displacements of the nodes by the dofs 1 to 3, if the configuration names a file with the nodes."""
     if "nodes" not in config:
-        return None
+        return {}
     if numbering.labels is None or config.get("unit") not in foreign_mesh.UNITS:
         raise Error("`nodes` needs matrices with nodes and dofs, and a unit of length", where, f"write `unit`, one of: {', '.join(foreign_mesh.UNITS)}")
     path = folder / config["nodes"]
@@ -54,11 +56,13 @@ def dofs_of(config, folder, numbering, where):
     if reader is None or not path.is_file():
         raise Error(f"`{path}` is no file with nodes", where, f"name a file that ends in one of: {', '.join(foreign_mesh.READERS)}")
     points, scale = reader(path).points, foreign_mesh.UNITS[config["unit"]]
-    lost = [node for node, _ in numbering.labels if node > 0 and node not in points]
-    if lost:
+    moves = [(node, dof, column) for column, (node, dof) in enumerate(numbering.labels) if node > 0 and dof in (1, 2, 3)]
+    number = {node: i for i, node in enumerate(dict.fromkeys(node for node, *_ in moves))}
+    if lost := [node for node in number if node not in points]:
         raise Error(f"node {lost[0]} of the matrices is missing", path, "name the file of the model from which the matrices come")
-    return [{**dict(zip(("x [m]", "y [m]", "z [m]"), (scale * x for x in points.get(node, (0.0, 0.0, 0.0))))), "direction": DIRECTIONS.get(dof, "")}
-            for node, dof in numbering.labels]
+    rows = [3 * number[node] + dof - 1 for node, dof, _ in moves]
+    displacements = sparse.csr_matrix((np.ones(len(moves)), (rows, [column for *_, column in moves])), (3 * len(number), len(numbering.labels)))
+    return {"positions": scale * np.array([points[node] for node in number]), "displacements": displacements}
 
 
 def import_system(path):
@@ -95,7 +99,7 @@ def import_system(path):
             remarks += [f"term `{term.name}` is {symmetry}; write `symmetry: {symmetry}` to have it checked" for symmetry, sign in
                         (("symmetric", 1), ("skew", -1)) if symmetry_defect(term.matrix, sign) < SYMMETRY_TOLERANCE]
     system = System(parameters, [term for _, _, term, _ in loaded], groups_of(config.get("groups", {}), numbering, path),
-                    dofs_of(config, path.parent, numbering, path), description=config.get("description", ""), where=path)
+                    **points_of(config, path.parent, numbering, path), description=config.get("description", ""), where=path)
     return system, remarks, numbering
 
 

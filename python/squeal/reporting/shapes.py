@@ -17,7 +17,7 @@ def text_of(array, kind):
 
 
 def of_growing_modes(results, modes):
-    """Points, faces and displacements of the modes that grow fastest; None where there is none, or no file of shapes."""
+    """Points, faces and displacements of the modes that grow fastest; None where there is none, no file of shapes, or no surface."""
     files = shape_files(results.folder)
     growing = [i for i, row in enumerate(modes, start=1) if row["unstable [-]"] == "1" and i in files]
     growing = sorted(sorted(growing, key=lambda i: -float(modes[i - 1]["growth rate [1/s]"]))[:LARGEST])
@@ -25,6 +25,8 @@ def of_growing_modes(results, modes):
         return None
     mesh = VtuFile(files[growing[0]])
     points, faces = np.array(mesh.points), outer_faces(mesh)
+    if len(faces) == 0:
+        return None
     used, numbers = np.unique(faces, return_inverse=True)
     is_disc = np.zeros(len(points), dtype=bool)
     is_disc[[corner for cell, component in zip(mesh.cells, mesh.cell_fields["component"]) if component == 0 for corner in cell]] = True

@@ -265,7 +265,7 @@ namespace Squeal
     run.finish();
   }
 
-  /// The same for a system file: no fields, and groups of dofs in the place of bodies.
+  /// The same for a system file: groups of dofs in the place of bodies, and shapes at its points.
   static void run_stability_of_system(Run &run)
   {
     const GivenSystem given = given_system(run);
@@ -289,6 +289,7 @@ namespace Squeal
     const Columns<int> groups  = group_columns(given, friction.modes);
     columns.insert(columns.end(), groups.begin(), groups.end());
     store_mode_tables(frictionless, friction, columns, {}, run);
+    write_mode_shapes(given.file, frictionless, friction, run);
     if (run.parameters.output.write_system != SystemOutput::none)
       write_full_system(given.file, run);
     run.finish();

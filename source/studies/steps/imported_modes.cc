@@ -168,6 +168,6 @@ namespace Squeal
 
   void write_full_system(const SystemFile &file, Run &run)
   {
-    write_terms(file.terms, file.weights, {file.parameters, file.description, file.groups}, run);
+    write_terms(file.terms, file.weights, {file.parameters, file.description, file.groups, file.points}, run);
   }
 } // namespace Squeal

@@ -58,11 +58,10 @@ namespace Squeal
       return result;
     }
 
-    void write_complex_modes(const Linearisation &linearisation,
-                             const FrictionModes &friction,
-                             const PowerBalances &balances,
-                             FieldWriter         &writer,
-                             Run                 &run)
+    /// Field of a complex mode by its column.
+    using FieldOfMode = std::function<ModeField(int column)>;
+
+    void write_complex_modes(const FrictionModes &friction, const FieldOfMode &field_of, FieldWriter &writer, Run &run)
     {
       const OutputParameters &output = run.parameters.output;
       const ComplexModes     &modes  = friction.modes;
@@ -77,12 +76,9 @@ namespace Squeal
           const ModeLabel &label     = friction.labels[j];
           const double     frequency = modal_quantities(modes.lambda[j]).frequency;
           run.progress.update(text(to_string(label), ", ", frequency, " Hz"));
-          const int column = static_cast<int>(j);
-          ModeField field  = mode_field(linearisation, file_name("complex", j, label), modes.lambda[j], view(*modes.real_part, column, 1),
-                                        view(*modes.imaginary_part, column, 1));
-          field.title      = mode_title(label, modes.lambda[j]);
-          if (const auto balance = balances.find(column); balance != balances.end())
-            field.energy_input = energy_input(linearisation, balance->second);
+          ModeField field = field_of(static_cast<int>(j));
+          field.name      = file_name("complex", j, label);
+          field.title     = mode_title(label, modes.lambda[j]);
           writer.write_mode(field);
           list.push_back({field.name, frequency});
           if (friction.unstable[j] && output.animation_frames > 0)
@@ -102,7 +98,8 @@ namespace Squeal
       run.progress.finish(text(list.size(), " modes, ", animated.size(), " animated", growth));
     }
 
-    void write_real_modes(const FrictionlessModes &modes, FieldWriter &writer, Run &run)
+    /// @param shapes displacements by the coupled dofs
+    void write_real_modes(const FrictionlessModes &modes, const SparseMatrix &shapes, FieldWriter &writer, Run &run)
     {
       std::vector<ListedMode> list;
       run.progress.begin("Real mode shapes");
@@ -110,13 +107,48 @@ namespace Squeal
         {
           const double      frequency = hertz(std::sqrt(modes.real.eigenvalues[j]));
           const std::string name      = file_name("real", j, modes.labels[j]);
-          const MultiVector shape     = *modes.linearisation.coupled.kernel * view(*modes.real.vectors, static_cast<int>(j), 1);
+          const MultiVector shape     = shapes * view(*modes.real.vectors, static_cast<int>(j), 1);
           run.progress.update(name);
           writer.write_mode({name, real_mode_title("real mode", modes.labels[j], frequency), rows_here(shape), {}});
           list.push_back({name, frequency});
         }
       writer.write_list("real_modes", list);
       run.progress.finish(text(list.size(), " modes"));
+    }
+
+    /// Points of this process, whose components are the numbers of the groups to which the dofs belong that move them most; those of no
+    /// group come last.
+    std::vector<Node> nodes_of(const ShapePoints &points, const std::vector<DofGroup> &groups)
+    {
+      const SparseMatrix       &displacements = *points.displacements;
+      const auto                none          = static_cast<unsigned int>(groups.size());
+      std::vector<unsigned int> group_of(displacements.n_columns(), none);
+      for (unsigned int g = none; g-- > 0;)
+        for (const auto &[first, last] : groups[g].ranges)
+          std::fill(group_of.begin() + first, group_of.begin() + last + 1, g);
+
+      std::vector<Node> result;
+      SparseMatrix::Row row;
+      for (int i = 0; i < displacements.rows().n_local(); i += 3)
+        {
+          const int    first = displacements.rows().number(i), point = first / 3;
+          unsigned int component = none;
+          double       largest   = 0.;
+          for (int d = 0; d < 3; ++d)
+            {
+              displacements.get_row(i + d, row);
+              for (const auto &[dof, weight] : row)
+                if (std::abs(weight) > largest)
+                  {
+                    largest   = std::abs(weight);
+                    component = group_of[dof];
+                  }
+            }
+          const auto x = points.positions.row(point);
+          Node       node{{{x[0], x[1], x[2]}}, {{first, first + 1, first + 2}}, component, point, true, {}};
+          result.push_back(std::move(node));
+        }
+      return result;
     }
 
     void write_component_modes(const FrictionlessModes &modes, FieldWriter &writer, Run &run)
@@ -241,11 +273,44 @@ namespace Squeal
     const Linearisation    &linearisation = frictionless.linearisation;
     const Scene            &scene         = *linearisation.scene;
     FieldWriter             writer(*scene.model, scene.interface, linearisation.closed, run.folder());
+    const auto              field_of = [&](const int j) {
+      const ComplexModes &modes = friction.modes;
+      ModeField field = mode_field(linearisation, "", modes.lambda[j], view(*modes.real_part, j, 1), view(*modes.imaginary_part, j, 1));
+      if (const auto balance = balances.find(j); balance != balances.end())
+        field.energy_input = energy_input(linearisation, balance->second);
+      return field;
+    };
     if (output.fields != FieldSelection::none)
-      write_complex_modes(linearisation, friction, balances, writer, run);
+      write_complex_modes(friction, field_of, writer, run);
     if (output.real_fields)
-      write_real_modes(frictionless, writer, run);
+      write_real_modes(frictionless, *linearisation.coupled.kernel, writer, run);
     if (output.component_fields)
       write_component_modes(frictionless, writer, run);
+  }
+
+  void write_mode_shapes(const SystemFile &file, const FrictionlessModes &frictionless, const FrictionModes &friction, Run &run)
+  {
+    const OutputParameters &output = run.parameters.output;
+    if (!file.points)
+      {
+        if (output.real_fields)
+          run.warn("no mode shape is written: " + file.path + " has no `positions`");
+        return;
+      }
+    const SparseMatrix &displacements = *file.points->displacements;
+    const auto          shapes        = multiply(displacements, *frictionless.linearisation.coupled.kernel);
+    FieldWriter         writer(nodes_of(*file.points, file.groups), displacements.rows(), run.folder());
+    const auto          field_of = [&](const int j) {
+      const ComplexModes &modes = friction.modes;
+      const MultiVector   re = *shapes * view(*modes.real_part, j, 1), im = *shapes * view(*modes.imaginary_part, j, 1);
+      ModeField           field{"", modes.lambda[j], {}, {}};
+      for (int i = 0; i < re.n_local_rows(); ++i)
+        field.displacement.emplace_back(re(i, 0), im(i, 0));
+      return field;
+    };
+    if (output.fields != FieldSelection::none)
+      write_complex_modes(friction, field_of, writer, run);
+    if (output.real_fields && !frictionless.labels.empty())
+      write_real_modes(frictionless, *shapes, writer, run);
   }
 } // namespace Squeal

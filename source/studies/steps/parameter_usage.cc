@@ -93,6 +93,10 @@ namespace Squeal
                                "Output/Write system", "Designs/", "Robustness/"})
         if (concerns(used, path))
           return true;
+      for (const char *shapes : {"Output/Mode shapes", "Output/Real mode shapes", "Output/Animation frames", "Output/Animation periods",
+                                 "Output/Animation growth"})
+        if (path == shapes)
+          return parameters.study->has("Output/Real mode shapes");
       for (const char *of_study :
            {"Sweep/Parameter", "Sweep/Second parameter", "Sweep/First friction coefficient", "Sweep/Last friction coefficient",
             "Sweep/Number of friction coefficients", "Sweep/Tolerance", "Sweep/Maximum basis", "Sweep/Threshold tolerance",

@@ -121,7 +121,8 @@ namespace Squeal
           run.progress.begin("System file");
           if (model.plan.file)
             write_system(model.plan.file->terms, model.plan.file->weights,
-                         {model.plan.file->parameters, model.plan.file->description, model.plan.file->groups}, write);
+                         {model.plan.file->parameters, model.plan.file->description, model.plan.file->groups, model.plan.file->points},
+                         write);
           else
             write_system(system.terms, system.values, {parameters, "coupled system, displacements in m, forces in N"}, write);
           run.progress.finish(text(system.map().n(), " dofs"));
@@ -129,7 +130,7 @@ namespace Squeal
         case SystemOutput::reduced:
           run.progress.begin("Reduced system file");
           write_system(reduced_terms(model.reduced->reduced()), system.values,
-                       {parameters, "reduced model", {}, Reduction{"basis.mtx", "points.csv", run.parameters.sweep.tolerance}}, write);
+                       {parameters, "reduced model", {}, {}, Reduction{"basis.mtx", "points.csv", run.parameters.sweep.tolerance}}, write);
           write("basis.mtx", [&](std::ostream &stream) { write_basis(model, stream); });
           write("points.csv", [&](std::ostream &stream) { point_table(model).write_csv(stream); });
           run.progress.finish(text(model.reduced->size(), " vectors"));

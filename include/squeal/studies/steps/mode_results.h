@@ -3,6 +3,7 @@
 #include <squeal/estimates/discretisation_error.h>
 #include <squeal/modes/power_balance.h>
 #include <squeal/studies/steps/friction_modes.h>
+#include <squeal/system/system_file.h>
 
 namespace Squeal
 {
@@ -42,6 +43,10 @@ namespace Squeal
   /// coupled modes, component modes; where the energy of growing ones enters; and of each kind a list through which ParaView steps. Files
   /// bear the numbers of the rows of `complex_modes.csv`, `real_modes.csv` and `component_modes.csv`.
   void write_mode_shapes(const FrictionlessModes &frictionless, const FrictionModes &friction, const PowerBalances &balances, Run &run);
+
+  /// The same of a system file at its points, with files of the same names and fields: one vertex for each point, `component` is the number
+  /// of its group of dofs from 0. Without points nothing is written.
+  void write_mode_shapes(const SystemFile &file, const FrictionlessModes &frictionless, const FrictionModes &friction, Run &run);
 
   /// `sliding_pins.csv` and `sliding_certificate.csv`, and a note on open pins and uniqueness.
   void write_sliding_tables(const Scene &scene, const SlidingState &state, const OperationParameters &operation, Run &run);
