@@ -65,6 +65,13 @@ class Mode(RenderTest):
         shares = [(self.picture((1600, 1000), mode, "--bodies", bodies).min(axis=-1) < 250).mean() for bodies in ("all", "moving")]
         self.assertLess(shares[1], 0.8 * shares[0])
 
+    def test_points_without_cells(self):
+        """Of a system: spheres, coloured where they move."""
+        self.run_scene("mesh", "Output/Write system=full")
+        modes = self.run_scene("points", "System=mesh/system", "Output/Mode shapes=all") / "modes"
+        pixels = self.picture((800, 500), sorted(modes.glob("complex_*.vtu"))[3], "--width", "800", "--view", "top")
+        self.assertGreater(coloured(pixels[80:]).mean(), 0.05)
+
     def test_names_the_fields_there_are(self):
         self.refused(["no point field pressure", "amplitude"], self.modes[0], "--field", "pressure")
 

@@ -9,6 +9,7 @@ import unittest
 from program import SAME, ProgramTest
 
 import squeal
+from squeal.vtu_file import VtuFile
 
 HAS_NUMPY = importlib.util.find_spec("numpy") is not None
 if HAS_NUMPY:
@@ -411,6 +412,78 @@ class RoundTrip(SystemTest):
                 self.assertEqual(len(again), len(expected))
                 for value, other in zip(again, expected):
                     self.assertLess(abs(value - other), SAME * abs(other))
+
+    def test_shapes(self):
+        """A point for each node that moves, with the displacement that the mesh has there; the bodies are groups."""
+        results = self.run_scene("mesh", "Output/Write system=full", "Output/Mode shapes=all", "Output/Real mode shapes=true")
+        again = self.run_scene("again", "Output/Mode shapes=all", "Output/Real mode shapes=true", "System=mesh/system")
+        for name, field in (("complex_*", "displacement_real"), ("complex_*", "amplitude"), ("real_*", "amplitude")):
+            of_mesh = [path for path in sorted((results / "modes").glob(name + ".vtu")) if not path.stem.endswith("_contact")]
+            of_points = sorted((again / "modes").glob(name + ".vtu"))
+            self.assertEqual(len(of_points), len(of_mesh))
+            mesh, points = VtuFile(of_mesh[3]), VtuFile(of_points[3])
+            self.assertEqual(set(points.cell_types), {1})
+            values, places = np.array(mesh.fields[field]), {}
+            body = {vertex: component for cell, component in zip(mesh.cells, mesh.cell_fields["component"]) for vertex in cell}
+            for vertex, place in enumerate(mesh.points):
+                places[(*np.round(place, 7), body[vertex])] = values[vertex]
+            self.assertGreater(len(points.points), 0.9 * len(mesh.points))
+            found = np.array(points.fields[field])
+            expected = np.array([places[(*np.round(place, 7), component)] for place, component in zip(points.points, points.cell_fields["component"])])
+            sign = np.sign(np.sum(found * expected))
+            if name == "real_*" or field == "amplitude":
+                self.assertLess(abs(found - expected).max(), 1e-3)
+            else:
+                self.assertLess(abs(sign * found - expected).max(), 1e-3)
+        self.assertTrue((again / "modes.pvd").is_file() and (again / "real_modes.pvd").is_file())
+        rows = self.rows(again, "complex_modes")
+        bodies = [column for column in rows[0] if column.startswith("kinetic energy of ")]
+        self.assertEqual(len(bodies), 5)
+        for row in rows:
+            self.assertAlmostEqual(sum(row[column] for column in bodies), 100., places=3)
+
+    def test_processes(self):
+        """Two processes write and read the points and groups that one does."""
+        self.run_scene("mesh", "Output/Write system=full")
+        self.run_scene("mesh_2", "Output/Write system=full", n_processes=2)
+        found = [self.run_scene(f"again_{n}", "Output/Mode shapes=all", f"System={mesh}/system", n_processes=n) for n, mesh in ((1, "mesh"), (2, "mesh_2"))]
+        for row, other in zip(*(self.rows(results, "complex_modes") for results in found)):
+            self.assertLess(abs(row["frequency [Hz]"] - other["frequency [Hz]"]), 1e-7 * row["frequency [Hz]"])
+            self.assertAlmostEqual(row["kinetic energy of disc [%]"], other["kinetic energy of disc [%]"], places=4)
+        points, others = ({tuple(np.round(place, 7)): amplitude for place, amplitude in zip(mode.points, mode.fields["amplitude"])}
+                          for mode in (VtuFile(sorted((results / "modes").glob("complex_*.vtu"))[3]) for results in found))
+        self.assertEqual(set(points), set(others))
+
+    def test_derivatives(self):
+        """Of the numbers of the parameter file that are factors of terms: the same by the mesh and by its system."""
+        damping = ["Pin material/Rayleigh beta=1e-7", "Disc material/Rayleigh alpha=2", "Materials/Volumes=pin_top_1: 2e9, 0.25, 3000",
+                   "Operation/Gyroscopic forces=true", "Mounts/Dashpots=disc_bore: 0, 1e4, 1e4"]
+        study = ["Study=sensitivity", "Sensitivity/Thresholds=false", "Sensitivity/Geometry=none", "Sensitivity/Tolerance=1e-10", "Sensitivity/Largest number of modes=3"]
+        mesh = self.rows(self.run_scene("mesh_derivatives", *study, *damping), "sensitivities")
+        self.run_scene("mesh", "Output/Write system=full", *damping)
+        description = json.loads((self.folder / "mesh" / "system" / "system.json").read_text(encoding="utf-8"))
+        self.write("again.prm", STUDY.format(study="sensitivity", band=5000).replace("= system\n", "= mesh/system\n"))
+        again = self.rows(self.run_scene("again", file="again.prm"), "sensitivities")
+        names = {"Pin material/Young modulus": "pin_young_modulus", "Disc material/Density": "disc_density", "Pin material/Density": "pin_density",
+                 "Disc material/Young modulus": "disc_young_modulus", "Pin material/Rayleigh beta": "pin_rayleigh_beta",
+                 "Disc material/Rayleigh alpha": "disc_rayleigh_alpha", "Operation/Friction coefficient": "mu",
+                 "Operation/Rotation speed": "angular_velocity_of_the_disc", "Mounts/Elastic mounts: disc_bore axial": "axial_stiffness_disc_bore",
+                 "Mounts/Dashpots: disc_bore tangential": "tangential_dashpots_disc_bore", "Materials/Volumes:/Density": "pin_top_1_density"}
+        self.assertLessEqual(set(names.values()), set(description["parameters"]))
+        compared = 0
+        for row in mesh:
+            name = names.get(row["parameter"])
+            if name is None or row["only of"] not in ("", "pin_top_1") or row["only of"] and "Volumes" not in row["parameter"]:
+                continue
+            value, scale = (complex(row["growth rate [1/s]"], 2. * math.pi * row["frequency [Hz]"]), abs(row["value"]))
+            rate = complex(row["growth rate per unit [1/s]"], 2. * math.pi * row["frequency per unit [Hz]"])
+            others = [other for other in again if other["parameter"] == name]
+            other = min(others, key=lambda other: abs(complex(other["growth rate [1/s]"], 2. * math.pi * other["frequency [Hz]"]) - value))
+            found = complex(other["growth rate per unit [1/s]"], 2. * math.pi * other["frequency per unit [Hz]"])
+            self.assertEqual(other["value"], row["value"])
+            self.assertLess(abs(found - rate) * scale, 1e-8 * abs(value), (name, found, rate))
+            compared += 1
+        self.assertEqual(compared, 3 * len(names))
 
     def test_sweep(self):
         grid = ["Sweep/Number of friction coefficients=10"]

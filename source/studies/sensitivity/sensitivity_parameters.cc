@@ -1,6 +1,7 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/contact/travel.h>
 #include <squeal/sensitivity/mesh_motions.h>
+#include <squeal/studies/steps/material_numbers.h>
 #include <squeal/studies/sensitivity/sensitivity_results.h>
 
 namespace Squeal
@@ -10,20 +11,6 @@ namespace Squeal
     /// Step of Poisson's ratio over its distance from the ends of its range, and of other constants over their size: the error of a central
     /// difference is about its square.
     constexpr double relative_step = 1e-4;
-
-    /// A number of a material that the terms contain as a factor.
-    struct MaterialNumber
-    {
-      const char *name, *unit;
-      double Material::*value;
-      std::string (*parameter)(const std::string &body);
-      bool of_single_pins;
-    };
-
-    const MaterialNumber material_numbers[] = {{"Young modulus", "Pa", &Material::young_modulus, BodyParameter::young_modulus, true},
-                                               {"Density", "kg/m^3", &Material::density, BodyParameter::density, true},
-                                               {"Rayleigh alpha", "1/s", &Material::rayleigh_alpha, BodyParameter::rayleigh_alpha, false},
-                                               {"Rayleigh beta", "s", &Material::rayleigh_beta, BodyParameter::rayleigh_beta, false}};
 
     /// A constant of an orthotropic material that is no factor of the terms. E1 is one: with it all moduli change in proportion.
     struct OrthotropicConstant
@@ -173,7 +160,8 @@ namespace Squeal
         }
     for (const std::string &volume : single)
       for (const MaterialNumber &number : material_numbers)
-        if (const bool has_own = materials.has_own(volume); has_own || number.of_single_pins)
+        if (const bool has_own = materials.has_own(volume);
+            has_own || number.value == &Material::young_modulus || number.value == &Material::density)
           result.push_back(
             of_material(materials.section_of(volume) + (has_own ? ":" : ""), materials.of(volume), number, {volume}, volume));
     for (const VolumeMaterial &own : materials.volumes)

@@ -6,6 +6,7 @@
 #include <squeal/studies/stability/strain_energy.h>
 #include <squeal/studies/steps/imported_modes.h>
 #include <squeal/studies/steps/mode_results.h>
+#include <squeal/studies/steps/written_system.h>
 
 #include <boost/range/irange.hpp>
 
@@ -260,7 +261,7 @@ namespace Squeal
     if (parameters.output.write_matrices)
       write_matrices(linearisation, run);
     if (parameters.output.write_system != SystemOutput::none)
-      write_full_system(linearisation.coupled, {friction_parameter(parameters)}, run);
+      write_scene_system(linearisation, friction_parameter(parameters), "system/", run);
     run.folder().write("mesh.msh", [&](std::ostream &stream) { write_msh(scene.mesh, stream); });
     run.finish();
   }
@@ -291,7 +292,7 @@ namespace Squeal
     store_mode_tables(frictionless, friction, columns, {}, run);
     write_mode_shapes(given.file, frictionless, friction, run);
     if (run.parameters.output.write_system != SystemOutput::none)
-      write_full_system(given.file, run);
+      write_system_again(given.file, "system/", run);
     run.finish();
   }
 

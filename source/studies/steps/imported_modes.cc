@@ -9,15 +9,6 @@ namespace Squeal
 {
   namespace
   {
-    void write_terms(const std::vector<Term> &terms, const ParameterValues &weights, const SystemNotes &notes, Run &run)
-    {
-      run.progress.begin("System file");
-      write_system(terms, weights, notes, [&](const std::string &name, const std::function<void(std::ostream &)> &content) {
-        run.folder().write("system/" + name, content);
-      });
-      run.progress.finish(text(terms.size(), " terms"));
-    }
-
     ModeLabel numbered_label(const int number)
     {
       ModeLabel label;
@@ -147,27 +138,5 @@ namespace Squeal
       result.push_back({"kinetic energy of " + file.groups[g].name, "%",
                         [shares, g](const int j) { return 100. * shares(static_cast<Eigen::Index>(g), j); }, 1});
     return result;
-  }
-
-  FileParameter friction_parameter(const Parameters &parameters)
-  {
-    constexpr double largest = 10.;
-    const double     mu      = parameters.operation.friction_coefficient;
-    const bool       depends = parameters.needs_steady_sliding() || parameters.has_contact_damping();
-    FileParameter    result{SystemParameter::friction, mu};
-    result.lower       = depends ? mu : 0.;
-    result.upper       = depends ? mu : largest;
-    result.description = depends ? "friction coefficient, about the state of contact at this value" : "friction coefficient";
-    return result;
-  }
-
-  void write_full_system(const CoupledSystem &system, const std::vector<FileParameter> &parameters, Run &run)
-  {
-    write_terms(system.terms, system.values, {parameters, "coupled system, displacements in m, forces in N"}, run);
-  }
-
-  void write_full_system(const SystemFile &file, Run &run)
-  {
-    write_terms(file.terms, file.weights, {file.parameters, file.description, file.groups, file.points}, run);
   }
 } // namespace Squeal

@@ -1,4 +1,5 @@
 #include <squeal/linear_algebra/multivector.h>
+#include <squeal/studies/steps/written_system.h>
 #include <squeal/studies/sweep/sweep_charts.h>
 
 #include <ostream>
@@ -106,34 +107,26 @@ namespace Squeal
 
   void write_system_of(const SweepModel &model)
   {
-    Run                 &run    = model.run;
-    const CoupledSystem &system = model.frictionless.linearisation.coupled;
-    const std::string    folder = model.plan.regimes.size() > 1 ? text("system_", model.regime.number, "/") : "system/";
-    const auto           write  = [&](const std::string &name, const std::function<void(std::ostream &)> &content) {
-      run.folder().write(folder + name, content);
-    };
-    const std::vector<FileParameter> parameters = covered_parameters(model);
+    Run                             &run           = model.run;
+    const std::string                folder        = model.plan.regimes.size() > 1 ? text("system_", model.regime.number, "/") : "system/";
+    const Linearisation             &linearisation = model.frictionless.linearisation;
+    const std::vector<FileParameter> parameters    = covered_parameters(model);
     switch (run.parameters.output.write_system)
       {
         case SystemOutput::none:
           return;
         case SystemOutput::full:
-          run.progress.begin("System file");
           if (model.plan.file)
-            write_system(model.plan.file->terms, model.plan.file->weights,
-                         {model.plan.file->parameters, model.plan.file->description, model.plan.file->groups, model.plan.file->points},
-                         write);
+            write_system_again(*model.plan.file, folder, run);
           else
-            write_system(system.terms, system.values, {parameters, "coupled system, displacements in m, forces in N"}, write);
-          run.progress.finish(text(system.map().n(), " dofs"));
+            write_scene_system(linearisation, parameters.front(), folder, run);
           return;
         case SystemOutput::reduced:
-          run.progress.begin("Reduced system file");
-          write_system(reduced_terms(model.reduced->reduced()), system.values,
-                       {parameters, "reduced model", {}, {}, Reduction{"basis.mtx", "points.csv", run.parameters.sweep.tolerance}}, write);
-          write("basis.mtx", [&](std::ostream &stream) { write_basis(model, stream); });
-          write("points.csv", [&](std::ostream &stream) { point_table(model).write_csv(stream); });
-          run.progress.finish(text(model.reduced->size(), " vectors"));
+          write_system(reduced_terms(model.reduced->reduced()), linearisation.coupled.values,
+                       {parameters, "reduced model", {}, {}, Reduction{"basis.mtx", "points.csv", run.parameters.sweep.tolerance}}, folder,
+                       run);
+          run.folder().write(folder + "basis.mtx", [&](std::ostream &stream) { write_basis(model, stream); });
+          run.folder().write(folder + "points.csv", [&](std::ostream &stream) { point_table(model).write_csv(stream); });
       }
   }
 } // namespace Squeal

@@ -41,11 +41,4 @@ namespace Squeal
 
   /// Columns of a table of modes, known by their numbers: shares of the kinetic energy of the groups of dofs, φ_gᴴ (M φ)_g / φᴴ M φ [%].
   Columns<int> group_columns(const GivenSystem &given, const ComplexModes &modes);
-
-  /// μ of a mesh as the parameter of a system file: its range is all that is swept, or its value where contact nodes or damping depend on it.
-  FileParameter friction_parameter(const Parameters &parameters);
-
-  /// `Output/Write system`: the full system of a mesh, or a system file as it was read, in the folder `system` of the results.
-  void write_full_system(const CoupledSystem &system, const std::vector<FileParameter> &parameters, Run &run);
-  void write_full_system(const SystemFile &file, Run &run);
 } // namespace Squeal
