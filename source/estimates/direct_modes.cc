@@ -154,21 +154,21 @@ namespace Squeal
 
     const auto           factor = factors_at(matrices, options.shift, source);
     const QuadraticModes right = quadratic_modes({matrices.mass.get(), matrices.damping.get(), matrices.stiffness.get()}, *factor, options);
+    ComplexModes         modes;
+    modes.real_values  = right.real_values;
+    modes.n_rigid_body = right.n_zero_values / 2;
     if (right.values.empty())
-      throw SolverError("no oscillating mode lies in the band", "complex modes", "raise Band/Maximum frequency");
+      return judged_by_errors(std::move(modes), {}, matrices.damping != nullptr);
     const QuadraticModes left =
       in_order_of(right.values, quadratic_modes({transpose.mass.get(), transpose.damping.get(), transpose.stiffness.get()},
                                                 TransposedInverse(*factor), options));
 
-    ComplexModes modes;
     modes.lambda              = right.values;
     modes.real_part           = right.real_part;
     modes.imaginary_part      = right.imaginary_part;
     modes.left_real_part      = left.real_part;
     modes.left_imaginary_part = left.imaginary_part;
     modes.residuals           = right.residuals;
-    modes.real_values         = right.real_values;
-    modes.n_rigid_body        = right.n_zero_values / 2;
     modes.summary             = text("LU factors of Q at ", exact_text(options.shift), " 1/s, ", right.n_solves, " solves");
 
     make_dual(modes, products_by_lambda(matrices, modes));

@@ -210,8 +210,40 @@ class Flutter(SystemTest):
                 for row, below, above in zip(rates, *ends):
                     rate = complex(row["growth rate per unit [1/s]"], 2. * math.pi * row["frequency per unit [Hz]"])
                     self.assertLess(abs(rate - (above - below) / (2. * step)), 1e-5 * abs(rate))
+        self.write("study.prm", STUDY.format(study="reduction", band=BAND))
+        self.assert_message(self.call("study.prm", "--output", "refused"), ["negative eigenvalues", "all studies but reduction"])
         self.write("study.prm", STUDY.format(study="sweep", band=BAND))
-        self.assert_message(self.call("study.prm", "--output", "refused", "--set", "Sweep/Parameter=p, 0.5, 2, 4"), ["negative eigenvalues", "stability"])
+        self.assert_message(self.call("study.prm", "--output", "refused", "--set", "Sweep/Parameter=p, 0.5, 2, 4", "--set", "Output/Write system=reduced"),
+                            ["no definite part", "Output/Write system"])
+
+    def test_flutter_with_multiplier(self):
+        """The flutter of two dofs, a third one held by a Lagrange multiplier: its threshold, map and samples, by full order."""
+        padded = [(power, coefficient, [[*row, 0., 0.] for row in A] + [[0.] * 4] * 2, symmetry) for power, coefficient, A, symmetry in flutter_terms()]
+        mass, stiffness, friction = ([list(row) for row in term[2]] for term in padded)
+        mass[2][2] = 1.
+        stiffness[2][2], stiffness[2][3], stiffness[3][2] = 50., 1., 1.
+        self.write_system({"mu": (0.6, 0., 1.), "kappa": (1., 0.5, 2.)}, [
+            (power, coefficient, A, symmetry) for (power, coefficient, _, symmetry), A in zip(padded, (mass, stiffness, friction))])
+        results = self.study("sweep", "Sweep/Parameter=mu, 0, 1, 21", "Sweep/Second parameter=kappa, 0.5, 2, 4", "Sweep/Threshold tolerance=1e-10",
+                             "Sweep/Count modes at=0.3, 0.8", "Sweep/Complex plane at=0.8")
+        thresholds = self.rows(results, "thresholds")
+        self.assertEqual([row["mechanism"] for row in thresholds], ["coalescence"])
+        self.assertAlmostEqual(thresholds[0]["mu [-]"], self.MU_C, delta=1e-8)
+        self.assertLess(abs(thresholds[0]["mu [-]"] - self.MU_C), thresholds[0]["uncertainty [-]"] + 1e-12)
+        for row in self.rows(results, "argument_counts"):
+            self.assertEqual((row["modes of the sweep [-]"], row["modes counted [-]"]), (2., 2.))
+        for cell in self.rows(results, "map"):
+            self.assertEqual(cell["unstable modes [-]"], cell["mu [-]"] * cell["kappa [-]"] > self.MU_C, cell)
+        for row in self.rows(results, "branches"):
+            value = complex(row["growth rate [1/s]"], 2. * math.pi * row["frequency [Hz]"])
+            self.assertLess(min(abs(value * value - square) for square in flutter_squares(row["mu [-]"])), 1e-5 * abs(value) ** 2)
+            self.assertLess(max(row["eps_res right [-]"], row["eps_res left [-]"]), 1e-12)
+        results = self.study("geometry", "Designs/Variables=mu = 0.2, 0.9; kappa = 0.5, 1, 2")
+        for row in self.rows(results, "samples"):
+            self.assertEqual(row["unstable modes [-]"], float(row["mu"] * row["kappa"] > self.MU_C), row)
+        results = self.study("robustness", "Robustness/Distributions=mu = uniform 0 to 1", "Robustness/Number of samples=64", "Robustness/Sobol indices=false")
+        squeal_probability = self.rows(results, "probabilities")[0]["probability of squeal [%]"]
+        self.assertAlmostEqual(squeal_probability, 100. * (1. - self.MU_C), delta=5.)
 
     def test_derivatives_of_expressions(self):
         """Fast, huge and tiny: the step of differences follows the expression."""

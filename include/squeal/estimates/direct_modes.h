@@ -17,6 +17,8 @@ namespace Squeal
    * @param value  of the varied parameter
    * @param source of the system, for messages: "file brake/system.json"
    *
+   * Where no mode oscillates in the band there are none, and no vectors.
+   *
    * Throws SolverError if Q(s) is singular to working precision, or if right and left eigenvalues differ in number.
    */
   JudgedModes direct_modes(const CoupledSystem    &system,

@@ -33,6 +33,33 @@ namespace Squeal
       return result;
     }
 
+    /// Samples of a system without a definite part, each at full order. Returns their largest estimated error.
+    double solve_directly(SweepModel &model, std::vector<std::optional<Sample>> &samples)
+    {
+      Run &run = model.run;
+      run.progress.begin("Samples");
+      const auto &points = model.regime.points;
+      double      worst  = 0.;
+      std::size_t n_lost = 0;
+      std::string reason;
+      for (const OperatingPoint &point : points)
+        try
+          {
+            const ChartPoint found = model.evaluate_directly(point);
+            worst                  = std::max(worst, model.largest_error(found));
+            samples[point.line]    = modes_of(model, found);
+          }
+        catch (const SolverError &error)
+          {
+            ++n_lost;
+            reason = in_one_line(error);
+          }
+      run.progress.finish(text(points.size() - n_lost, " of ", points.size(), " samples at full order, estimated error ", worst));
+      if (n_lost > 0)
+        run.warn(text(n_lost, " samples could not be solved and count as undecided: ", reason));
+      return worst;
+    }
+
     /// The samples of a contact set by one basis, which grows for sets of them that are each larger than the one before.
     /// Returns their largest estimated error.
     double solve_contact_set(SweepModel &model, const double tolerance, std::vector<std::optional<Sample>> &samples)
@@ -130,8 +157,8 @@ namespace Squeal
     for (std::size_t i = 0; i < systems.plan.regimes.size(); ++i)
       {
         SweepModel model(systems.plan, systems.plan.regimes[i], run, systems.middles[i]);
-        worst     = std::max(worst, solve_contact_set(model, tolerance, result));
-        n_vectors = std::max(n_vectors, model.reduced->size());
+        worst     = std::max(worst, model.reduced ? solve_contact_set(model, tolerance, result) : solve_directly(model, result));
+        n_vectors = std::max(n_vectors, model.reduced ? model.reduced->size() : 0);
       }
     run.count("basis vectors", n_vectors);
     run.measure("largest estimated error of lambda [-]", worst);

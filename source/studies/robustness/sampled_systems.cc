@@ -225,7 +225,7 @@ namespace Squeal
     const CoupledSystem whole =
       imported_system(file, result.plan.values, varied, circular_frequency(run.parameters.discretization.maximum_frequency));
     result.plan.file = std::move(file);
-    result.middles.push_back(imported_modes(undamped(whole), whole, run, band_margin));
+    result.middles.push_back(starting_modes(whole, run));
     return result;
   }
 } // namespace Squeal

@@ -2,6 +2,7 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/linear_algebra/communication.h>
 #include <squeal/studies/steps/imported_modes.h>
+#include <squeal/tracking/chart_model.h>
 
 #include <cmath>
 
@@ -9,19 +10,19 @@ namespace Squeal
 {
   namespace
   {
-    ModeLabel numbered_label(const int number)
-    {
-      ModeLabel label;
-      label.family        = ModeFamily::body;
-      label.body          = "mode";
-      label.rank          = number;
-      label.participation = 1.;
-      return label;
-    }
-
     /// Vectors of a block of the eigensolver.
     constexpr int block_size_of_modes = 8;
   } // namespace
+
+  ModeLabel numbered_label(const int number)
+  {
+    ModeLabel label;
+    label.family        = ModeFamily::body;
+    label.body          = "mode";
+    label.rank          = number;
+    label.participation = 1.;
+    return label;
+  }
 
   SystemFile read_system(Run &run)
   {
@@ -54,8 +55,8 @@ namespace Squeal
       throw SolverError(
         "the symmetric part of the stiffness has negative eigenvalues, or it and the mass are singular for the same motion",
         "file " + run.parameters.system.path(),
-        "mark terms that may destabilise by \"kind\": \"friction\", eliminate constraints, and check the signs of the terms; Study = "
-        "stability and sensitivity solve such systems");
+        "mark terms that may destabilise by \"kind\": \"friction\", eliminate constraints, and check the signs of the terms; all studies "
+        "but reduction solve such systems");
     const auto count = number_of_modes(system, (1. + margin) * omega_max, solvers, run.progress);
 
     FrictionlessModes result;
@@ -69,6 +70,15 @@ namespace Squeal
     return result;
   }
 
+  FrictionlessModes starting_modes(const CoupledSystem &whole, Run &run)
+  {
+    if (whole.stiffness)
+      return imported_modes(undamped(whole), whole, run, band_margin);
+    FrictionlessModes result;
+    result.linearisation.coupled = whole;
+    return result;
+  }
+
   FrictionModes direct_solution(const GivenSystem &given, Run &run)
   {
     run.progress.begin("Complex modes");
@@ -76,6 +86,8 @@ namespace Squeal
     FrictionModes result;
     static_cast<JudgedModes &>(result) = direct_modes(given.coupled, given.value, run.parameters.discretization.band(),
                                                       run.parameters.solvers, "file " + given.file.path, run.progress);
+    if (result.modes.lambda.empty())
+      throw SolverError("no oscillating mode lies in the band", "complex modes", "raise Band/Maximum frequency");
     for (std::size_t j = 0; j < result.modes.lambda.size(); ++j)
       result.labels.push_back(numbered_label(static_cast<int>(j) + 1));
     if (!given.coupled.varied.empty())
@@ -86,21 +98,27 @@ namespace Squeal
     return result;
   }
 
+  CountedModes counted_modes(const CoupledSystem &system, const double value, const FrictionlessModes &frictionless, Run &run)
+  {
+    const Band band = run.parameters.discretization.band();
+    if (!system.stiffness)
+      {
+        const ContourOptions contour = contour_of_band(band);
+        return {contour, count_by_sparse_lu(sparse_matrices(system.terms, system.at(value)), contour, run.progress)};
+      }
+    const ContourOptions contour = contour_of_band(system, frictionless, band, run.parameters.solvers);
+    return {contour, count_by_contour(system, {value}, contour, run.progress).front()};
+  }
+
   void count_modes(const GivenSystem &given, const FrictionlessModes &frictionless, const FrictionModes &friction, Run &run)
   {
-    const CoupledSystem &system = given.coupled;
-    const Band           band   = run.parameters.discretization.band();
-    const ContourOptions contour =
-      system.stiffness ? contour_of_band(system, frictionless, band, run.parameters.solvers) : contour_of_band(band);
     run.progress.begin("Argument principle");
-    if (!is_countable(system))
+    if (!is_countable(given.coupled))
       {
         run.progress.finish("modes are not counted on several processes");
         return;
       }
-    const ContourCount count = system.stiffness ?
-                                 count_by_contour(system, {given.value}, contour, run.progress).front() :
-                                 count_by_sparse_lu(sparse_matrices(system.terms, system.at(given.value)), contour, run.progress);
+    const auto [contour, count] = counted_modes(given.coupled, given.value, frictionless, run);
     check_count(count.n_modes, friction.modes.lambda, contour);
     run.count("complex modes counted by the argument principle", count.n_modes);
     run.progress.finish(

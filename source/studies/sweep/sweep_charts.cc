@@ -130,10 +130,11 @@ namespace Squeal
     // tell between which modes there are thresholds; which of them are uncertain is not asked, for that hangs on rounding.
     ChartOptions coarse        = options;
     coarse.maximum_refinements = 0;
-    if (!model.reduced->reduced().is_restricted())
+    if (model.reduced && !model.reduced->reduced().is_restricted())
       sharpen(model, line, stability_chart(grid, evaluate, coarse), grid);
-    const auto at = [&](const double mu) { return model.plan.point(line, mu, model.regime.closed); };
-    SweepChart result{stability_chart(grid, evaluate, options, zero_predictor(*model.reduced, at, run.communicator)), {}, {}, {}};
+    const auto            at      = [&](const double mu) { return model.plan.point(line, mu, model.regime.closed); };
+    const PredictZero     predict = model.reduced ? zero_predictor(*model.reduced, at, run.communicator) : PredictZero();
+    SweepChart            result{stability_chart(grid, evaluate, options, predict), {}, {}, {}};
     const StabilityChart &chart  = result.chart;
     const double          before = grid.empty() ? 0. : value_before(model, line, grid.front());
     result.labels                = branch_labels(model, chart);

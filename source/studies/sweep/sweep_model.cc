@@ -109,7 +109,7 @@ namespace Squeal
       {
         const CoupledSystem whole = imported_system(*plan.file, plan.values, plan.axis.name, largest_circular_frequency);
         check_countable(whole, run);
-        frictionless = imported_modes(undamped(whole), whole, run, band_margin);
+        frictionless = starting_modes(whole, run);
         start();
         return;
       }
@@ -129,6 +129,14 @@ namespace Squeal
 
   void SweepModel::start()
   {
+    if (!frictionless.linearisation.coupled.stiffness)
+      {
+        if (run.parameters.output.write_system == SystemOutput::reduced)
+          throw ParameterError("the system has no definite part, and so no reduced model to write", "parameter Output/Write system",
+                               "set it to full or none");
+        run.progress.note("  no definite part: every value is solved at full order, and modes are named by their numbers at the first one");
+        return;
+      }
     run.progress.begin("Reduced model");
     reduced = std::make_unique<ChartModel>(frictionless.linearisation.coupled, *frictionless.inverse, frictionless.shift,
                                            *frictionless.real.vectors, largest_circular_frequency);
@@ -143,9 +151,14 @@ namespace Squeal
     for (const double mu : friction_coefficients)
       if (known.count({line, mu}) == 0)
         missing.push_back(plan.point(line, mu, regime.closed));
-    Squeal::evaluate(*reduced, missing, run.communicator, [&](const int i, ChartPoint &&found) {
+    const auto keep = [&](const int i, ChartPoint &&found) {
       known.emplace(std::make_pair(line, missing[i].friction_coefficient), std::move(found));
-    });
+    };
+    if (reduced)
+      Squeal::evaluate(*reduced, missing, run.communicator, keep);
+    else
+      for (std::size_t i = 0; i < missing.size(); ++i)
+        keep(static_cast<int>(i), evaluate_directly(missing[i]));
     std::vector<ChartPoint> result;
     for (const double mu : friction_coefficients)
       result.push_back(known.at({line, mu}));
@@ -154,6 +167,12 @@ namespace Squeal
 
   std::pair<MultiVector, MultiVector> SweepModel::shapes(const ChartPoint &point, const std::vector<int> &modes) const
   {
+    if (!reduced)
+      {
+        const RowMap            &map = frictionless.linearisation.coupled.map();
+        const ComplexDenseMatrix X   = point.right(Eigen::all, modes);
+        return {distribute(X.real(), map), distribute(X.imag(), map)};
+      }
     const ComplexDenseMatrix X = with_rows(point.right(Eigen::all, modes), reduced->size());
     return {reduced->reduced().times_basis(X.real()), reduced->reduced().times_basis(X.imag())};
   }
@@ -186,7 +205,7 @@ namespace Squeal
 
   std::vector<ModeLabel> SweepModel::labels(const ChartPoint &point, const std::vector<int> &modes) const
   {
-    return identify(frictionless.references(), shape_shares(point, modes));
+    return reduced ? identify(frictionless.references(), shape_shares(point, modes)) : labels_by_number(point, modes);
   }
 
   std::vector<int> SweepModel::in_band(const ChartPoint &point) const
@@ -195,6 +214,16 @@ namespace Squeal
     for (std::size_t j = 0; j < point.lambda.size(); ++j)
       if (is_in_band(point.lambda[j]))
         result.push_back(static_cast<int>(j));
+    return result;
+  }
+
+  double SweepModel::largest_error(const ChartPoint &point) const
+  {
+    if (reduced)
+      return reduced->largest_error(point);
+    double result = 0.;
+    for (const int j : in_band(point))
+      result = std::max(result, point.errors[j]);
     return result;
   }
 
@@ -222,8 +251,22 @@ namespace Squeal
     return result;
   }
 
+  /// Evaluates all points at full order, as a step of the run.
+  static void evaluate_points_directly(SweepModel &model)
+  {
+    Run &run = model.run;
+    run.progress.begin("Sweep");
+    double worst = 0.;
+    for (const OperatingPoint &point : model.regime.points)
+      worst = std::max(worst, model.largest_error(model.evaluate(point.line, {point.friction_coefficient}).front()));
+    run.progress.finish(text(model.known.size(), " operating points at full order, estimated error ", worst));
+    run.measure("largest estimated error of lambda [-]", worst);
+  }
+
   void evaluate_points(SweepModel &model)
   {
+    if (!model.reduced)
+      return evaluate_points_directly(model);
     Run                               &run    = model.run;
     const std::vector<OperatingPoint> &points = model.regime.points;
     ErrorControlledSweepOptions        options;

@@ -59,7 +59,7 @@ namespace Squeal
     {
       const bool       is_new    = model.known.count({line, mu}) == 0;
       const ChartPoint point     = model.evaluate(line, {mu}).front();
-      const double     tolerance = model.run.parameters.sweep.tolerance, error = model.reduced->largest_error(point);
+      const double     tolerance = model.run.parameters.sweep.tolerance, error = model.largest_error(point);
       if (is_new && !(error <= tolerance))
         model.run.progress.note(text("  note: at ", model.plan.axis.name, " = ", mu, line > 0 ? " without radial dissipation" : "",
                                      " the modes miss the tolerance of ", tolerance, ": the estimated error is ", error));
@@ -93,7 +93,7 @@ namespace Squeal
           cell.n_unstable  = model.n_of(point, Verdict::unstable);
           cell.n_undecided = model.n_of(point, Verdict::undecided);
 
-          cell.error = model.reduced->largest_error(point);
+          cell.error = model.largest_error(point);
         }
     }
 
@@ -128,10 +128,8 @@ namespace Squeal
           if (model.plan.closed_at(mu) != model.regime.closed)
             continue;
           run.progress.begin("Argument principle");
-          const CoupledSystem system = model.linearisation_at(mu).coupled;
-          const auto options = contour_of_band(system, model.frictionless, run.parameters.discretization.band(), run.parameters.solvers);
-          const ContourCount count   = count_by_contour(system, {mu}, options, run.progress).front();
-          const int          n_found = n_in_rectangle(modes_at(model, mu).lambda, options);
+          const auto [options, count] = counted_modes(model.linearisation_at(mu).coupled, mu, model.frictionless, run);
+          const int n_found           = n_in_rectangle(modes_at(model, mu).lambda, options);
           counts.push_back({mu, n_found, count});
           run.progress.finish(text(count.n_modes, " modes counted, ", n_found, " found at ", model.plan.axis.name, " = ", mu, ", ",
                                    count.n_points, " points"));

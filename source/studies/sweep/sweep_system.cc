@@ -100,7 +100,7 @@ namespace Squeal
                              return line.kind == SweepLine::Kind::map ? Entry(line.value) : Entry();
                            }});
       columns.push_back(
-        {"largest estimated error of lambda", "-", [&](const Row &row) { return model.reduced->largest_error(row.second); }, 1, true});
+        {"largest estimated error of lambda", "-", [&](const Row &row) { return model.largest_error(row.second); }, 1, true});
       return Table(columns, model.known);
     }
   } // namespace

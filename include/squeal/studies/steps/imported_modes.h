@@ -2,6 +2,7 @@
 
 #include <squeal/contact/imported_system.h>
 #include <squeal/estimates/direct_modes.h>
+#include <squeal/modes/contour_count.h>
 #include <squeal/studies/steps/friction_modes.h>
 
 namespace Squeal
@@ -29,11 +30,27 @@ namespace Squeal
    */
   FrictionlessModes imported_modes(const CoupledSystem &system, const CoupledSystem &whole, Run &run, double margin = 0.);
 
+  /// Modes of a system without its damping, somewhat beyond the band, from which reduced models start; without a definite part only the
+  /// linearisation.
+  FrictionlessModes starting_modes(const CoupledSystem &whole, Run &run);
+
+  /// `mode 3`.
+  ModeLabel numbered_label(int number);
+
   /// Modes of a system without a definite part by LU factors of Q(s), counted, as steps of the run; named by their numbers.
   FrictionModes direct_solution(const GivenSystem &given, Run &run);
 
-  /// Counts modes by the argument principle in the rectangle of the band, as a step of the run. Throws SolverError unless as many were found.
+  /// Modes in the rectangle of the band by the argument principle.
+  struct CountedModes
+  {
+    ContourOptions contour;
+    ContourCount   count;
+  };
+
   /// @param frictionless of no matter for a system without a definite part
+  CountedModes counted_modes(const CoupledSystem &system, double value, const FrictionlessModes &frictionless, Run &run);
+
+  /// Counts modes by the argument principle in the rectangle of the band, as a step of the run. Throws SolverError unless as many were found.
   void count_modes(const GivenSystem &given, const FrictionlessModes &frictionless, const FrictionModes &friction, Run &run);
 
   /// Columns of a table of modes: backward errors, condition numbers and relative errors of λ [-].

@@ -77,7 +77,8 @@ namespace Squeal
   /// The same for some lines of operating points.
   SweepPlan sweep_plan(const Scene &scene, const std::vector<SweepLine> &lines, Run &run);
 
-  /// The coupled system of a contact set with its basis, and what is known of its modes.
+  /// The coupled system of a contact set with its basis, and what is known of its modes. A system file without a definite part has no basis:
+  /// its points are solved at full order, and vectors are those of the scaled dofs in the place of coordinates.
   struct SweepModel
   {
     /// Linearises where contact damps most: the basis starts from the responses to that damping. All arguments must outlive the model.
@@ -95,6 +96,12 @@ namespace Squeal
 
     /// Modes of a line, known ones or new ones. All processes must call.
     std::vector<ChartPoint> evaluate(int line, const std::vector<double> &friction_coefficients);
+
+    /// Modes of a point at full order by direct_modes(); its residuals are backward errors. All processes must call.
+    ChartPoint evaluate_directly(const OperatingPoint &point) const;
+
+    /// Largest estimated |δλ| / |λ| of the modes of a point inside the band.
+    double largest_error(const ChartPoint &point) const;
 
     /// Right vectors of some modes of a point at full order, real and imaginary parts.
     std::pair<MultiVector, MultiVector> shapes(const ChartPoint &point, const std::vector<int> &modes) const;
@@ -124,8 +131,8 @@ namespace Squeal
     Run                                         &run;
     const double                                 largest_circular_frequency; ///< end of the band [rad/s]
     FrictionlessModes                            frictionless;
-    std::unique_ptr<ChartModel>                  reduced;
-    std::map<std::pair<int, double>, ChartPoint> known; ///< by line and friction coefficient
+    std::unique_ptr<ChartModel>                  reduced; ///< null without a definite part
+    std::map<std::pair<int, double>, ChartPoint> known;   ///< by line and friction coefficient
 
   private:
     /// Begins the reduced model.
@@ -134,7 +141,11 @@ namespace Squeal
     /// What names the modes of a point, from products with the basis or, where the basis is only a part of another one, at full order.
     std::vector<ShapeShares> shape_shares(const ChartPoint &point, const std::vector<int> &modes) const;
 
-    mutable std::vector<DenseMatrix> reference_products; ///< with the basis as it was when modes were last named
+    /// Numbers of the modes that they resemble most at the point that is named first, without a basis.
+    std::vector<ModeLabel> labels_by_number(const ChartPoint &point, const std::vector<int> &modes) const;
+
+    mutable std::optional<ChartPoint> first_point;
+    mutable std::vector<DenseMatrix>  reference_products; ///< with the basis as it was when modes were last named
   };
 
   /// Places among n friction coefficients at which a basis learns most: the ends, the middle and the quarters, the last one first.
