@@ -80,8 +80,8 @@ namespace Squeal
     /// @param closed numbers of the pairs that are in contact, among those of @p interface
     FieldWriter(const Model &model, const ContactInterface &interface, const std::vector<unsigned int> &closed, const ResultFolder &folder);
 
-    /// Of points without cells, as a system file has them: no contact faces.
-    /// @param points of this process, with their dofs
+    /// Writes shapes on points without cells, as a system file gives them; there are no contact faces.
+    /// @param points those of this process, with their dofs
     FieldWriter(const std::vector<Node> &points, const RowMap &dofs, const ResultFolder &folder);
 
     /// Files `modes/NAME*.vtu`.

@@ -98,7 +98,7 @@ namespace Squeal
       run.progress.finish(text(list.size(), " modes, ", animated.size(), " animated", growth));
     }
 
-    /// @param shapes displacements by the coupled dofs
+    /// @param shapes matrix from coupled dofs to displacements
     void write_real_modes(const FrictionlessModes &modes, const SparseMatrix &shapes, FieldWriter &writer, Run &run)
     {
       std::vector<ListedMode> list;
@@ -116,8 +116,8 @@ namespace Squeal
       run.progress.finish(text(list.size(), " modes"));
     }
 
-    /// Points of this process, whose components are the numbers of the groups to which the dofs belong that move them most; those of no
-    /// group come last.
+    /// Points of this process. The component of a point is the number of the group whose dof has the largest displacement there; points
+    /// without a group have the last number.
     std::vector<Node> nodes_of(const ShapePoints &points, const std::vector<DofGroup> &groups)
     {
       const SparseMatrix       &displacements = *points.displacements;

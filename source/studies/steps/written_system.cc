@@ -17,7 +17,7 @@ namespace Squeal
     /// Ends of the ranges of parameters relative to their values.
     constexpr double range_factor = 100.;
 
-    /// Parameters of a file, and their names there by those of the terms.
+    /// Parameters of a file, and a map from parameters of the terms to their names in the file.
     struct NamedParameters
     {
       std::vector<FileParameter>         parameters;
@@ -42,7 +42,7 @@ namespace Squeal
       }
     };
 
-    /// A name in small letters, digits and _, which replaces other characters.
+    /// Lower-case letters, digits and _, which replaces all other characters.
     std::string identifier(const std::string &text)
     {
       std::string result = is_parameter_name(text.substr(0, 1)) ? "" : "of_";
@@ -98,8 +98,7 @@ namespace Squeal
       return result;
     }
 
-    /// A product of powers of parameters in their names of the file: where all are one, it is its factor, and its derivatives are that times
-    /// the exponents.
+    /// Renames the parameters of a monomial. At p = 1 its value is its factor, and its derivatives are the factor times the exponents.
     Coefficient in_names(const Coefficient &monomial, const std::map<std::string, std::string> &names)
     {
       ParameterValues ones;
@@ -113,7 +112,7 @@ namespace Squeal
       return {factor, powers};
     }
 
-    /// Terms of the bodies with parameters of the file, those with the same coefficient summed.
+    /// Terms of the bodies in parameters of the file; sums those with the same coefficient.
     std::vector<Term> summed_terms(const BodyTerms &bodies, const std::map<std::string, std::string> &names)
     {
       std::vector<Term>                                                                result;
@@ -144,7 +143,7 @@ namespace Squeal
       return result;
     }
 
-    /// The coupled system with its parameters in their names of the file.
+    /// The coupled system in parameters of the file.
     CoupledSystem system_with_parameters(const Linearisation &linearisation, const NamedParameters &named, const Parameters &parameters)
     {
       const Model &model  = *linearisation.scene->model;
@@ -167,7 +166,7 @@ namespace Squeal
       return result;
     }
 
-    /// The bodies by their coupled dofs, on process 0.
+    /// Coupled dofs of each body, on process 0.
     std::vector<DofGroup> groups_of_bodies(const Model &model, const SparseMatrix &kernel)
     {
       MultiVector component(model.free_map(), 1);

@@ -41,6 +41,7 @@ namespace Squeal
       double       friction_coefficient;
       int          n_found; ///< in the rectangle
       ContourCount count;
+      bool         has_real_modes; ///< whether the system has a definite part
     };
 
     /// Label of the branch that a mode resembles most, at the point of the chart nearest to its own.
@@ -130,7 +131,7 @@ namespace Squeal
           run.progress.begin("Argument principle");
           const auto [options, count] = counted_modes(model.linearisation_at(mu).coupled, mu, model.frictionless, run);
           const int n_found           = n_in_rectangle(modes_at(model, mu).lambda, options);
-          counts.push_back({mu, n_found, count});
+          counts.push_back({mu, n_found, count, model.reduced != nullptr});
           run.progress.finish(text(count.n_modes, " modes counted, ", n_found, " found at ", model.plan.axis.name, " = ", mu, ", ",
                                    count.n_points, " points"));
           if (count.n_modes != n_found)
@@ -272,7 +273,8 @@ namespace Squeal
       return Table(Columns<Row>{{axis.name, axis.unit, &Row::friction_coefficient, 4},
                                 {"modes of the sweep", "-", &Row::n_found},
                                 {"modes counted", "-", [](const Row &row) { return row.count.n_modes; }},
-                                {"real modes by inertia", "-", [](const Row &row) { return row.count.n_frictionless; }},
+                                {"real modes by inertia", "-",
+                                 [](const Row &row) { return row.has_real_modes ? Entry(row.count.n_frictionless) : Entry(); }},
                                 {"contour points", "-", [](const Row &row) { return row.count.n_points; }},
                                 {"largest phase step", "rad", [](const Row &row) { return row.count.largest_phase_step; }, 3},
                                 {"truncation bound", "-", [](const Row &row) { return row.count.truncation_bound; }, 1, true}},

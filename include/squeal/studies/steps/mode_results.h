@@ -44,8 +44,8 @@ namespace Squeal
   /// bear the numbers of the rows of `complex_modes.csv`, `real_modes.csv` and `component_modes.csv`.
   void write_mode_shapes(const FrictionlessModes &frictionless, const FrictionModes &friction, const PowerBalances &balances, Run &run);
 
-  /// The same of a system file at its points, with files of the same names and fields: one vertex for each point, `component` is the number
-  /// of its group of dofs from 0. Without points nothing is written.
+  /// The same of a system file at its points, with files of the same names and fields: one vertex for each point; `component` is the number
+  /// of its group of dofs from 0. Writes nothing without points.
   void write_mode_shapes(const SystemFile &file, const FrictionlessModes &frictionless, const FrictionModes &friction, Run &run);
 
   /// `sliding_pins.csv` and `sliding_certificate.csv`, and a note on open pins and uniqueness.

@@ -78,7 +78,7 @@ namespace Squeal
   SweepPlan sweep_plan(const Scene &scene, const std::vector<SweepLine> &lines, Run &run);
 
   /// The coupled system of a contact set with its basis, and what is known of its modes. A system file without a definite part has no basis:
-  /// its points are solved at full order, and vectors are those of the scaled dofs in the place of coordinates.
+  /// every point is solved at full order, and ChartPoint has vectors of the scaled dofs instead of coordinates in a basis.
   struct SweepModel
   {
     /// Linearises where contact damps most: the basis starts from the responses to that damping. All arguments must outlive the model.
@@ -141,7 +141,7 @@ namespace Squeal
     /// What names the modes of a point, from products with the basis or, where the basis is only a part of another one, at full order.
     std::vector<ShapeShares> shape_shares(const ChartPoint &point, const std::vector<int> &modes) const;
 
-    /// Numbers of the modes that they resemble most at the point that is named first, without a basis.
+    /// Labels without a basis: numbers of the most similar modes at the first point that is labelled.
     std::vector<ModeLabel> labels_by_number(const ChartPoint &point, const std::vector<int> &modes) const;
 
     mutable std::optional<ChartPoint> first_point;
