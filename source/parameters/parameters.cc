@@ -335,7 +335,7 @@ namespace Squeal
 
   void Parameters::check() const
   {
-    if (output.write_system == SystemOutput::reduced && !study->has("Sweep/Parameter"))
+    if (output.write_system == SystemOutput::reduced && !study->has("Sweep/Second parameter"))
       throw ParameterError(text("Study = ", study->name, " has no reduced model to write"), "parameter Output/Write system",
                            "set it to full, or set Study = sweep");
     if (system)

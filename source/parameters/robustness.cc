@@ -119,6 +119,10 @@ namespace Squeal
                      "samples. Not computed if parameters are correlated.");
     declarations.add("Frequency bands", frequency_bands, "Hz",
                      "Band limits in ascending order: the probability of squeal is also reported for each band between two limits.", {0.});
+    declarations.add("Samples with onsets", n_onsets, "none",
+                     "Number of samples, the first ones, whose modes are followed over the friction coefficients of the section Sweep, to "
+                     "its tolerance: where they begin to grow.",
+                     {0., 1e5});
     declarations.add("Worst samples", n_worst, "none",
                      "Number of samples, those with the largest divergence rates, written as parameter files of full-order runs.",
                      {0., 1000.});

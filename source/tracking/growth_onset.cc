@@ -20,6 +20,30 @@ namespace Squeal
       return mode >= 0 && point.lambda[mode].imag() <= largest_circular_frequency && point.verdicts[mode] == Verdict::unstable;
     }
 
+    /// Part of the largest overlap from which on a mode may be the one that is meant: both modes of a coalescence have nearly one shape.
+    constexpr double alike = 0.9;
+
+    /// The mode of a point between points k - 1 and k of the chart that continues a branch: of those most like it, the one that grows most.
+    int mode_between(const StabilityChart &chart, const int branch, const int k, const ChartPoint &point)
+    {
+      const auto          n = static_cast<int>(point.lambda.size());
+      std::vector<double> overlaps(n, 0.);
+      for (const int i : {k - 1, k})
+        if (const int j = chart.branches[branch].modes[i]; j >= 0)
+          {
+            const ComplexDenseMatrix &X = point.right, &Y = chart.points[i].right;
+            const auto                r = std::min(X.rows(), Y.rows());
+            for (int m = 0; m < n; ++m)
+              overlaps[m] = std::max(overlaps[m], std::abs(X.col(m).head(r).dot(Y.col(j).head(r))));
+          }
+      const double largest = n == 0 ? 0. : *std::max_element(overlaps.begin(), overlaps.end());
+      int          result  = -1;
+      for (int m = 0; m < n; ++m)
+        if (overlaps[m] >= alike * largest && (result < 0 || divergence_rate(point, m) > divergence_rate(point, result)))
+          result = m;
+      return result;
+    }
+
     /// Friction coefficient of the point before point i.
     double previous(const StabilityChart &chart, const int i, const double before)
     {
@@ -56,30 +80,37 @@ namespace Squeal
     return result;
   }
 
+  std::optional<GrowthOnset> onset_of(const int             branch,
+                                      const StabilityChart &chart,
+                                      const double          largest_circular_frequency,
+                                      const double          before)
+  {
+    const std::vector<int> &modes = chart.branches[branch].modes;
+    int                     i     = 0;
+    while (i < static_cast<int>(modes.size()) && !grows_in_band(chart.points[i], modes[i], largest_circular_frequency))
+      ++i;
+    if (i == static_cast<int>(modes.size()))
+      return {};
+    const int    first = chart.branches[branch].begin();
+    const double mu = chart.points[i].friction_coefficient, begin = chart.points[first].friction_coefficient;
+    GrowthOnset  result{begin, begin - previous(chart, first, before), branch, chart.points[first].lambda[modes[first]]};
+    for (const Threshold &threshold : chart.thresholds)
+      if (threshold.branch == branch && threshold.event == ThresholdEvent::onset && threshold.friction_coefficient <= mu)
+        result = {threshold.friction_coefficient, threshold.uncertainty, branch, threshold.lambda};
+    for (const BandCrossing &crossing : chart.crossings)
+      if (crossing.branch == branch && crossing.enters && crossing.friction_coefficient <= mu &&
+          crossing.friction_coefficient > result.friction_coefficient)
+        result = {crossing.friction_coefficient, crossing.uncertainty, branch, chart.points[i].lambda[modes[i]]};
+    return result;
+  }
+
   std::optional<GrowthOnset> first_onset(const StabilityChart &chart, const double largest_circular_frequency, const double before)
   {
     std::optional<GrowthOnset> result;
     for (int b = 0; b < static_cast<int>(chart.branches.size()); ++b)
-      {
-        const std::vector<int> &modes = chart.branches[b].modes;
-        int                     i     = 0;
-        while (i < static_cast<int>(modes.size()) && !grows_in_band(chart.points[i], modes[i], largest_circular_frequency))
-          ++i;
-        if (i == static_cast<int>(modes.size()))
-          continue;
-        const int    first = chart.branches[b].begin();
-        const double mu = chart.points[i].friction_coefficient, begin = chart.points[first].friction_coefficient;
-        GrowthOnset  found{begin, begin - previous(chart, first, before), b, chart.points[first].lambda[modes[first]]};
-        for (const Threshold &threshold : chart.thresholds)
-          if (threshold.branch == b && threshold.event == ThresholdEvent::onset && threshold.friction_coefficient <= mu)
-            found = {threshold.friction_coefficient, threshold.uncertainty, b, threshold.lambda};
-        for (const BandCrossing &crossing : chart.crossings)
-          if (crossing.branch == b && crossing.enters && crossing.friction_coefficient <= mu &&
-              crossing.friction_coefficient > found.friction_coefficient)
-            found = {crossing.friction_coefficient, crossing.uncertainty, b, chart.points[i].lambda[modes[i]]};
-        if (!result || found.friction_coefficient < result->friction_coefficient)
-          result = found;
-      }
+      if (const auto found = onset_of(b, chart, largest_circular_frequency, before);
+          found && (!result || found->friction_coefficient < result->friction_coefficient))
+        result = found;
     return result;
   }
 
@@ -87,44 +118,52 @@ namespace Squeal
                                           const StabilityChart &chart,
                                           const EvaluateChart  &evaluate,
                                           const ChartOptions   &options,
-                                          const double          before)
+                                          const double          before,
+                                          const int             branch)
   {
     const double omega_max = options.largest_circular_frequency;
-    const auto   excess    = [&](const ChartPoint &point) {
-      const int leading = leading_mode(point, omega_max);
-      return leading < 0 ? -level : divergence_rate(point, leading) - level;
+    const auto   excess    = [&](const ChartPoint &point, const int mode) {
+      return mode < 0 || point.lambda[mode].imag() > omega_max ? -level : divergence_rate(point, mode) - level;
     };
-    const auto first = std::find_if(chart.points.begin(), chart.points.end(), [&](const ChartPoint &point) {
-      const int leading = leading_mode(point, omega_max);
-      return grows_in_band(point, leading, omega_max) && divergence_rate(point, leading) > level;
-    });
-    if (first == chart.points.end())
+    const auto mode_of = [&](const int i) {
+      return branch < 0 ? leading_mode(chart.points[i], omega_max) : chart.branches[branch].modes[i];
+    };
+    const auto excess_of = [&](const int i) { return excess(chart.points[i], mode_of(i)); };
+    const auto branch_of = [&](const int i, const ChartPoint &point, const int mode) {
+      return branch < 0 ? similar_branch(chart, i, point, mode, true) : branch;
+    };
+    const int n = static_cast<int>(chart.points.size());
+    int       k = 0;
+    while (k < n && !(excess_of(k) > 0. && grows_in_band(chart.points[k], mode_of(k), omega_max)))
+      ++k;
+    if (k == n)
       return {};
-    int k = static_cast<int>(first - chart.points.begin());
-    while (k > 0 && excess(chart.points[k - 1]) > 0.)
+    while (k > 0 && excess_of(k - 1) > 0.)
       --k;
     const ChartPoint &above = chart.points[k];
     const double      right = above.friction_coefficient, left = previous(chart, k, before);
     if (k == 0)
-      {
-        const int leading = leading_mode(above, omega_max);
-        return GrowthOnset{right, right - left, similar_branch(chart, 0, above, leading, true), above.lambda[leading]};
-      }
+      return GrowthOnset{right, right - left, branch_of(0, above, mode_of(0)), above.lambda[mode_of(0)]};
 
-    const auto     at       = [&](const double mu) { return evaluate({mu}).front(); };
-    const auto     value    = [&](const double mu) { return excess(at(mu)); };
-    const auto     is_close = [&](const double a, const double b) { return std::abs(b - a) <= options.threshold_tolerance; };
-    std::uintmax_t n_steps  = 60;
-    const auto     bracket =
-      boost::math::tools::toms748_solve(value, left, right, excess(chart.points[k - 1]), excess(above), is_close, n_steps);
-    const double     width = bracket.second - bracket.first;
-    const ChartPoint there = at(bracket.second);
-    const int        mode  = leading_mode(there, omega_max);
+    const auto at      = [&](const double mu) { return evaluate({mu}).front(); };
+    const auto mode_at = [&](const ChartPoint &point) {
+      return branch < 0 ? leading_mode(point, omega_max) : mode_between(chart, branch, k, point);
+    };
+    const auto value = [&](const double mu) {
+      const ChartPoint point = at(mu);
+      return excess(point, mode_at(point));
+    };
+    const auto       is_close = [&](const double a, const double b) { return std::abs(b - a) <= options.threshold_tolerance; };
+    std::uintmax_t   n_steps  = 60;
+    const auto       bracket  = boost::math::tools::toms748_solve(value, left, right, excess_of(k - 1), excess_of(k), is_close, n_steps);
+    const double     width    = bracket.second - bracket.first;
+    const ChartPoint there    = at(bracket.second);
+    const int        mode     = mode_at(there);
     // Growth by √(μ − μ_c) or by its slope: across the bracket or a short step behind it
     const double step      = std::max(width, 1e-3 * (right - left));
     const double far       = bracket.second + step <= right ? bracket.second + step : bracket.second - step;
-    const double slope     = (value(far) - excess(there)) / (far - bracket.second);
+    const double slope     = (value(far) - excess(there, mode)) / (far - bracket.second);
     const double by_lambda = slope > 0. ? error_safety * there.errors[mode] / slope : right - left;
-    return GrowthOnset{bracket.second, width + by_lambda, similar_branch(chart, k, there, mode, true), there.lambda[mode]};
+    return GrowthOnset{bracket.second, width + by_lambda, branch_of(k, there, mode), there.lambda[mode]};
   }
 } // namespace Squeal

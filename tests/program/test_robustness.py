@@ -3,12 +3,22 @@
 import math
 import unittest
 
-from program import ProgramTest, read_table
+from program import ProgramTest, read_table, settings
 import test_systems  # its classes of tests stay there
 from test_systems import FLUTTER, flutter_terms
 
 BOX = ("Operation/Friction coefficient = uniform 0.1 to 0.6; Pin material/Young modulus = normal 100 %, 5 % for each pin; "
        "Disc material/Young modulus = uniform 95 % to 105 %; Mounts/Elastic mounts[2] = lognormal 7.8e10, 1e10")
+
+
+def quantile(values, part, n):
+    """Value below which a part of n values lies, of which the largest may be missing; None where these lie."""
+    place = part * (n - 1)
+    number = int(place)
+    values = sorted(values)
+    if number + 1 >= len(values):
+        return None
+    return values[number] + (place - number) * (values[number + 1] - values[number])
 
 
 class OfSystem(test_systems.SystemTest):
@@ -43,6 +53,41 @@ class OfSystem(test_systems.SystemTest):
         self.assertEqual([row["uncertain parameter"] for row in indices], ["mu", "kappa"])
         self.assertTrue(all(row["total index [-]"] > row["first-order index [-]"] - 0.1 for row in indices))
 
+    def test_onsets_are_those_of_the_closed_form(self):
+        """mu kappa = c at the first growth, for either of them as the parameter of the sweep."""
+        c = test_systems.Flutter.MU_C
+        for other, uncertain, swept in (("kappa", "kappa = uniform 0.5 to 2", "mu, 0, 1, 11"), ("mu", "mu = uniform 0.1 to 1", "kappa, 0.5, 2, 11")):
+            name, first, last = swept.split(", ")[0], float(swept.split(", ")[1]), float(swept.split(", ")[2])
+            results = self.study("robustness", f"Robustness/Distributions={uncertain}", "Robustness/Number of samples=40",
+                                 "Robustness/Samples with onsets=30", f"Sweep/Parameter={swept}", "Sweep/Threshold tolerance=1e-10")
+            numbers = [row[other] for row in self.rows(results, "samples")]
+            onsets = self.rows(results, "sample_onsets")
+            self.assertEqual(len(onsets), 30)
+            expected = []
+            for number, row in zip(numbers, onsets):
+                if c / number >= last:
+                    self.assertEqual((row[f"{name} of growth [-]"], row[f"{name} of 0.01 % [-]"]), ("", ""))
+                    continue
+                expected.append(max(first, c / number))
+                self.assertAlmostEqual(row[f"{name} of growth [-]"], expected[-1], delta=1e-8)
+                if c / number > first:
+                    self.assertLess(row[f"uncertainty of {name} of growth [-]"], 1e-6)
+                    root = next(square ** 0.5 for square in test_systems.flutter_squares(row[f"{name} of 0.01 % [-]"] * number) if square.imag != 0.)
+                    self.assertAlmostEqual(abs(root.real / root.imag), 1e-4, delta=1e-7)
+            self.assertTrue(0 < len(expected) < 30)
+            all_modes = self.rows(results, "onset_distributions")[0]
+            self.assertEqual((all_modes["label"], all_modes["samples [-]"]), ("all modes", 30.))
+            self.assertAlmostEqual(all_modes["samples with an onset [%]"], 100. * len(expected) / 30., delta=1e-8)
+            self.assertAlmostEqual(all_modes["mean of the onsets [-]"], sum(expected) / len(expected), delta=1e-7)
+            for percent in (5, 25, 50, 75, 95):
+                found, exact = all_modes[f"{name} of {percent} % of all samples [-]"], quantile(expected, percent / 100., 30)
+                if exact is None:
+                    self.assertEqual(found, "")
+                else:
+                    self.assertAlmostEqual(found, exact, delta=1e-7)
+        self.assert_message(self.call("study.prm", "--output", "refused", *settings(
+            ["Robustness/Distributions=mu = uniform 0 to 1", "Robustness/Samples with onsets=10", "Sweep/Parameter=nu, 0, 1, 11"])), ["nu"])
+
     def test_lists_of_values(self):
         results = self.study("geometry", "Designs/Variables=mu = 0.2, 0.5, 0.8; kappa = 0.5 to 2 in 4", "Band/Maximum rate=10")
         samples = self.rows(results, "samples")
@@ -58,12 +103,43 @@ class OfSystem(test_systems.SystemTest):
                                 "  set Distributions = mu = uniform 0 to 1\nend\n")
         for override, words in (("Distributions=nu = uniform 0 to 1", "nu"), ("Distributions=mu = uniform 0 to 3", "mu"),
                                 ("Distributions=mu = uniform 0 to 1 for each pin", "for each pin"),
-                                ("Distributions=mu = exponential 1", "exponential"), ("Correlations=mu, nu = 0.3", "nu")):
+                                ("Distributions=mu = exponential 1", "exponential"), ("Correlations=mu, nu = 0.3", "nu"),
+                                ("Samples with onsets=5000", "5000")):
             self.assert_message(self.call("study.prm", "--output", "refused", "--set", f"Robustness/{override}"), [words])
             self.assertFalse((self.folder / "refused").exists())
 
 
 class OfScene(ProgramTest):
+    def test_onsets_are_those_of_sweeps(self):
+        sweep = ["Sweep/Number of friction coefficients=5", "Sweep/Last friction coefficient=0.6", "Sweep/Tolerance=1e-8"]
+        results = self.run_scene("onsets", "Study=robustness", "Robustness/Number of samples=10", "Robustness/Worst samples=10",
+                                 "Robustness/Samples with onsets=3", "Robustness/Sobol indices=false", *sweep,
+                                 "Robustness/Distributions=Operation/Friction coefficient = uniform 0.4 to 0.6; "
+                                 "Pin material/Young modulus = normal 100 %, 5 %; Mounts/Elastic mounts[2] = lognormal 7.8e10, 1e10")
+        rows = read_table(results / "sample_onsets.csv")
+        self.assertEqual(len(rows), 3)
+        modes = read_table(results / "mode_onsets.csv")
+        n_compared = 0
+        for row in rows:
+            number = row["sample [-]"]
+            self.assertEqual(row["values that miss the tolerance [-]"], "0")
+            folder = self.run_scene(f"sweep_{number}", "Study=sweep", *sweep, file=str(results / "worst" / f"{number}.prm"))
+            first = {float(onset["divergence rate beyond [%]"]): onset for onset in read_table(folder / "onsets.csv")}
+            for rate, name in ((0., "growth"), (0.01, "0.01 %")):
+                difference = abs(float(row[f"mu of {name} [-]"]) - float(first[rate]["mu [-]"]))
+                self.assertLessEqual(difference, float(row[f"uncertainty of mu of {name} [-]"]) + float(first[rate]["uncertainty [-]"]))
+            branches = {}
+            for threshold in read_table(folder / "thresholds.csv"):
+                if threshold["event"] == "onset":
+                    branches.setdefault(threshold["label"], threshold)
+            for onset in modes:
+                if onset["sample [-]"] == number and float(onset["divergence rate beyond [%]"]) == 0. and onset["label"] in branches:
+                    other = branches[onset["label"]]
+                    self.assertLessEqual(abs(float(onset["mu [-]"]) - float(other["mu [-]"])),
+                                         float(onset["uncertainty of mu [-]"]) + float(other["uncertainty [-]"]))
+                    n_compared += 1
+        self.assertGreater(n_compared, 3)
+
     def test_worst_samples_at_full_order(self):
         results = self.run_scene("box", "Study=robustness", f"Robustness/Distributions={BOX}", "Robustness/Number of samples=24",
                                  "Robustness/Worst samples=2", "Robustness/Sobol indices=false")

@@ -193,7 +193,10 @@ TEST(ParameterUsage, OfEveryStudy)
 
     {{"Study=robustness", "Robustness/Distributions=Pin material/Density = uniform 90 % to 110 %"},
      {"Robustness/"},
-     {reduced, no_sliding, undamped}}};
+     {reduced, no_sliding, undamped}},
+    {{"Study=robustness", "Robustness/Distributions=Pin material/Density = uniform 90 % to 110 %", "Robustness/Samples with onsets=5"},
+     {"Robustness/", "Sweep/"},
+     {reduced, no_sweep, no_sliding, undamped}}};
   std::set<std::string> conditional;
   for (const Usage &usage : table)
     {

@@ -236,7 +236,25 @@ namespace
   /// Where modes below 10 rad/s begin to grow, and where faster than weakly.
   std::vector<std::optional<GrowthOnset>> onsets(const Family &modes, const StabilityChart &chart, const double before = 0.)
   {
-    return {first_onset(chart, 10., before), onset_beyond(weak_divergence, chart, modes, precise(10., 1e-10), before)};
+    const std::vector<std::optional<GrowthOnset>> result = {first_onset(chart, 10., before),
+                                                            onset_beyond(weak_divergence, chart, modes, precise(10., 1e-10), before)};
+    // The first branches to begin are those of all modes
+    std::vector<std::optional<GrowthOnset>> of_branches(2);
+    for (int b = 0; b < static_cast<int>(chart.branches.size()); ++b)
+      {
+        const std::optional<GrowthOnset> found[] = {onset_of(b, chart, 10., before),
+                                                    onset_beyond(weak_divergence, chart, modes, precise(10., 1e-10), before, b)};
+        for (const int i : {0, 1})
+          if (found[i] && (!of_branches[i] || found[i]->friction_coefficient < of_branches[i]->friction_coefficient))
+            of_branches[i] = found[i];
+      }
+    for (const int i : {0, 1})
+      {
+        EXPECT_EQ(of_branches[i].has_value(), result[i].has_value());
+        if (of_branches[i] && result[i])
+          EXPECT_NEAR(of_branches[i]->friction_coefficient, result[i]->friction_coefficient, 1e-9);
+      }
+    return result;
   }
 } // namespace
 

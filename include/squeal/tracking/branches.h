@@ -166,23 +166,28 @@ namespace Squeal
     std::complex<double> lambda; ///< there [rad/s]
   };
 
-  /// The smallest friction coefficient from which on a mode of the band grows by more than the uncertainty of λ at some point of the chart:
-  /// the threshold or the band crossing with which that growth begins. Growth that is there at the first point began between @p before, the
-  /// last friction coefficient known below the chart, and this point; the uncertainty is their distance.
+  /// Where a branch begins to grow by more than the uncertainty of λ in the band: the threshold or the band crossing with which that growth
+  /// begins. Growth that is there at the first point began between @p before, the last friction coefficient known below the chart, and this
+  /// point; the uncertainty is their distance.
+  std::optional<GrowthOnset> onset_of(int branch, const StabilityChart &chart, double largest_circular_frequency, double before);
+
+  /// The first onset of all branches.
   std::optional<GrowthOnset> first_onset(const StabilityChart &chart, double largest_circular_frequency, double before);
 
   /**
    * The smallest friction coefficient at which the largest divergence rate ξ of the band exceeds a level. Modes are evaluated
    * between two points of the chart until the interval is no wider than the tolerance; the uncertainty is its width and three times
-   * the estimated error of ξ by dξ/dμ. See first_onset() for @p before.
+   * the estimated error of ξ by dξ/dμ. See onset_of() for @p before.
    *
    * @param level    divergence rate [-]
    * @param evaluate the function with which the chart was made
    * @param options  likewise
+   * @param branch   whose ξ is meant in place of the largest one; -1: none
    */
   std::optional<GrowthOnset> onset_beyond(double                level,
                                           const StabilityChart &chart,
                                           const EvaluateChart  &evaluate,
                                           const ChartOptions   &options,
-                                          double                before);
+                                          double                before,
+                                          int                   branch = -1);
 } // namespace Squeal

@@ -21,7 +21,8 @@ def figures(results):
         parameters = [row["uncertain parameter"] for row in sorted(indices, key=lambda row: -float(row["total index [-]"]))]
     parameters = parameters[:MOST_SCATTERS]
 
-    picture = style.Picture("Uncertain parameters: modes of all samples", 2 + bool(indices) + len(parameters), 3)
+    has_onsets = results.has("sample_onsets")
+    picture = style.Picture("Uncertain parameters: modes of all samples", 2 + bool(indices) + has_onsets + len(parameters), 3)
     panels = iter(picture.panels)
     cloud(next(panels), modes)
     rates = [0. if math.isnan(rate) else rate for rate in samples.numbers(RATE)]
@@ -30,6 +31,8 @@ def figures(results):
     panel.hist(rates, bins=N_BINS, color=style.BLUE)
     if indices:
         bars(next(panels), indices)
+    if has_onsets:
+        cumulative(next(panels), results.table("sample_onsets"))
     for name in parameters:
         panel = next(panels)
         style.prepare(panel, "", name, "largest divergence rate [%]")
@@ -46,6 +49,19 @@ def cloud(panel, modes):
         if chosen:
             panel.plot([frequencies[number] for number in chosen], [rates[number] for number in chosen], linestyle="", marker=".", markersize=3,
                        color=COLOURS[verdict], label=verdict, rasterized=True)
+
+
+def cumulative(panel, onsets):
+    """Samples in which a mode grows up to a value of the parameter of the sweep."""
+    known = [missed == 0. for missed in onsets.numbers("values that miss the tolerance [-]")]
+    columns = [column for column in onsets.columns if " of " in column and column.endswith("[-]") and not column.startswith("uncertainty")]
+    style.prepare(panel, "", f"first onset: {columns[0].split(' of ')[0]} [-]", "samples that squeal up to there [%]")
+    for column, colour in zip(columns, (style.SKY, style.BLUE)):
+        values = sorted(value for value, is_known in zip(onsets.numbers(column), known) if is_known and not math.isnan(value))
+        name = column.split(" of ")[1].removesuffix(" [-]")
+        panel.step(values, [100. * (number + 1) / sum(known) for number in range(len(values))], where="post", color=colour,
+                   label=name if name == "growth" else f"divergence rate beyond {name}")
+    panel.set_ylim(0., 100.)
 
 
 def bars(panel, indices):

@@ -3,7 +3,7 @@
 from squeal.reporting.charts import digits, number
 
 TITLES = {"probabilities": "Probability of squeal by bands of frequencies", "mode_distributions": "Modes over all samples",
-          "sobol_indices": "Influence of the parameters: Sobol' indices"}
+          "onset_distributions": "Where modes begin to grow", "sobol_indices": "Influence of the parameters: Sobol' indices"}
 REPLACED = ()
 
 

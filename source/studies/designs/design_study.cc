@@ -196,9 +196,9 @@ namespace Squeal
   {
     SystemFile       file = read_system(run);
     const SamplePlan designs =
-      listed_samples(design_plan(run.parameters), [&](const std::string &name) { return value_in(file, name, run); });
+      listed_samples(design_plan(run.parameters), [&](const std::string &name) { return value_in(file, name, run.parameters); });
     const auto systems = sampled_file(std::move(file), designs, run);
-    const auto found   = solve_samples(systems, designs.n(), run.parameters.sweep.tolerance, run);
+    const auto found   = solve_samples(systems, designs.n(), run.parameters.sweep.tolerance, run).samples;
     run.write_table("samples", sample_table(designs, found));
     run.store_table("sample_modes", cloud_table(designs, found));
     run.finish();

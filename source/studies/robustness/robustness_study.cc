@@ -12,9 +12,10 @@ namespace Squeal
 {
   namespace
   {
-    /// Number of training samples, and size of the next set relative to all samples before it: growing sets avoid evaluating many
-    /// samples with a basis that is still too small.
-    constexpr int n_training = 8, growth_of_sets = 4;
+    /// Size of the first set of samples, and of the next one relative to all before it.
+    constexpr std::size_t first_set = 32, growth_of_sets = 4;
+
+    constexpr int n_training_samples = 8;
 
     std::vector<SampledMode> modes_of(const SweepModel &model, const ChartPoint &point)
     {
@@ -33,73 +34,18 @@ namespace Squeal
       return result;
     }
 
-    /// Samples of a system without a definite part, each at full order. Returns their largest estimated error.
-    double solve_directly(SweepModel &model, std::vector<std::optional<Sample>> &samples)
+    /// The samples among the points of a contact set, its first @p n. Returns their largest estimated error.
+    double solve_contact_set(SweepModel &model, const std::size_t n, const double tolerance, std::vector<std::optional<Sample>> &samples)
     {
-      Run &run = model.run;
-      run.progress.begin("Samples");
-      const auto &points = model.regime.points;
-      double      worst  = 0.;
-      std::size_t n_lost = 0;
-      std::string reason;
-      for (const OperatingPoint &point : points)
-        try
-          {
-            const ChartPoint found = model.evaluate_directly(point);
-            worst                  = std::max(worst, model.largest_error(found));
-            samples[point.line]    = modes_of(model, found);
-          }
-        catch (const SolverError &error)
-          {
-            ++n_lost;
-            reason = in_one_line(error);
-          }
-      run.progress.finish(text(points.size() - n_lost, " of ", points.size(), " samples at full order, estimated error ", worst));
-      if (n_lost > 0)
-        run.warn(text(n_lost, " samples could not be solved and count as undecided: ", reason));
-      return worst;
-    }
+      const auto                        begin = model.regime.points.begin();
+      const std::vector<OperatingPoint> points(begin, begin + static_cast<std::ptrdiff_t>(n));
+      const auto                        keep = [&](const int i, ChartPoint &&point) { samples[points[i].line] = modes_of(model, point); };
 
-    /// The samples of a contact set by one basis, which grows for sets of them that are each larger than the one before.
-    /// Returns their largest estimated error.
-    double solve_contact_set(SweepModel &model, const double tolerance, std::vector<std::optional<Sample>> &samples)
-    {
-      Run                               &run    = model.run;
-      const std::vector<OperatingPoint> &points = model.regime.points;
-      ErrorControlledSweepOptions        options;
-      options.tolerance = tolerance;
-      model.reduced->estimate_without_cancellation();
-      if (options.tolerance >= single_precision_tolerance)
-        model.reduced->estimate_in_single_precision();
-      run.progress.begin("Samples");
-      std::size_t      n_left = 0;
-      double           worst  = 0.;
-      std::string      why_stopped;
-      std::vector<int> training(std::min<std::size_t>(n_training, points.size()));
-      std::iota(training.begin(), training.end(), 0);
-      for (std::size_t first = 0, size = growth_of_sets * n_training; first < points.size();)
-        {
-          size                                    = std::min(size, points.size() - first);
-          const auto                        begin = points.begin() + static_cast<std::ptrdiff_t>(first);
-          const std::vector<OperatingPoint> set(begin, begin + static_cast<std::ptrdiff_t>(size));
-          const auto                        keep = [&](const int i, ChartPoint &&point) { samples[set[i].line] = modes_of(model, point); };
-
-          const ErrorControlledSweep found =
-            error_controlled_sweep(*model.reduced, set, training, options, keep, run.communicator, run.progress);
-          n_left += found.n_left;
-          worst = std::max(worst, found.worst_error);
-          if (!found.why_stopped.empty())
-            why_stopped = found.why_stopped;
-          training.clear();
-          first += size;
-          size = growth_of_sets * first;
-        }
-      run.progress.finish(
-        text(points.size() - n_left, " of ", points.size(), " samples, ", model.reduced->size(), " vectors, estimated error ", worst));
-      if (n_left > 0)
-        run.warn(text(n_left, " samples miss the tolerance of ", options.tolerance, ": ", why_stopped,
-                      "; they count as undecided. Raise the tolerance"));
-      return worst;
+      const ErrorControlledSweep found = solve_points(model, points, n_training_samples, tolerance, keep, "Samples");
+      if (found.n_left > 0)
+        model.run.warn(text(found.n_left, " samples miss the tolerance of ", tolerance, ": ", found.why_stopped,
+                            "; they count as undecided. Raise the tolerance"));
+      return found.worst_error;
     }
 
     /// The samples with the largest divergence rates as parameter files of stability runs.
@@ -114,16 +60,7 @@ namespace Squeal
       rates.resize(std::min<std::size_t>(rates.size(), run.parameters.robustness.n_worst));
       for (const auto &[rate, s] : rates)
         {
-          Parameters worst;
-          if (run.parameters.system)
-            {
-              worst = run.parameters;
-              for (std::size_t j = 0; j < plan.numbers.size(); ++j)
-                worst.system.values[plan.numbers[j].parameter] = plan.values(s, static_cast<Eigen::Index>(j));
-              worst.system.file = std::filesystem::absolute(worst.system.path()).string();
-            }
-          else
-            worst = with_sample(run.parameters, plan, s);
+          Parameters worst = run.parameters.system ? system_with_sample(run.parameters, plan, s) : with_sample(run.parameters, plan, s);
           worst.study      = studies().front();
           worst.robustness = {};
           write_parameter_file(worst, text("worst/", s + 1, ".prm"), run);
@@ -142,23 +79,100 @@ namespace Squeal
 
     void run_samples(const SamplePlan &plan, const SampledSystems &systems, Run &run)
     {
-      const std::vector<std::optional<Sample>> samples = solve_samples(systems, plan.n(), run.parameters.robustness.tolerance, run);
+      const auto [samples, followed] = solve_samples(systems, plan.n(), run.parameters.robustness.tolerance, run);
       write_samples(plan, samples, run);
       write_worst_samples(plan, samples, run);
+      if (!followed.empty())
+        write_onsets(followed, systems.plan.axis.name, run);
       run.finish();
     }
   } // namespace
 
-  std::vector<std::optional<Sample>> solve_samples(const SampledSystems &systems, const int n_samples, const double tolerance, Run &run)
+  std::unique_ptr<SweepModel> sample_model(const SampledSystems &systems, const std::size_t contact_set, const double tolerance, Run &run)
   {
-    std::vector<std::optional<Sample>> result(n_samples);
-    double                             worst     = 0.;
-    int                                n_vectors = 0;
+    auto result = std::make_unique<SweepModel>(systems.plan, systems.plan.regimes[contact_set], run, systems.middles[contact_set]);
+    if (!result->reduced)
+      return result;
+    result->reduced->estimate_without_cancellation();
+    if (tolerance >= single_precision_tolerance)
+      result->reduced->estimate_in_single_precision();
+    return result;
+  }
+
+  ErrorControlledSweep solve_directly(const SweepModel &model, const std::vector<OperatingPoint> &points, const KeepPoint &keep)
+  {
+    ErrorControlledSweep result{0, 0., 0, ""};
+    for (std::size_t i = 0; i < points.size(); ++i)
+      try
+        {
+          ChartPoint found   = model.evaluate_directly(points[i]);
+          result.worst_error = std::max(result.worst_error, model.largest_error(found));
+          keep(static_cast<int>(i), std::move(found));
+        }
+      catch (const SolverError &error)
+        {
+          ++result.n_left;
+          result.why_stopped = in_one_line(error);
+        }
+    return result;
+  }
+
+  ErrorControlledSweep solve_points(SweepModel                        &model,
+                                    const std::vector<OperatingPoint> &points,
+                                    const int                          n_training,
+                                    const double                       tolerance,
+                                    const KeepPoint                   &keep,
+                                    const std::string                 &name)
+  {
+    Run                        &run = model.run;
+    ErrorControlledSweepOptions options;
+    options.tolerance = tolerance;
+    ErrorControlledSweep result{0, 0., 0, ""};
+    run.progress.begin(name);
+    if (!model.reduced)
+      {
+        result = solve_directly(model, points, keep);
+        run.progress.finish(
+          text(points.size() - result.n_left, " of ", points.size(), " samples at full order, estimated error ", result.worst_error));
+        return result;
+      }
+    std::vector<int> training(std::min<std::size_t>(n_training, points.size()));
+    std::iota(training.begin(), training.end(), 0);
+    for (std::size_t first = 0, size = first_set; first < points.size();)
+      {
+        size                                    = std::min(size, points.size() - first);
+        const auto                        begin = points.begin() + static_cast<std::ptrdiff_t>(first);
+        const std::vector<OperatingPoint> set(begin, begin + static_cast<std::ptrdiff_t>(size));
+        const auto keep_of_set = [&](const int i, ChartPoint &&point) { keep(static_cast<int>(first) + i, std::move(point)); };
+
+        const ErrorControlledSweep found =
+          error_controlled_sweep(*model.reduced, set, training, options, keep_of_set, run.communicator, run.progress);
+        result.n_left += found.n_left;
+        result.n_growths += found.n_growths;
+        result.worst_error = std::max(result.worst_error, found.worst_error);
+        if (!found.why_stopped.empty())
+          result.why_stopped = found.why_stopped;
+        training.clear();
+        first += size;
+        size = growth_of_sets * first;
+      }
+    run.progress.finish(text(points.size() - result.n_left, " of ", points.size(), " samples, ", model.reduced->size(),
+                             " vectors, estimated error ", result.worst_error));
+    return result;
+  }
+
+  SolvedSamples solve_samples(const SampledSystems &systems, const int n_samples, const double tolerance, Run &run)
+  {
+    SolvedSamples result{std::vector<std::optional<Sample>>(n_samples), std::vector<FollowedSample>(systems.plan.lines.size())};
+    const double  smallest  = result.followed.empty() ? tolerance : std::min(tolerance, run.parameters.sweep.tolerance);
+    double        worst     = 0.;
+    int           n_vectors = 0;
     for (std::size_t i = 0; i < systems.plan.regimes.size(); ++i)
       {
-        SweepModel model(systems.plan, systems.plan.regimes[i], run, systems.middles[i]);
-        worst     = std::max(worst, model.reduced ? solve_contact_set(model, tolerance, result) : solve_directly(model, result));
-        n_vectors = std::max(n_vectors, model.reduced ? model.reduced->size() : 0);
+        const auto model = sample_model(systems, i, smallest, run);
+        worst            = std::max(worst, solve_contact_set(*model, systems.n_samples[i], tolerance, result.samples));
+        follow_samples(*model, systems.n_samples[i], result.followed);
+        n_vectors = std::max(n_vectors, model->reduced ? model->reduced->size() : 0);
       }
     run.count("basis vectors", n_vectors);
     run.measure("largest estimated error of lambda [-]", worst);
@@ -170,19 +184,9 @@ namespace Squeal
   static void run_robustness_study(Scene &scene, Run &run)
   {
     check_bands(run.parameters);
-    const auto current = [&run](const std::string &name) {
-      const std::string value = current_value(run.parameters, name);
-      if (const auto number = parse_number(value))
-        return *number;
-      throw ParameterError("the value of " + in_quotes(name) + " is " + in_quotes(value) + ", not a number",
-                           "parameter Robustness/Distributions", "name the k-th number of it: Section/Name[k]");
-    };
-    std::vector<std::string> pins;
-    for (const std::string &volume : scene.model->volume_names())
-      if (!is_of_disc(volume) && !run.parameters.materials.has_own(volume))
-        pins.push_back(volume);
-    const SamplePlan plan   = sample_plan(run.parameters.robustness, current, pins);
-    const BodyTerms  bodies = assemble_scene(scene, run);
+    const auto       nominal = [&run](const std::string &name) { return nominal_value(run.parameters, name); };
+    const SamplePlan plan    = sample_plan(run.parameters.robustness, nominal, alike_pins(scene, run.parameters));
+    const BodyTerms  bodies  = assemble_scene(scene, run);
     run_samples(plan, sampled_scene(scene, bodies, plan, run), run);
   }
 
@@ -190,16 +194,24 @@ namespace Squeal
   {
     check_bands(run.parameters);
     SystemFile       file = read_system(run);
-    const SamplePlan plan = sample_plan(run.parameters.robustness, [&](const std::string &name) { return value_in(file, name, run); }, {});
+    const SamplePlan plan =
+      sample_plan(run.parameters.robustness, [&](const std::string &name) { return value_in(file, name, run.parameters); }, {});
     run_samples(plan, sampled_file(std::move(file), plan, run), run);
   }
 
   extern const Study robustness_study = [] {
-    Study study{"robustness", run_robustness_study, {"Robustness/"}};
+    const auto of_onsets = [](const Parameters &p) { return unless(p.robustness.n_onsets > 0, "Robustness/Samples with onsets = 0"); };
+    Study      study{"robustness", run_robustness_study, {"Robustness/"}};
     study.rules = {
       {"Operation/Rotation speed", no_sliding_speed},
       {"Complex modes/", [](const Parameters &) { return "samples are solved by a reduced model"; }},
       {"Output/", [](const Parameters &) { return "the study writes no mode shapes; parameter files of its worst samples do"; }}};
+    for (const char *path : {"Sweep/First friction coefficient", "Sweep/Last friction coefficient", "Sweep/Number of friction coefficients",
+                             "Sweep/Tolerance", "Sweep/Maximum basis", "Sweep/Threshold tolerance", "Sweep/Parameter"})
+      {
+        study.own_parameters.push_back(path);
+        study.rules.push_back({path, of_onsets});
+      }
     study.check         = [](const Parameters &p) { p.robustness.parsed_correlations(); };
     study.run_of_system = run_robustness_of_system;
     return study;

@@ -83,20 +83,6 @@ namespace Squeal
       Estimate            grows{};                   ///< probability that one of the name does
     };
 
-    double mean(const std::vector<double> &x)
-    {
-      return std::accumulate(x.begin(), x.end(), 0.) / static_cast<double>(x.size());
-    }
-
-    double deviation(const std::vector<double> &x)
-    {
-      const double middle = mean(x);
-      double       sum    = 0.;
-      for (const double value : x)
-        sum += std::pow(value - middle, 2);
-      return std::sqrt(sum / static_cast<double>(x.size()));
-    }
-
     std::vector<NamedMode> named_modes(const SamplePlan &plan, const Samples &samples)
     {
       std::map<std::string, NamedMode>          modes;

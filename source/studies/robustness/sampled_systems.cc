@@ -29,6 +29,15 @@ namespace Squeal
       return parameters;
     }
 
+    /// Values of the parameters of the bodies' terms.
+    ParameterValues values_of_bodies(const Scene &scene, const Parameters &parameters)
+    {
+      ParameterValues result = body_values(*scene.model, parameters.materials);
+      if (parameters.operation.rotating_disc)
+        result[BodyParameter::angular_velocity] = {parameters.operation.angular_velocity()};
+      return result;
+    }
+
     /// Throws ParameterError if a parameter changes more than coefficients of terms.
     void check_coefficients(const Parameters &parameters, const SamplePlan &samples)
     {
@@ -98,6 +107,10 @@ namespace Squeal
     result.values        = result.has_indices ? saltelli_samples(distributions, half, parameters.seed) :
                                                 independent_samples(distributions, correlations, n, parameters.seed);
     result.n_independent = result.has_indices ? 2 * half : n;
+    result.n_followed    = static_cast<int>(parameters.n_onsets);
+    if (result.n_followed > result.n_independent)
+      throw ParameterError(text(result.n_followed, " samples with onsets are more than the ", result.n_independent, " independent samples"),
+                           "parameter Robustness/Samples with onsets", "give fewer, or raise Robustness/Number of samples");
     return result;
   }
 
@@ -124,9 +137,27 @@ namespace Squeal
     return result;
   }
 
-  double value_in(const SystemFile &file, const std::string &name, const Run &run)
+  double nominal_value(const Parameters &parameters, const std::string &name)
   {
-    std::map<std::string, double> given     = run.parameters.system.values;
+    const std::string value = current_value(parameters, name);
+    if (const auto number = parse_number(value))
+      return *number;
+    throw ParameterError("the value of " + in_quotes(name) + " is " + in_quotes(value) + ", not a number", where_uncertain,
+                         "name the k-th number of it: Section/Name[k]");
+  }
+
+  std::vector<std::string> alike_pins(const Scene &scene, const Parameters &parameters)
+  {
+    std::vector<std::string> result;
+    for (const std::string &volume : scene.model->volume_names())
+      if (!is_of_disc(volume) && !parameters.materials.has_own(volume))
+        result.push_back(volume);
+    return result;
+  }
+
+  double value_in(const SystemFile &file, const std::string &name, const Parameters &parameters)
+  {
+    std::map<std::string, double> given     = parameters.system.values;
     const FileParameter          *parameter = file.find(name);
     given.emplace(name, parameter != nullptr ? parameter->value : 0.);
     return file.values(given).at(name).front(); // refuses what is no parameter
@@ -151,39 +182,52 @@ namespace Squeal
     return result;
   }
 
+  Parameters system_with_sample(const Parameters &parameters, const SamplePlan &samples, const int sample)
+  {
+    Parameters result  = parameters;
+    result.system.file = std::filesystem::absolute(result.system.path()).string();
+    for (std::size_t j = 0; j < samples.numbers.size(); ++j)
+      result.system.values[samples.numbers[j].parameter] = samples.values(sample, static_cast<Eigen::Index>(j));
+    return result;
+  }
+
   SampledSystems sampled_scene(const Scene &scene, const BodyTerms &bodies, const SamplePlan &samples, Run &run)
   {
     const Parameters &parameters = run.parameters;
     check_coefficients(parameters, samples);
 
     run.progress.begin("Samples");
-    SampledSystems                   result{sweep_plan(scene, std::vector<SweepLine>(), run), {}};
+    SampledSystems                   result{sweep_plan(scene, std::vector<SweepLine>(), run), {}, {}};
     std::vector<ParameterValues>     members(samples.n());
     std::vector<OperationParameters> operations(samples.n());
     run_tasks(samples.n(), [&](const int s) {
       const Parameters sample = with_sample(parameters, samples, s);
-      members[s]              = body_values(*scene.model, sample.materials);
-      if (parameters.operation.rotating_disc)
-        members[s][BodyParameter::angular_velocity] = {sample.operation.angular_velocity()};
-      operations[s] = sample.operation;
+      members[s]              = values_of_bodies(scene, sample);
+      operations[s]           = sample.operation;
     });
     const bool bodies_vary = std::any_of(members.begin(), members.end(), [&](const auto &values) { return values != members.front(); });
     if (bodies_vary && (parameters.needs_steady_sliding() || !parameters.damping.modal_ratios.empty()))
       throw ParameterError("steady sliding and modal damping require fixed materials and mounts", where_uncertain,
                            "vary only friction coefficient, load, speed and slope; or set Steady sliding/Contact state = equal load and "
                            "leave Damping/Modal damping ratio empty");
-    std::vector<ContactRegime> &regimes = result.plan.regimes;
-    std::vector<int>            most; // sample of each regime at which the contact damps most
+    std::vector<ContactRegime> &regimes   = result.plan.regimes;
+    const auto                  add_point = [&](OperationParameters operation, const double mu, const int s) {
+      operation.friction_coefficient = mu;
+      const StateOfContact state = state_of_contact(*scene.model, scene.interface, result.plan.sliding_state(operation), operation);
+      regime_of(state.closed, regimes).points.push_back({mu, selected(state.damping, state.closed).values(), s});
+    };
     for (int s = 0; s < samples.n(); ++s)
+      add_point(operations[s], operations[s].friction_coefficient, s);
+    for (const ContactRegime &regime : regimes)
+      result.n_samples.push_back(regime.points.size());
+    const std::vector<double> grid = parameters.sweep.friction_coefficients.linear();
+    for (int s = 0; s < samples.n_followed; ++s)
       {
-        const StateOfContact state =
-          state_of_contact(*scene.model, scene.interface, result.plan.sliding_state(operations[s]), operations[s]);
-        auto regime =
-          std::find_if(regimes.begin(), regimes.end(), [&](const ContactRegime &other) { return other.closed == state.closed; });
-        if (regime == regimes.end())
-          regime = regimes.insert(regime, {regimes.size() + 1, state.closed, {}});
-        regime->points.push_back({operations[s].friction_coefficient, selected(state.damping, state.closed).values(), s});
+        result.plan.lines.push_back({SweepLine::Kind::main, operations[s], 0., grid});
+        for (const double mu : grid)
+          add_point(operations[s], mu, s);
       }
+    result.n_samples.resize(regimes.size(), 0);
     run.progress.finish(text(samples.n(), " of ", samples.numbers.size(), " uncertain numbers, ", regimes.size(),
                              regimes.size() == 1 ? " contact set" : " contact sets"));
 
@@ -192,12 +236,20 @@ namespace Squeal
         std::vector<ParameterValues> here;
         for (const OperatingPoint &point : regime.points)
           here.push_back(members[point.line]);
-        const OperationParameters &operation     = operations[most_damped(regime).line];
-        const Linearisation        linearisation = linearise(scene, result.plan.sliding_state(operation), operation);
-        SystemFamily               family        = system_family(bodies, here, linearisation, band_margin, run);
+        const OperatingPoint &most        = most_damped(regime);
+        OperationParameters   operation   = operations[most.line];
+        operation.friction_coefficient    = most.friction_coefficient;
+        const Linearisation linearisation = linearise(scene, result.plan.sliding_state(operation), operation);
+        SystemFamily        family        = system_family(bodies, here, linearisation, band_margin, run);
         add_modal_damping(family.middle, parameters);
         for (std::size_t i = 0; i < here.size(); ++i)
-          regime.points[i].values.insert(family.terms.members[i].begin(), family.terms.members[i].end());
+          {
+            const ParameterValues &values = family.terms.members[i];
+            regime.points[i].values.insert(values.begin(), values.end());
+            // The same in every contact set: where there are several, the bodies do not vary
+            if (const int s = regime.points[i].line; s < samples.n_followed)
+              result.plan.lines[s].values = values;
+          }
         result.middles.push_back(std::move(family.middle));
       }
     return result;
@@ -205,7 +257,8 @@ namespace Squeal
 
   SampledSystems sampled_file(SystemFile file, const SamplePlan &samples, Run &run)
   {
-    const std::string varied    = file.default_varied();
+    const auto        swept     = samples.n_followed > 0 ? std::optional(swept_parameter(file, run)) : std::nullopt;
+    const std::string varied    = swept ? swept->name : file.default_varied();
     const auto        values_at = [&](const Eigen::RowVectorXd &numbers) {
       std::map<std::string, double> values = run.parameters.system.values;
       for (std::size_t j = 0; j < samples.numbers.size(); ++j)
@@ -213,13 +266,21 @@ namespace Squeal
       return file.values(values);
     };
     SampledSystems result;
-    result.plan.scene  = nullptr;
-    result.plan.values = values_at(samples.values.colwise().mean());
+    result.plan.scene     = nullptr;
+    result.plan.axis.name = varied;
+    result.plan.values    = values_at(samples.values.colwise().mean());
     ContactRegime all{1, {}, {}};
     for (int s = 0; s < samples.n(); ++s)
       {
         const ParameterValues values = values_at(samples.values.row(s));
         all.points.push_back({values.at(varied).front(), values, s});
+      }
+    result.n_samples = {all.points.size()};
+    for (int s = 0; s < samples.n_followed; ++s)
+      {
+        result.plan.lines.push_back({SweepLine::Kind::main, {}, 0., swept->values.linear(), all.points[s].values});
+        for (const double value : result.plan.lines.back().friction_coefficients)
+          all.points.push_back(result.plan.point(s, value, {}));
       }
     result.plan.regimes.push_back(std::move(all));
     const CoupledSystem whole =

@@ -20,6 +20,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace Squeal
 {
@@ -134,10 +135,26 @@ namespace Squeal
     return {static_cast<double>(k) / n, Binomial::find_lower_bound_on_p(n, k, outer), Binomial::find_upper_bound_on_p(n, k, outer)};
   }
 
+  double mean(const std::vector<double> &values)
+  {
+    return std::accumulate(values.begin(), values.end(), 0.) / static_cast<double>(values.size());
+  }
+
+  double deviation(const std::vector<double> &values)
+  {
+    const double middle = mean(values);
+    double       sum    = 0.;
+    for (const double value : values)
+      sum += std::pow(value - middle, 2);
+    return std::sqrt(sum / static_cast<double>(values.size()));
+  }
+
   double quantile(const std::vector<double> &sorted, const double p)
   {
     const double place = p * static_cast<double>(sorted.size() - 1);
     const auto   i     = static_cast<std::size_t>(place);
-    return i + 1 < sorted.size() ? sorted[i] + (place - static_cast<double>(i)) * (sorted[i + 1] - sorted[i]) : sorted.back();
+    const double part  = place - static_cast<double>(i);
+    // Of values that may be infinite
+    return i + 1 == sorted.size() || part == 0. || sorted[i + 1] == sorted[i] ? sorted[i] : sorted[i] + part * (sorted[i + 1] - sorted[i]);
   }
 } // namespace Squeal

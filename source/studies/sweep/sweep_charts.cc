@@ -93,6 +93,28 @@ namespace Squeal
       return result;
     }
 
+    ChartOptions options_of(const SweepModel &model)
+    {
+      ChartOptions result;
+      result.largest_circular_frequency = model.largest_circular_frequency;
+      result.threshold_tolerance        = model.run.parameters.sweep.threshold_tolerance;
+      return result;
+    }
+
+    /// Modes of a line for its chart.
+    EvaluateChart evaluation(SweepModel &model, const int line)
+    {
+      return [&model, line](const std::vector<double> &friction_coefficients) { return model.evaluate(line, friction_coefficients); };
+    }
+
+    /// The chart of a line over known friction coefficients.
+    StabilityChart chart_of(SweepModel &model, const int line, const std::vector<double> &grid, const EvaluateChart &evaluate)
+    {
+      const auto        at      = [&](const double mu) { return model.plan.point(line, mu, model.regime.closed); };
+      const PredictZero predict = model.reduced ? zero_predictor(*model.reduced, at, model.run.communicator) : PredictZero();
+      return stability_chart(grid, evaluate, options_of(model), predict);
+    }
+
     /// Without friction as many modes as inertia counts.
     void compare_with_inertia(const SweepModel &model, const StabilityChart &chart)
     {
@@ -117,24 +139,20 @@ namespace Squeal
   {
     Run        &run         = model.run;
     std::size_t n_evaluated = 0;
-    const auto  evaluate    = [&](const std::vector<double> &friction_coefficients) {
+    const auto  evaluate    = [&, known = evaluation(model, line)](const std::vector<double> &friction_coefficients) {
       n_evaluated += friction_coefficients.size();
       run.progress.update(text(n_evaluated, " points"));
-      return model.evaluate(line, friction_coefficients);
+      return known(friction_coefficients);
     };
     run.progress.begin("Branches");
-    ChartOptions options;
-    options.largest_circular_frequency = model.largest_circular_frequency;
-    options.threshold_tolerance        = run.parameters.sweep.threshold_tolerance;
+    const ChartOptions options = options_of(model);
     // Thresholds ask for more than λ: where modes hardly interact, μ_c moves far for a small error. The values of the grid
     // tell between which modes there are thresholds; which of them are uncertain is not asked, for that hangs on rounding.
     ChartOptions coarse        = options;
     coarse.maximum_refinements = 0;
     if (model.reduced && !model.reduced->reduced().is_restricted())
       sharpen(model, line, stability_chart(grid, evaluate, coarse), grid);
-    const auto            at      = [&](const double mu) { return model.plan.point(line, mu, model.regime.closed); };
-    const PredictZero     predict = model.reduced ? zero_predictor(*model.reduced, at, run.communicator) : PredictZero();
-    SweepChart            result{stability_chart(grid, evaluate, options, predict), {}, {}, {}};
+    SweepChart            result{chart_of(model, line, grid, evaluate), {}, {}, {}};
     const StabilityChart &chart  = result.chart;
     const double          before = grid.empty() ? 0. : value_before(model, line, grid.front());
     result.labels                = branch_labels(model, chart);
@@ -157,6 +175,32 @@ namespace Squeal
             if (kind == SweepLine::Kind::main && model.plan.scene != nullptr)
               compare_with_inertia(model, charts[l].back().chart);
           }
+  }
+
+  std::vector<SquealOnset> mode_onsets(SweepModel &model, const int line)
+  {
+    const EvaluateChart                                   evaluate = evaluation(model, line);
+    const ChartOptions                                    options  = options_of(model);
+    std::map<std::pair<std::string, double>, SquealOnset> first; // by label and divergence rate
+    for (const std::vector<double> &grid : stretches(model, line))
+      {
+        const StabilityChart         chart  = chart_of(model, line, grid, evaluate);
+        const std::vector<ModeLabel> labels = branch_labels(model, chart);
+        const double                 before = value_before(model, line, grid.front());
+        for (int b = 0; b < static_cast<int>(labels.size()); ++b)
+          for (const auto &[rate, onset] : {std::make_pair(0., onset_of(b, chart, options.largest_circular_frequency, before)),
+                                            {weak_divergence, onset_beyond(weak_divergence, chart, evaluate, options, before, b)}})
+            if (onset)
+              {
+                const auto [known, is_new] = first.try_emplace({to_string(labels[b]), rate}, SquealOnset{rate, *onset, labels[b]});
+                if (!is_new && onset->friction_coefficient < known->second.onset.friction_coefficient)
+                  known->second.onset = *onset;
+              }
+      }
+    std::vector<SquealOnset> result;
+    for (auto &[key, onset] : first)
+      result.push_back(std::move(onset));
+    return result;
   }
 
   std::vector<SquealOnset> squeal_onsets(const std::vector<SweepChart> &charts)

@@ -57,13 +57,17 @@ namespace Squeal
     return scene != nullptr ? state_of_contact(*scene->model, scene->interface, sliding_state(operation), operation) : StateOfContact();
   }
 
+  ContactRegime &regime_of(const std::vector<unsigned int> &closed, std::vector<ContactRegime> &regimes)
+  {
+    const auto known = std::find_if(regimes.begin(), regimes.end(), [&](const ContactRegime &regime) { return regime.closed == closed; });
+    return known != regimes.end() ? *known : regimes.emplace_back(ContactRegime{regimes.size() + 1, closed, {}});
+  }
+
   OperatingPoint SweepPlan::point(const int line, const double friction_coefficient, const std::vector<unsigned int> &closed) const
   {
+    OperatingPoint result{friction_coefficient, lines[line].values, line};
     if (scene != nullptr)
-      return {friction_coefficient, selected(state_at(line, friction_coefficient).damping, closed).values(), line};
-    OperatingPoint result{friction_coefficient, {}, line};
-    if (lines[line].kind == SweepLine::Kind::map)
-      result.values[second_axis.name] = {lines[line].value};
+      result.values.merge(selected(state_at(line, friction_coefficient).damping, closed).values());
     return result;
   }
 
@@ -100,26 +104,34 @@ namespace Squeal
         {
           run.progress.update(text("state ", ++n_points));
           const StateOfContact state = plan.state_at(static_cast<int>(l), mu);
-          auto                 regime =
-            std::find_if(regimes.begin(), regimes.end(), [&](const ContactRegime &other) { return other.closed == state.closed; });
-          if (regime == regimes.end())
-            regime = regimes.insert(regime, {regimes.size() + 1, state.closed, {}});
-          regime->points.push_back({mu, selected(state.damping, state.closed).values(), static_cast<int>(l)});
+          regime_of(state.closed, regimes).points.push_back({mu, selected(state.damping, state.closed).values(), static_cast<int>(l)});
         }
     run.progress.finish(text(n_points, " operating points, ", regimes.size(), regimes.size() == 1 ? " contact set" : " contact sets"));
     return plan;
   }
 
-  SweepPlan sweep_plan_of_system(Run &run)
+  NamedRange swept_parameter(const SystemFile &file, const Run &run)
   {
     const SweepParameters &sweep  = run.parameters.sweep;
-    const NamedRange       varied = sweep.varied_parameter();
-    const auto             second = sweep.second_varied_parameter();
-    SystemFile             file   = read_system(run);
-    if (sweep.parameter.empty() && file.find(varied.name) == nullptr)
+    NamedRange             result = sweep.varied_parameter();
+    if (sweep.parameter.empty() && file.find(result.name) == nullptr)
       throw ParameterError("the sweep has no parameter: the system has none that is called mu", "parameter Sweep/Parameter",
                            "name the one that varies: omega, 6.28, 25.1, 31");
-    // Names and ends of ranges are checked before anything is computed
+    std::map<std::string, double> given = run.parameters.system.values;
+    for (const double value : {result.values.first, result.values.last})
+      {
+        given[result.name] = value;
+        file.values(given);
+      }
+    return result;
+  }
+
+  SweepPlan sweep_plan_of_system(Run &run)
+  {
+    const auto       second = run.parameters.sweep.second_varied_parameter();
+    SystemFile       file   = read_system(run);
+    const NamedRange varied = swept_parameter(file, run);
+    // The ends of the other range, too, are checked before anything is computed
     std::map<std::string, double> given = run.parameters.system.values;
     if (second)
       for (const double value : {second->values.last, second->values.first})
@@ -127,19 +139,15 @@ namespace Squeal
           given[second->name] = value;
           file.values(given);
         }
-    given = run.parameters.system.values;
-    for (const double value : {varied.values.first, varied.values.last})
-      {
-        given[varied.name] = value;
-        file.values(given);
-      }
+    given                         = run.parameters.system.values;
+    given[varied.name]            = varied.values.last;
     const ParameterValues  values = file.values(given);
     const auto             axis   = [&file](const std::string &name) { return SweepAxis{name, file.find(name)->unit}; };
     const SweepAxis        main = axis(varied.name), other = second ? axis(second->name) : SweepAxis();
     std::vector<SweepLine> lines = {{SweepLine::Kind::main, {}, 0., varied.values.linear()}};
     if (second)
       for (const double value : second->values.linear())
-        lines.push_back({SweepLine::Kind::map, {}, value, varied.values.linear()});
+        lines.push_back({SweepLine::Kind::map, {}, value, varied.values.linear(), {{second->name, {value}}}});
     SweepPlan     plan{nullptr, std::move(file), values, main, other, {}, nullptr, lines, {}};
     ContactRegime all{1, {}, {}};
     for (std::size_t l = 0; l < lines.size(); ++l)

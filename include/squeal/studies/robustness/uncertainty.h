@@ -41,6 +41,10 @@ namespace Squeal
   /// Probability of an event that @p k of @p n independent samples have, with the interval of C. J. Clopper and E. S. Pearson (1934).
   Estimate probability(int k, int n);
 
+  /// Mean, and standard deviation about it, of one value at least.
+  double mean(const std::vector<double> &values);
+  double deviation(const std::vector<double> &values);
+
   /// Value below which a part @p p of some values lies, between the two nearest ones. The values are sorted, one at least.
   double quantile(const std::vector<double> &sorted, double p);
 } // namespace Squeal

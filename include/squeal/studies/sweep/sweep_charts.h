@@ -20,6 +20,7 @@ namespace Squeal
     OperationParameters operation;             ///< but for the friction coefficient
     double              value;                 ///< of the second axis, on a line of the map
     std::vector<double> friction_coefficients; ///< or values of the varied parameter of a system file
+    ParameterValues     values = {};           ///< of other parameters of the system
 
     OperationParameters at(double friction_coefficient) const;
   };
@@ -34,6 +35,9 @@ namespace Squeal
     /// Numbers of the points of a line.
     std::vector<int> on_line(int line) const;
   };
+
+  /// The regime of a contact set, new if there is none.
+  ContactRegime &regime_of(const std::vector<unsigned int> &closed, std::vector<ContactRegime> &regimes);
 
   /// What varies along a line of a sweep, or from line to line of a map.
   struct SweepAxis
@@ -64,7 +68,7 @@ namespace Squeal
       return state_at(0, friction_coefficient).closed;
     }
 
-    /// A point of a line with the damping of those contact nodes that are closed in a regime.
+    /// A point of a line with its values, and the damping of those contact nodes that are closed in a regime.
     OperatingPoint point(int line, double friction_coefficient, const std::vector<unsigned int> &closed) const;
   };
 
@@ -73,6 +77,9 @@ namespace Squeal
 
   /// Reads a system file: the parameters that vary in it, as a step of the run. Its main line has the other parameters at their values.
   SweepPlan sweep_plan_of_system(Run &run);
+
+  /// The parameter of a system file that a sweep varies. Throws ParameterError unless the file has it with the range of the sweep.
+  NamedRange swept_parameter(const SystemFile &file, const Run &run);
 
   /// The same for some lines of operating points.
   SweepPlan sweep_plan(const Scene &scene, const std::vector<SweepLine> &lines, Run &run);
@@ -184,6 +191,10 @@ namespace Squeal
 
   /// Follows the branches on all lines but those of the map, with their thresholds, as steps of the run; appends to the @p charts of each line.
   void follow_branches(SweepModel &model, std::vector<std::vector<SweepChart>> &charts);
+
+  /// Where the modes of a line begin to grow, and where their divergence rates exceed weak_divergence, over its known friction coefficients:
+  /// once for each label and rate. The basis stays as it is. All processes must call.
+  std::vector<SquealOnset> mode_onsets(SweepModel &model, int line);
 
   /// The first onsets of all stretches of a line: of growth and of divergence rates beyond weak_divergence, where there are such.
   std::vector<SquealOnset> squeal_onsets(const std::vector<SweepChart> &charts);
