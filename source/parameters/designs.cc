@@ -31,7 +31,11 @@ namespace Squeal
       "Goal", goal,
       "What is made as good as possible within the ranges of Designs/Variables. onset: the smallest friction coefficient from "
       "which on a divergence rate exceeds 0.01 %, as large as possible. divergence rate: the largest one between the first "
-      "and the last friction coefficient of the section Sweep, as small as possible.");
+      "and the last friction coefficient of the section Sweep, as small as possible. probability: that of squeal with the uncertain "
+      "parameters of Robustness/Distributions, as small as possible. quantile: that of the largest divergence rate of a sample, as "
+      "small as possible.");
+    declarations.add("Quantile", quantile, "none",
+                     "Part of the samples whose largest divergence rates are no larger than the goal quantile.", {0.01, 0.999});
     declarations.add("Method", method, "Method of NLopt, none of which needs derivatives.");
     declarations.add("Samples", n_samples, "none", "Points of Sobol's sequence that are tried first; the method starts from the best.",
                      {1., 1e5});

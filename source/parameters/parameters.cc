@@ -341,13 +341,15 @@ namespace Squeal
     if (system)
       {
         if (study->run_of_system == nullptr)
-          throw ParameterError(text("Study = ", study->name, " needs a mesh"), "parameter System",
-                               "set Study = stability, reduction, sweep, sensitivity, geometry or robustness, or leave System empty");
+          throw ParameterError(
+            text("Study = ", study->name, " needs a mesh"), "parameter System",
+            "set Study = stability, reduction, sweep, sensitivity, geometry, search or robustness, or leave System empty");
         if (goal != AccuracyGoal::as_given)
           throw ParameterError("Accuracy chooses a mesh, but the system comes from a file", "parameter Accuracy", "set it to as given");
         discretization.check();
         reduction.check_of_system();
         sweep.check_of_system();
+        search.check();
         return;
       }
     geometry.check();

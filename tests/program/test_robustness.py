@@ -109,6 +109,71 @@ class OfSystem(test_systems.SystemTest):
             self.assertFalse((self.folder / "refused").exists())
 
 
+class SearchOfSystem(test_systems.SystemTest):
+    """mu g > c is unstable, with mu uniform in (0, 1) and g = 0.8 + 4 (x - 0.3)^2, or g = kappa."""
+
+    SEARCH = ("Robustness/Number of samples=300", "Search/Samples=5", "Search/Evaluations=30")
+
+    def setUp(self):
+        mass, stiffness, (power, _, matrix, symmetry) = flutter_terms()
+        self.write_system({"mu": (0.6, 0., 1.), "x": (0., 0., 1.), "kappa": (1., 0.5, 2.)},
+                          [mass, stiffness, (power, "mu*kappa*(0.8 + 4*(x - 0.3)^2)", matrix, symmetry)])
+
+    def test_the_best_design_is_that_of_the_closed_form(self):
+        c = test_systems.Flutter.MU_C
+        for goal, column in (("quantile", "divergence rate at 90 % of the samples [%]"), ("probability", "probability of squeal or doubt [%]")):
+            results = self.study("search", "Robustness/Distributions=mu = uniform 0 to 1", "Designs/Variables=x = 0 to 1",
+                                 f"Search/Goal={goal}", "Search/Quantile=0.9", *self.SEARCH)
+            rows = self.rows(results, "search")
+            self.assertLessEqual(len(rows), 30)
+            for row in rows:
+                exact = 100. * max(0., 1. - c / (0.8 + 4. * (row["x"] - 0.3) ** 2))
+                self.assertLessEqual(row["lower end of confidence [%]"] - 1., exact)
+                self.assertGreaterEqual(row["upper end of confidence [%]"] + 1., exact)
+                self.assertEqual(row["probability of squeal or doubt [%]"], row["probability of squeal [%]"] + row["undecided samples [%]"])
+            best = min(rows, key=lambda row: row[column])
+            self.assertEqual(rows[-1][f"best {column}"], best[column])
+            # The probability of 300 samples is constant over a range
+            self.assertAlmostEqual(best["x"], 0.3, delta=0.01 if goal == "quantile" else 0.05)
+
+            # The same samples once more
+            again = self.run_scene("again", "Robustness/Sobol indices=false", file=str(results / "best.prm"))
+            squeal = self.rows(again, "probabilities")[0]
+            self.assertEqual(squeal["probability of squeal [%]"], best["probability of squeal [%]"])
+            rates = [row["divergence rate [%]"] or 0. for row in self.rows(again, "samples")]
+            self.assertAlmostEqual(best["divergence rate at 90 % of the samples [%]"], quantile(rates, 0.9, 300), delta=1e-6)
+            # Other ones, and their worst at full order
+            checked = self.rows(results, "best_design")
+            self.assertEqual([row["seed [-]"] for row in checked], [1., 2.])
+            self.assertEqual(checked[0][column], best[column])
+            others = self.run_scene("others", "Robustness/Sobol indices=false", "Robustness/Seed=2", file=str(results / "best.prm"))
+            self.assertEqual(checked[1]["probability of squeal [%]"], self.rows(others, "probabilities")[0]["probability of squeal [%]"])
+            worst = max(row["divergence rate [%]"] or 0. for row in self.rows(others, "samples"))
+            self.assertAlmostEqual(self.rows(results, "full_order")[0]["divergence rate [%]"], worst, delta=1e-6)
+
+    def test_numbers_in_percent_follow_the_design(self):
+        """P(mu kappa r g > c) = 1 - c/(g kappa) E(1/r) with r uniform in (0.9, 1.1), smallest for the smallest kappa."""
+        c = test_systems.Flutter.MU_C
+        results = self.study("search", "Robustness/Distributions=mu = uniform 0 to 1; kappa = uniform 90 % to 110 %", "Designs/Variables=kappa = 0.9 to 1.8",
+                             "Search/Goal=probability", *self.SEARCH)
+        rows = self.rows(results, "search")
+        for row in rows:
+            exact = 100. * (1. - c / (1.16 * row["kappa"]) * math.log(1.1 / 0.9) / 0.2)
+            self.assertLessEqual(row["lower end of confidence [%]"] - 1., exact)
+            self.assertGreaterEqual(row["upper end of confidence [%]"] + 1., exact)
+        self.assertAlmostEqual(min(rows, key=lambda row: row["probability of squeal [%]"])["kappa"], 0.9, delta=0.01)
+
+    def test_refusals(self):
+        self.write("study.prm", "set System = system\nset Study = search\n")
+        good = {"Robustness/Distributions": "mu = uniform 0 to 1", "Designs/Variables": "x = 0 to 1", "Search/Goal": "quantile"}
+        for path, value, words in (("Designs/Variables", "x = 0, 1", "ranges"), ("Designs/Variables", "y = 0 to 1", "y"),
+                                   ("Designs/Variables", "mu = 0.1 to 0.2", "mu"), ("Search/Goal", "onset", "onset"),
+                                   ("Robustness/Distributions", "", "uncertain"), ("Search/Samples", "50", "50")):
+            given = [f"{name}={text}" for name, text in {**good, path: value}.items()]
+            self.assert_message(self.call("study.prm", "--output", "refused", *settings(given)), [words])
+            self.assertFalse((self.folder / "refused").exists())
+
+
 class OfScene(ProgramTest):
     def test_onsets_are_those_of_sweeps(self):
         sweep = ["Sweep/Number of friction coefficients=5", "Sweep/Last friction coefficient=0.6", "Sweep/Tolerance=1e-8"]
@@ -139,6 +204,37 @@ class OfScene(ProgramTest):
                                          float(onset["uncertainty of mu [-]"]) + float(other["uncertainty [-]"]))
                     n_compared += 1
         self.assertGreater(n_compared, 3)
+
+    def test_search_for_a_robust_design(self):
+        search = ["Study=search", "Search/Goal=quantile", "Search/Quantile=0.8", "Search/Samples=3", "Search/Evaluations=6",
+                  "Designs/Variables=Pin material/Young modulus = 1.6e9 to 2.4e9; Mounts/Elastic mounts[2] = 6e10 to 9e10",
+                  "Robustness/Number of samples=12", "Robustness/Distributions=Operation/Friction coefficient = uniform 0.3 to 0.6; "
+                  "Pin material/Young modulus = uniform 95 % to 105 % for each pin; Disc material/Young modulus = normal 100 %, 1 %"]
+        results = self.run_scene("search", *search)
+        rows = read_table(results / "search.csv")
+        column = "divergence rate at 80 % of the samples [%]"
+        self.assertTrue(3 < len(rows) <= 6)
+        self.assertEqual([row["phase"] for row in rows], ["sample"] * 3 + ["search"] * (len(rows) - 3))
+        best = min(rows, key=lambda row: float(row[column]))
+        for seed, row in zip((1, 2), read_table(results / "best_design.csv")):
+            again = self.run_scene(f"again_{seed}", "Robustness/Sobol indices=false", f"Robustness/Seed={seed}", file=str(results / "best.prm"))
+            # But for samples that one of two bases does not decide
+            squeal = read_table(again / "probabilities.csv")[0]
+            for one, other in ((row, squeal), (squeal, row)):
+                doubt = float(other["undecided samples [%]"]) + 1e-6
+                self.assertLessEqual(float(one["probability of squeal [%]"]), float(other["probability of squeal [%]"]) + doubt)
+            rates = sorted(float(sample["divergence rate [%]"] or 0.) for sample in read_table(again / "samples.csv"))
+            self.assertAlmostEqual(float(row[column]), quantile(rates, 0.8, 12), delta=0.01)  # to the tolerance of 1e-4
+        self.assertEqual(read_table(results / "best_design.csv")[0][column], best[column])
+        self.assertAlmostEqual(float(read_table(results / "full_order.csv")[0]["divergence rate [%]"]), rates[-1], delta=0.01)
+
+    def test_refused_searches(self):
+        good = {"Study": "search", "Search/Goal": "probability", "Designs/Variables": "Pin material/Young modulus = 1.6e9 to 2.4e9",
+                "Robustness/Distributions": "Operation/Friction coefficient = uniform 0.3 to 0.6"}
+        for path, value, words in (("Designs/Variables", "Geometry/Pin height = 0.029 to 0.035", "Pin height"),
+                                   ("Robustness/Distributions", "Pin material/Young modulus = uniform 1.6e9 to 2e9", "Young modulus"),
+                                   ("Steady sliding/Contact state", "steady sliding", "contact set")):
+            self.assert_refused([words], *(f"{name}={text}" for name, text in {**good, path: value}.items()))
 
     def test_worst_samples_at_full_order(self):
         results = self.run_scene("box", "Study=robustness", f"Robustness/Distributions={BOX}", "Robustness/Number of samples=24",

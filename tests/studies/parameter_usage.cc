@@ -189,7 +189,11 @@ TEST(ParameterUsage, OfEveryStudy)
     // A search has ranges in the place of a plan
     {{"Study=search", "Designs/Variables=Geometry/Pin height=0.03 to 0.04"},
      {"Designs/", "Search/", "Sweep/"},
-     {reduced, no_sweep, no_sliding, undamped, one_mu, {"Designs/Plan", "Designs/Number", "Designs/File"}}},
+     {reduced, no_sweep, no_sliding, undamped, one_mu, {"Designs/Plan", "Designs/Number", "Designs/File", "Search/Quantile"}}},
+    {{"Study=search", "Designs/Variables=Pin material/Density = 2000 to 3000", "Search/Goal=quantile",
+      "Robustness/Distributions=Operation/Friction coefficient = uniform 0.2 to 0.4"},
+     {"Designs/", "Search/", "Robustness/"},
+     {reduced, no_sliding, undamped, {"Designs/Plan", "Designs/Number", "Designs/File", "Designs/Processes"}}},
 
     {{"Study=robustness", "Robustness/Distributions=Pin material/Density = uniform 90 % to 110 %"},
      {"Robustness/"},

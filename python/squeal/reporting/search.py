@@ -36,7 +36,7 @@ class Search:
 
 
 def is_of(results):
-    return results.has("search")
+    return results.has("search") and results.has("designs")
 
 
 def verdict(results):

@@ -48,8 +48,8 @@ namespace Squeal
           if (number.pin.empty() &&
               text_without_coefficients(with_design(parameters, {number.parameter}, {exact_text(samples.values(0, j))})) != scene)
             throw ParameterError(in_quotes(number.parameter) +
-                                   " cannot be uncertain: it changes matrices and not only coefficients, or its term is zero in the model",
-                                 where_uncertain,
+                                   " cannot vary: it changes matrices and not only coefficients, or its term is zero in the model",
+                                 number.where,
                                  "choose moduli, densities, Rayleigh coefficients, mounts, friction coefficient, load, speed or slope with "
                                  "nonzero nominal values; use Study = geometry for other parameters");
         }
@@ -76,7 +76,7 @@ namespace Squeal
           }
         if (!uncertain.for_each_pin)
           {
-            result.numbers.push_back({uncertain.name, uncertain.name, "", distribution});
+            result.numbers.push_back({uncertain.name, uncertain.name, "", distribution, uncertain.is_relative});
             continue;
           }
         if (numbers_of_pins.count(uncertain.name) == 0)
@@ -86,7 +86,7 @@ namespace Squeal
         if (pins.empty())
           throw ParameterError("there are no pins with the material Pin material", where_uncertain, "leave out `for each pin`");
         for (const std::string &pin : pins)
-          result.numbers.push_back({uncertain.name + " of " + pin, uncertain.name, pin, distribution});
+          result.numbers.push_back({uncertain.name + " of " + pin, uncertain.name, pin, distribution, uncertain.is_relative});
       }
 
     const auto  d            = static_cast<int>(result.numbers.size());
@@ -197,7 +197,7 @@ namespace Squeal
     check_coefficients(parameters, samples);
 
     run.progress.begin("Samples");
-    SampledSystems                   result{sweep_plan(scene, std::vector<SweepLine>(), run), {}, {}};
+    SampledSystems                   result{sweep_plan(scene, std::vector<SweepLine>(), run), {}, {}, {}};
     std::vector<ParameterValues>     members(samples.n());
     std::vector<OperationParameters> operations(samples.n());
     run_tasks(samples.n(), [&](const int s) {
@@ -251,6 +251,14 @@ namespace Squeal
               result.plan.lines[s].values = values;
           }
         result.middles.push_back(std::move(family.middle));
+        if (!result.point)
+          result.point = [&scene, &parameters, closed = regime.closed, family](const SamplePlan &further, const int s) {
+            const Parameters     sample = with_sample(parameters, further, s);
+            const StateOfContact state  = state_of_contact(*scene.model, scene.interface, {}, sample.operation);
+            OperatingPoint       point{sample.operation.friction_coefficient, family.member(values_of_bodies(scene, sample)), s};
+            point.values.merge(selected(state.damping, closed).values());
+            return point;
+          };
       }
     return result;
   }
@@ -259,22 +267,23 @@ namespace Squeal
   {
     const auto        swept     = samples.n_followed > 0 ? std::optional(swept_parameter(file, run)) : std::nullopt;
     const std::string varied    = swept ? swept->name : file.default_varied();
-    const auto        values_at = [&](const Eigen::RowVectorXd &numbers) {
-      std::map<std::string, double> values = run.parameters.system.values;
-      for (std::size_t j = 0; j < samples.numbers.size(); ++j)
-        values[samples.numbers[j].parameter] = numbers[static_cast<Eigen::Index>(j)];
-      return file.values(values);
+    const auto        values_at = [&parameters = run.parameters, names = file](const SamplePlan &plan, const Eigen::RowVectorXd &numbers) {
+      std::map<std::string, double> values = parameters.system.values;
+      for (std::size_t j = 0; j < plan.numbers.size(); ++j)
+        values[plan.numbers[j].parameter] = numbers[static_cast<Eigen::Index>(j)];
+      return names.values(values);
     };
     SampledSystems result;
     result.plan.scene     = nullptr;
     result.plan.axis.name = varied;
-    result.plan.values    = values_at(samples.values.colwise().mean());
+    result.plan.values    = values_at(samples, samples.values.colwise().mean());
     ContactRegime all{1, {}, {}};
+    result.point = [values_at, varied](const SamplePlan &plan, const int s) {
+      const ParameterValues values = values_at(plan, plan.values.row(s));
+      return OperatingPoint{values.at(varied).front(), values, s};
+    };
     for (int s = 0; s < samples.n(); ++s)
-      {
-        const ParameterValues values = values_at(samples.values.row(s));
-        all.points.push_back({values.at(varied).front(), values, s});
-      }
+      all.points.push_back(result.point(samples, s));
     result.n_samples = {all.points.size()};
     for (int s = 0; s < samples.n_followed; ++s)
       {

@@ -2,38 +2,22 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/base/file_writing.h>
 #include <squeal/studies/designs/design_work.h>
-
-#include <nlopt.hpp>
+#include <squeal/studies/search/search_steps.h>
 
 #include <numeric>
 #include <ostream>
 
 namespace Squeal
 {
-  extern const Study stability_study;
-
   namespace
   {
     namespace fs = std::filesystem;
-
-    using Point = std::vector<double>; ///< parts of the ranges, in the unit cube
-
-    /// Value of a design that was refused or failed: methods turn back from it as from a wall.
-    constexpr double refused_value = 1.;
-
-    /// Searches that go on side by side, each from another start.
-    constexpr std::size_t most_searches = 2;
-
-    nlopt::algorithm algorithm(const SearchMethod method)
-    {
-      return method == SearchMethod::subplex ? nlopt::LN_SBPLX : method == SearchMethod::cobyla ? nlopt::LN_COBYLA : nlopt::LN_BOBYQA;
-    }
 
     /// What a search makes small, of the order of one: −μ of the onset, or the largest divergence rate in per cent.
     double objective(const DesignResult &result, const Parameters &parameters)
     {
       if (result.outcome != DesignOutcome::solved)
-        return parameters.search.goal == SearchGoal::onset ? 0. : 100. * refused_value;
+        return parameters.search.goal == SearchGoal::onset ? 0. : 100. * penalty_rate;
       if (parameters.search.goal == SearchGoal::onset)
         return -(result.weak_onset ? result.weak_onset->friction_coefficient : parameters.sweep.friction_coefficients.last);
       return result.worst ? 100. * result.worst->divergence_rate : 0.;
@@ -59,17 +43,17 @@ namespace Squeal
       }
 
       /// The objective at a point that is known.
-      std::optional<double> value(const Point &point) const
+      std::optional<double> value(const SearchPoint &point) const
       {
         const auto place = std::find(plan.designs.begin(), plan.designs.end(), values_at(point));
         return place == plan.designs.end() ? std::nullopt : std::optional(objective(results[place - plan.designs.begin()], run.parameters));
       }
 
       /// Solves those of some points that are not known side by side; false where the budget does not suffice.
-      bool solve(const std::vector<Point> &points)
+      bool solve(const std::vector<SearchPoint> &points)
       {
         DesignWork work{plan, {}};
-        for (const Point &point : points)
+        for (const SearchPoint &point : points)
           if (const auto values = values_at(point);
               std::find(work.plan.designs.begin(), work.plan.designs.end(), values) == work.plan.designs.end())
             {
@@ -93,7 +77,7 @@ namespace Squeal
 
     private:
       /// Values of the variables at a point.
-      std::vector<std::string> values_at(const Point &point) const
+      std::vector<std::string> values_at(const SearchPoint &point) const
       {
         std::vector<std::string> result;
         for (std::size_t v = 0; v < variables.size(); ++v)
@@ -123,57 +107,31 @@ namespace Squeal
     /// A point at which a method wants the objective; nothing if it has ended, and then why, for a sentence.
     struct NextStep
     {
-      std::optional<Point> asked;
-      std::string          end;
+      std::optional<SearchPoint> asked;
+      std::string                end;
     };
 
     /// Runs a method from a start until it asks for a point that is not known. A method does the same each time, so that it goes on as soon
     /// as the point is solved, and several methods can have their points solved side by side.
-    NextStep next_step(const Point &start, const Evaluations &evaluations)
+    NextStep next_step(const SearchPoint &start, const Evaluations &evaluations)
     {
-      const SearchParameters                    &parameters = evaluations.run.parameters.search;
-      NextStep                                   result;
-      const std::function<double(const Point &)> value = [&](const Point &x) {
-        if (const auto known = evaluations.value(x))
-          return *known;
-        result.asked = x;
-        throw nlopt::forced_stop();
-      };
-      nlopt::opt method(algorithm(parameters.method), static_cast<unsigned int>(start.size()));
-      method.set_lower_bounds(0.);
-      method.set_upper_bounds(1.);
-      method.set_xtol_abs(parameters.smallest_step);
-      method.set_initial_step(parameters.first_step);
-      method.set_min_objective(
-        [](const Point &x, Point &, void *f) { return (*static_cast<const std::function<double(const Point &)> *>(f))(x); },
-        const_cast<std::function<double(const Point &)> *>(&value));
-      Point  x = start;
-      double smallest;
-      try
-        {
-          method.optimize(x, smallest);
-          result.end = "steps are smaller than Search/Smallest step";
-        }
-      catch (const nlopt::forced_stop &)
-        {}
-      catch (const nlopt::roundoff_limited &)
-        {
-          result.end = "rounding errors are larger than what steps change";
-        }
-      catch (const std::exception &error)
-        {
-          result.end = std::string("NLopt says: ") + error.what();
-        }
+      NextStep result;
+      result.end = minimise(evaluations.run.parameters.search, start, [&](const SearchPoint &x) {
+        const std::optional<double> known = evaluations.value(x);
+        if (!known)
+          result.asked = x;
+        return known;
+      });
       return result;
     }
 
     /// Searches side by side from some starts; returns why each ended.
-    std::vector<std::string> search(const std::vector<Point> &starts, Evaluations &evaluations)
+    std::vector<std::string> search(const std::vector<SearchPoint> &starts, Evaluations &evaluations)
     {
       std::vector<std::string> ends(starts.size());
       for (;;)
         {
-          std::vector<Point> asked;
+          std::vector<SearchPoint> asked;
           for (std::size_t i = 0; i < starts.size(); ++i)
             if (ends[i].empty())
               {
@@ -190,60 +148,6 @@ namespace Squeal
               return ends;
             }
         }
-    }
-
-    // ------------------------------------------------------------------ at full order
-
-    /// Modes of the best design at full order beside those of its sweep, at one friction coefficient.
-    struct FullOrder
-    {
-      double          friction_coefficient;
-      std::size_t     n_modes, n_unstable;
-      ModalQuantities leading; ///< the mode that grows most, or is damped least
-      std::string     label;
-      double          residual; ///< largest
-    };
-
-    FullOrder at_full_order(const Parameters &design, const double mu, Run &run)
-    {
-      run.progress.begin("Full order");
-      Parameters parameters                     = design;
-      parameters.study                          = &stability_study;
-      parameters.solvers.complex_solver         = ComplexSolver::krylov;
-      parameters.operation.friction_coefficient = mu;
-      Progress                silent;
-      Run                     part(parameters, run, silent);
-      Scene                   scene        = mesh_scene(part);
-      const FrictionlessModes frictionless = damped_modes(scene, part);
-      const FrictionModes     friction     = friction_modes(frictionless, mu, part);
-      const auto             &lambda       = friction.modes.lambda;
-      const auto             &residuals    = friction.modes.residuals;
-      const auto              leading      = std::max_element(lambda.begin(), lambda.end(), [](const auto &a, const auto &b) {
-        return modal_quantities(a).divergence_rate < modal_quantities(b).divergence_rate;
-      });
-      const FullOrder         result{mu,
-                             lambda.size(),
-                             friction.n_unstable(),
-                             modal_quantities(*leading),
-                             to_string(friction.labels[leading - lambda.begin()]),
-                             *std::max_element(residuals.begin(), residuals.end())};
-
-      run.progress.finish(text("mu = ", mu, ": ", result.n_modes, " modes, ", result.n_unstable, " unstable, ",
-                               decimal_text(100. * result.leading.divergence_rate), " % at most (", result.label, ")"));
-      return result;
-    }
-
-    Table full_order_table(const std::vector<FullOrder> &rows)
-    {
-      using Row = FullOrder;
-      return Table(Columns<Row>{{"mu", "-", &Row::friction_coefficient, 4},
-                                {"modes", "-", &Row::n_modes},
-                                {"unstable modes", "-", &Row::n_unstable},
-                                {"label", "", &Row::label},
-                                {"frequency", "Hz", [](const Row &row) { return row.leading.frequency; }, 3},
-                                {"divergence rate", "%", [](const Row &row) { return 100. * row.leading.divergence_rate; }, 4},
-                                {"residual", "-", &Row::residual, 1, true}},
-                   rows);
     }
 
     /// The evaluations, and the best so far.
@@ -280,20 +184,22 @@ namespace Squeal
   /// samples, then a method without derivatives from the best two of them, and the best of all at full order.
   static void run_search_study(Scene &scene, Run &run)
   {
+    if (is_robust(run.parameters.search))
+      return run_robust_search(scene, run);
     const Parameters       &parameters = run.parameters;
     const SearchParameters &options    = parameters.search;
     Evaluations             evaluations(scene, run);
     const std::size_t       dimension = evaluations.variables.size();
 
-    std::vector<Point> points = sobol_points(options.n_samples, dimension, parameters.designs.seed);
+    std::vector<SearchPoint> points = sobol_points(options.n_samples, dimension, parameters.designs.seed);
     evaluations.solve(points);
-    std::vector<std::size_t> order(points.size());
-    std::iota(order.begin(), order.end(), 0);
-    std::stable_sort(order.begin(), order.end(),
-                     [&](const std::size_t a, const std::size_t b) { return evaluations.value(points[a]) < evaluations.value(points[b]); });
-    std::vector<Point> starts;
-    for (std::size_t i = 0; i < std::min(most_searches, order.size()); ++i)
-      starts.push_back(points[order[i]]);
+    std::vector<double> values;
+    for (const SearchPoint &point : points)
+      values.push_back(*evaluations.value(point));
+    const std::vector<std::size_t> order = starts_of_search(values);
+    std::vector<SearchPoint>       starts;
+    for (const std::size_t i : order)
+      starts.push_back(points[i]);
     const std::vector<std::string> ends = search(starts, evaluations);
 
     const DesignResult &winner =
@@ -303,7 +209,7 @@ namespace Squeal
     if (!design || winner.outcome != DesignOutcome::solved)
       throw SolverError("no design of the search could be solved: " + winner.reason, "search", "choose other ranges in Designs/Variables");
     std::vector<FullOrder> checked = {at_full_order(*design, parameters.sweep.friction_coefficients.last, run)};
-    if (winner.worst && winner.worst->friction_coefficient != checked.front().friction_coefficient)
+    if (winner.worst && winner.worst->friction_coefficient != parameters.sweep.friction_coefficients.last)
       checked.push_back(at_full_order(*design, winner.worst->friction_coefficient, run));
 
     // ----------------------------------------------------------------- results
@@ -323,19 +229,44 @@ namespace Squeal
     });
   }
 
+  /// Of a system file, for goals that depend on uncertain parameters.
+  static void run_search_of_system(Run &run)
+  {
+    if (!is_robust(run.parameters.search))
+      throw ParameterError("a search for " + in_quotes(to_string(run.parameters.search.goal)) + " needs a mesh", "parameter Search/Goal",
+                           "set it to probability or quantile, or leave System empty");
+    run_robust_search_of_system(run);
+  }
+
   extern const Study search_study = [] {
     const auto always = [](const Parameters &) { return "a search goes through the ranges of Designs/Variables"; };
-    Study      study  = study_of_designs("search", run_search_study,
-                                         {{"Designs/Plan", always}, {"Designs/File", always}, {"Designs/Number of designs", always}});
-    study.own_parameters.push_back("Search/");
-    study.check = [](const Parameters &p) {
-      const std::vector<DesignVariable> variables = design_variables(p.designs);
-      for (const DesignVariable &variable : variables)
-        if (!variable.is_range)
-          throw ParameterError("a search needs ranges, but " + in_quotes(variable.name) + " has a list of values",
-                               "parameter Designs/Variables", "write Section/Name = a to b");
-      check_ranges(p, variables);
+    const auto robust = [](const Parameters &p) { return unless(is_robust(p.search), "Search/Goal is neither probability nor quantile"); };
+    const auto swept  = [](const Parameters &p) {
+      return is_robust(p.search) ? "samples are solved at one friction coefficient each" : as_in_general;
     };
+    Study study = study_of_designs(
+      "search", run_search_study,
+      {{"Designs/Plan", always},
+       {"Designs/File", always},
+       {"Designs/Number of designs", always},
+       {"Designs/Processes",
+        [](const Parameters &p) { return is_robust(p.search) ? "one reduced model serves all designs" : as_in_general; }},
+       {"Operation/Friction coefficient", [](const Parameters &p) { return is_robust(p.search) ? nullptr : as_in_general; }},
+       {"Search/Quantile", robust},
+       {"Robustness/", robust},
+       {"Sweep/", swept}});
+    study.own_parameters.push_back("Search/");
+    study.own_parameters.push_back("Robustness/");
+    study.check = [](const Parameters &p) {
+      check_ranges(p, search_variables(p.designs));
+      if (!is_robust(p.search))
+        return;
+      p.robustness.parsed_correlations();
+      if (p.needs_steady_sliding())
+        throw ParameterError("a search for " + in_quotes(to_string(p.search.goal)) + " needs one contact set for all designs",
+                             "parameter Steady sliding/Contact state", "set it to equal load, or set Search/Goal = divergence rate");
+    };
+    study.run_of_system = run_search_of_system;
     return study;
   }();
 } // namespace Squeal

@@ -1,5 +1,6 @@
 #include <squeal/studies/steps/system_family.h>
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -52,6 +53,27 @@ namespace Squeal
     result.middle              = frictionless_modes(linearisation, run, margin);
 
     result.middle.linearisation.coupled = system;
+    for (const Term &merged : result.terms.terms)
+      for (const auto &[scale, ones] : result.terms.values)
+        if (merged.coefficient.contains(scale))
+          {
+            const Term &first = *std::find_if(bodies.terms.begin(), bodies.terms.end(),
+                                              [&](const Term &term) { return term.name == merged.name && term.power == merged.power; });
+            for (std::size_t m = 0; m < members.size(); ++m)
+              if (const double coefficient = first.coefficient.at(members[m]); coefficient != 0.)
+                {
+                  result.scales[scale] = {result.terms.members[m].at(scale).front() / coefficient, first.coefficient};
+                  break;
+                }
+          }
+    return result;
+  }
+
+  ParameterValues SystemFamily::member(const ParameterValues &values) const
+  {
+    ParameterValues result;
+    for (const auto &[name, scale] : scales)
+      result[name] = {scale.first * scale.second.at(values)};
     return result;
   }
 } // namespace Squeal

@@ -13,6 +13,8 @@ namespace Squeal
     std::string  parameter;
     std::string  pin; ///< the volume whose number it is; empty: all that the parameter sets
     Distribution distribution;
+    bool         is_relative = false;                                ///< its distribution is in percent of the nominal value
+    const char  *where       = "parameter Robustness/Distributions"; ///< for messages
   };
 
   /// The samples of a study.
@@ -60,6 +62,9 @@ namespace Squeal
     SweepPlan                      plan;      ///< a line for each sample that is followed over the friction coefficient
     std::vector<FrictionlessModes> middles;   ///< of each contact set of the plan, in the middle of its samples
     std::vector<std::size_t>       n_samples; ///< of the points of each contact set, the first ones: the others are those of lines
+
+    /// A further sample as a point of the first contact set, of the same numbers; its `line` is the number of the sample.
+    std::function<OperatingPoint(const SamplePlan &, int sample)> point;
   };
 
   /// The systems of the samples of an assembled scene, as steps of the run. Throws ParameterError where a parameter is no coefficient of a

@@ -13,6 +13,13 @@ namespace Squeal
   {
     TermFamily        terms;
     FrictionlessModes middle; ///< with the system of the family, damping included; real modes and factor know of none
+
+    /// A scale as a multiple of the coefficient of a term, by its name.
+    std::map<std::string, std::pair<double, Coefficient>> scales;
+
+    /// The scales of a member with other values of the bodies' parameters. Right if those of which the family was made vary all that
+    /// varies, independently: terms that kept their ratios there must keep them.
+    ParameterValues member(const ParameterValues &values) const;
   };
 
   /**

@@ -1,0 +1,48 @@
+"""The page of a search with uncertain parameters: the best design, by its samples and by others."""
+
+from squeal.reporting.charts import STABLE, UNSTABLE, digits, layout, number, plain, short
+
+TITLES = {"best_design": "The best design by its samples and by others", "search": "Designs in the order of their evaluation",
+          "full_order": "The worst of the other samples at full order"}
+REPLACED = ()
+
+
+def is_of(results):
+    return results.has("best_design")
+
+
+def goal_of(results):
+    """The column of the goal, in front of that of the best so far."""
+    return results.table("search").columns[-2]
+
+
+def verdict(results):
+    goal, rows = goal_of(results), results.table("search").rows
+    best = min(rows, key=lambda row: number(row[goal]))
+    other = results.table("best_design").rows[1]
+    columns = results.table("search").columns
+    variables = columns[2:columns.index("probability of squeal [%]")]
+    values = ", ".join(f"{name} = {plain(best[name], 4)}" for name in variables)
+    name = goal.removesuffix(" [%]")
+    level = "unstable" if number(other["probability of squeal [%]"]) > 0. else "stable"
+    return level, (f"Of {len(rows)} designs number {best['design [-]']} is the best ({values}): {name} {digits(number(best[goal]), 3)} %, with other "
+                   f"samples {digits(number(other[goal]), 3)} %; squeal in {digits(number(other['probability of squeal [%]']), 3)} % of these "
+                   f"(95 % confidence interval {digits(number(other['lower end of confidence [%]']), 3)} to "
+                   f"{digits(number(other['upper end of confidence [%]']), 3)} %).")
+
+
+def sections(results):
+    goal, rows = goal_of(results), results.table("search").rows
+    traces = [{"type": "scatter", "mode": "lines", "name": "best so far", "x": [int(row["design [-]"]) for row in rows],
+               "y": [short(row["best " + goal]) for row in rows], "line": {"color": "#222", "width": 1.6, "shape": "hv"}}]
+    for phase, colour, symbol in (("sample", STABLE, "circle"), ("search", UNSTABLE, "diamond")):
+        chosen = [row for row in rows if row["phase"] == phase]
+        traces.append({"type": "scatter", "mode": "markers", "name": phase, "x": [int(row["design [-]"]) for row in chosen],
+                       "y": [short(row[goal]) for row in chosen], "marker": {"color": colour, "size": 8, "symbol": symbol}})
+    return [{"id": "history", "title": "History of the search", "data": traces, "layout": layout("evaluation", goal),
+             "caption": "Each mark is a design, the line is the best so far."}]
+
+
+def checks(results):
+    counts = results.record["counts"]
+    return [("samples of a design", str(counts["samples of a design"])), ("basis vectors", str(counts["basis vectors"]))]
