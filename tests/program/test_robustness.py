@@ -1,9 +1,12 @@
 """Samples of uncertain parameters: against closed forms, and against runs at full order."""
 
+import json
 import math
 import unittest
 
 from program import ProgramTest, read_table, settings
+from squeal.reporting import content
+from squeal.results import Results
 import test_systems  # its classes of tests stay there
 from test_systems import FLUTTER, flutter_terms
 
@@ -135,6 +138,9 @@ class SearchOfSystem(test_systems.SystemTest):
             self.assertEqual(rows[-1][f"best {column}"], best[column])
             # The probability of 300 samples is constant over a range
             self.assertAlmostEqual(best["x"], 0.3, delta=0.01 if goal == "quantile" else 0.05)
+
+            said = content.content(Results(results))
+            self.assertIn(f"number {int(best['design [-]'])} is the best", json.dumps(said, ensure_ascii=False))
 
             # The same samples once more
             again = self.run_scene("again", "Robustness/Sobol indices=false", file=str(results / "best.prm"))
