@@ -239,7 +239,7 @@ namespace Squeal
         for (std::size_t d = 0; d < search.n_samples; ++d)
           {
             designs.push_back(judged(first[d], "sample", rates[d], search.quantile));
-            designs.back().n_vectors   = model->reduced->size();
+            designs.back().n_vectors   = model->reduced ? model->reduced->size() : 0;
             designs.back().worst_error = found.worst_error;
           }
       }
@@ -255,7 +255,7 @@ namespace Squeal
           *model, points, 0, run.parameters.robustness.tolerance,
           [&](const int i, ChartPoint &&point) { rates[i] = sample_rate(*model, point); }, step);
         RobustDesign result = judged(values, phase, rates, run.parameters.search.quantile);
-        result.n_vectors    = model->reduced->size();
+        result.n_vectors    = model->reduced ? model->reduced->size() : 0;
         result.worst_error  = found.worst_error;
         return result;
       }
