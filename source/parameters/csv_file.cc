@@ -1,0 +1,147 @@
+#include <squeal/base/exceptions.h>
+#include <squeal/base/text.h>
+#include <squeal/parameters/csv_file.h>
+#include <squeal/parameters/number_list.h>
+
+#include <boost/algorithm/string/trim.hpp>
+#include <boost/tokenizer.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+
+namespace Squeal
+{
+  namespace
+  {
+    constexpr const char *as_csv_file = "save it as CSV, UTF-8, with commas between values and decimal points";
+
+    std::string where_in(const std::string &file, const std::size_t line)
+    {
+      return text("file ", file, ", line ", line);
+    }
+
+    /// Content of the file, without the mark of UTF-8.
+    std::string content_of(const std::string &path, const std::string &parameter, const std::string &row)
+    {
+      if (path.empty())
+        throw ParameterError("no file of " + row + "s is named", "parameter " + parameter, "name a CSV file");
+      std::ifstream     stream(path, std::ios::binary);
+      const std::string content{std::istreambuf_iterator<char>(stream), {}};
+      if (!stream.is_open() || stream.bad() || std::filesystem::is_directory(path))
+        throw FileError("the file of " + row + "s cannot be read", "file " + path + ", parameter " + parameter,
+                        "check its name and permissions");
+      constexpr const char *utf8_mark = "\xEF\xBB\xBF";
+      return content.rfind(utf8_mark, 0) == 0 ? content.substr(3) : content;
+    }
+
+    /// Refuses encodings and line ends that hide the lines of a file.
+    void check_encoding(const std::string &content, const std::string &file)
+    {
+      const bool is_marked = content.rfind("\xFF\xFE", 0) == 0 || content.rfind("\xFE\xFF", 0) == 0;
+      if (is_marked || content.find('\0') != std::string::npos)
+        throw ParameterError("the file is not in UTF-8 but, it seems, in UTF-16", where_in(file, 1), as_csv_file);
+      for (auto end = content.find('\r'); end != std::string::npos; end = content.find('\r', end + 1))
+        if (end + 1 < content.size() && content[end + 1] != '\n')
+          throw ParameterError("a line ends with a carriage return alone, as in old files of the Macintosh",
+                               where_in(file, 1 + std::count(content.begin(), content.begin() + static_cast<std::ptrdiff_t>(end), '\n')),
+                               "end lines with a line feed; " + std::string(as_csv_file));
+    }
+
+    /// Refuses a first line that a spreadsheet with other separators has written.
+    void check_separator(const std::string &names, const std::string &where)
+    {
+      if (names.rfind("sep=", 0) == 0)
+        throw ParameterError("the first line, " + in_quotes(names) + ", names a separator, not the columns", where,
+                             "remove this line; " + std::string(as_csv_file));
+      for (const auto &[separator, name] : {std::pair(';', "semicolons"), std::pair('\t', "tabs")})
+        if (names.find(separator) != std::string::npos)
+          throw ParameterError(text("the names of the columns are separated by ", name, ", not by commas"), where, as_csv_file);
+    }
+
+    std::vector<std::string> fields_of(const std::string &line, const std::string &where, const std::string &row)
+    {
+      if (std::count(line.begin(), line.end(), '"') % 2 != 0)
+        throw ParameterError("a quotation mark is not closed in this line", where,
+                             "write each " + row + " in one line, and quote the whole of a value that contains commas");
+      using Separator = boost::escaped_list_separator<char>;
+      std::vector<std::string> result;
+      for (const std::string &field : boost::tokenizer<Separator>(line, Separator('\0', ',', '"')))
+        result.push_back(boost::trim_copy(field));
+      return result;
+    }
+
+    void check_names(const std::vector<std::string> &names, const std::string &where)
+    {
+      const auto nameless = std::find(names.begin(), names.end(), "");
+      if (nameless == names.end())
+        return;
+      const bool is_last = nameless + 1 == names.end();
+      throw ParameterError(text("column ", nameless - names.begin() + 1, " has no name", is_last ? ": the line ends with a comma" : ""),
+                           where, is_last ? "remove the comma at the end of every line" : "name each column");
+    }
+
+    void check_number_of_values(const std::vector<std::string> &values,
+                                const std::size_t               n_names,
+                                const std::string              &line,
+                                const std::string              &where)
+    {
+      if (values.size() == n_names)
+        return;
+      const bool        is_comma_more = values.size() == n_names + 1 && values.back().empty();
+      const std::string separator     = line.find(';') != std::string::npos  ? ", separated by semicolons" :
+                                        line.find('\t') != std::string::npos ? ", separated by tabs" :
+                                                                               "";
+      throw ParameterError(
+        text(values.size(), values.size() == 1 ? " value stands" : " values stand", " below ", n_names, n_names == 1 ? " name" : " names",
+             is_comma_more ? ": the line ends with a comma" : separator),
+        where, "give one value for each name, with decimal points; quote values that contain commas" + decimal_point_hint(line));
+    }
+  } // namespace
+
+  std::string input_path(const std::string &name, const std::string &parameter_directory)
+  {
+    namespace fs          = std::filesystem;
+    const fs::path beside = fs::path(parameter_directory) / name;
+    return fs::exists(beside) || !fs::exists(name) ? beside.string() : name;
+  }
+
+  CsvFile read_csv(const std::string &path, const std::string &parameter, const std::string &row)
+  {
+    const std::string content = content_of(path, parameter, row);
+    check_encoding(content, path);
+    CsvFile            result;
+    std::istringstream stream(content);
+    std::string        line;
+    for (int number = 1; std::getline(stream, line); ++number)
+      {
+        boost::trim(line);
+        const std::string where = where_in(path, number);
+        if (line.empty())
+          continue;
+        if (result.names.empty())
+          check_separator(line, where);
+        const std::vector<std::string> fields = fields_of(line, where, row);
+        if (result.names.empty())
+          {
+            check_names(fields, where);
+            result.names       = fields;
+            result.where_names = where;
+          }
+        else
+          {
+            check_number_of_values(fields, result.names.size(), line, where);
+            result.rows.push_back(fields);
+            result.where.push_back(where);
+          }
+      }
+    if (result.names.empty())
+      throw ParameterError("the file of " + row + "s is empty", "file " + path,
+                           "write names in the first line, a " + row + " in each other one");
+    if (result.rows.empty())
+      throw ParameterError("the file has names, but no " + row, result.where_names, "write a " + row + " in each line below the names");
+    return result;
+  }
+} // namespace Squeal
