@@ -12,20 +12,26 @@ namespace Squeal
   {
     /// Estimated relative error of λ to which left and right vectors are found: their own errors are about the root of it.
     constexpr double tolerance_of_vectors = 1e-12;
-
-    FrictionModes left_and_right_modes(const GivenSystem &given, Run &run)
-    {
-      const FrictionlessModes frictionless = imported_modes(given.coupled, given.coupled, run);
-      run.progress.begin("Left and right modes");
-      SolverParameters solvers    = run.parameters.solvers;
-      solvers.complex_solver      = ComplexSolver::residual_iteration;
-      solvers.iteration_tolerance = tolerance_of_vectors;
-      FrictionModes result        = named_modes(frictionless, modes_with_friction(given.coupled, frictionless, given.value,
-                                                                                  run.parameters.discretization.band(), solvers, run.progress));
-      run.progress.finish(text(result.modes.lambda.size(), " found"));
-      return result;
-    }
   } // namespace
+
+  FrictionModes left_and_right_modes(const FrictionlessModes &frictionless, const double value, Run &run)
+  {
+    const CoupledSystem &coupled = frictionless.linearisation.coupled;
+    run.progress.begin("Left and right modes");
+    SolverParameters solvers    = run.parameters.solvers;
+    solvers.complex_solver      = ComplexSolver::residual_iteration;
+    solvers.iteration_tolerance = tolerance_of_vectors;
+    FrictionModes result        = named_modes(
+             frictionless, modes_with_friction(coupled, frictionless, value, run.parameters.discretization.band(), solvers, run.progress));
+    run.progress.finish(text(result.modes.lambda.size(), " found"));
+    return result;
+  }
+
+  Eigentriples eigentriples(const ComplexModes &modes)
+  {
+    return {modes.lambda, join({modes.real_part.get(), modes.imaginary_part.get()}),
+            join({modes.left_real_part.get(), modes.left_imaginary_part.get()})};
+  }
 
   void run_sensitivity_of_system(Run &run)
   {
@@ -35,12 +41,12 @@ namespace Squeal
     if (file.parameters.empty())
       throw ParameterError("the system has no parameters, with respect to which there would be derivatives", "file " + file.path,
                            "add `parameters` and coefficients of terms, or set Study = stability");
-    const double        value    = given.value;
-    const FrictionModes friction = system.stiffness ? left_and_right_modes(given, run) : direct_solution(given, run);
-    const ComplexModes &modes    = friction.modes;
+    const double        value = given.value;
+    const FrictionModes friction =
+      system.stiffness ? left_and_right_modes(imported_modes(system, system, run), value, run) : direct_solution(given, run);
+    const ComplexModes &modes = friction.modes;
 
-    const TermProducts       products(system.terms, {modes.lambda, join({modes.real_part.get(), modes.imaginary_part.get()}),
-                                                     join({modes.left_real_part.get(), modes.left_imaginary_part.get()})});
+    const TermProducts       products(system.terms, eigentriples(modes));
     const ParameterValues    at = system.at(value);
     const ComplexDenseMatrix D  = products.by_lambda(at);
     struct Row

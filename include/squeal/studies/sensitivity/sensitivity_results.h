@@ -138,6 +138,12 @@ namespace Squeal
    */
   std::vector<ThresholdSensitivity> threshold_sensitivities(SensitivityModel &model, const SweepChart &chart, Run &run);
 
+  /// Modes of the linearised system with left vectors, by the residual iteration to an accuracy that derivatives need, as a step of the run.
+  FrictionModes left_and_right_modes(const FrictionlessModes &frictionless, double value, Run &run);
+
+  /// Eigenvalues with their vectors; the modes must have left ones.
+  Eigentriples eigentriples(const ComplexModes &modes);
+
   /// `Study = sensitivity` of a system file: derivatives of λ with respect to each of its parameters.
   void run_sensitivity_of_system(Run &run);
 } // namespace Squeal
