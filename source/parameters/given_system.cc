@@ -31,8 +31,8 @@ namespace Squeal
     declarations.add(
       "System", file,
       "Folder with a system.json and its matrices, or that file: the run is about this system instead of a mesh. Stability, "
-      "reduction, sweep, sensitivity, geometry (designs), search (with uncertain parameters) and robustness accept one. Empty: the system "
-      "comes from the geometry.");
+      "reduction, sweep, sensitivity, geometry (designs), search (with uncertain parameters), robustness and updating accept one. Empty: the "
+      "system comes from the geometry.");
     declarations.add_text(
       "System values", "Values of parameters of the system where they differ from those in the file, such as mu = 0.3, omega = 12.6.",
       [this] {

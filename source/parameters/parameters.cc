@@ -189,6 +189,7 @@ namespace Squeal
     designs.declare(declarations);
     search.declare(declarations);
     robustness.declare(declarations);
+    updating.declare(declarations);
     solvers.declare(declarations);
     output.declare(declarations);
   }
@@ -343,7 +344,7 @@ namespace Squeal
         if (study->run_of_system == nullptr)
           throw ParameterError(
             text("Study = ", study->name, " needs a mesh"), "parameter System",
-            "set Study = stability, reduction, sweep, sensitivity, geometry, search or robustness, or leave System empty");
+            "set Study = stability, reduction, sweep, sensitivity, geometry, search, robustness or updating, or leave System empty");
         if (goal != AccuracyGoal::as_given)
           throw ParameterError("Accuracy chooses a mesh, but the system comes from a file", "parameter Accuracy", "set it to as given");
         discretization.check();

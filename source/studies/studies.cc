@@ -3,12 +3,13 @@
 namespace Squeal
 {
   extern const Study stability_study, reduction_study, sweep_study, accuracy_study, ingredients_study, design_study, search_study,
-    robustness_study, sensitivity_study;
+    robustness_study, sensitivity_study, updating_study;
 
   const std::vector<const Study *> &studies()
   {
-    static const std::vector<const Study *> all = {&stability_study,   &reduction_study, &sweep_study,  &sensitivity_study, &accuracy_study,
-                                                   &ingredients_study, &design_study,    &search_study, &robustness_study};
+    static const std::vector<const Study *> all = {&stability_study,  &reduction_study,   &sweep_study,  &sensitivity_study,
+                                                   &accuracy_study,   &ingredients_study, &design_study, &search_study,
+                                                   &robustness_study, &updating_study};
     return all;
   }
 

@@ -113,7 +113,7 @@ TEST(ParameterFiles, RefusedValuesAreAnsweredWithWhatIsAccepted)
     {"Geometry/Pin layers=3000000000", {"must be at most 2147483647, not 3000000000\n"}},
     {"Output/Write matrices=maybe", {"must be true or false, not `maybe`\n"}},
     {"Study=noise",
-     {"Study must be one of stability, reduction, sweep, sensitivity, accuracy, ingredients, geometry, search, robustness, not `noise`\n"}},
+     {"Study must be one of stability, reduction, sweep, sensitivity, accuracy, ingredients, geometry, search, robustness, updating, not `noise`\n"}},
     {"Geometry/Top pin radii=0.2, x", {"Geometry/Top pin radii, value 2, must be a number >= 0 m, not `x`\n"}},
     {"Sweep/Mode shapes at=0.1, 11", {"Sweep/Mode shapes at, value 2, must lie in 0 ... 10, not 11\n"}}};
   expect_refused(refusals);
@@ -195,7 +195,8 @@ TEST(Declarations, SayWhatEveryKindAccepts)
                                                   "Designs/Variables",
                                                   "Designs/File",
                                                   "Robustness/Distributions",
-                                                  "Robustness/Correlations"}));
+                                                  "Robustness/Correlations",
+                                                  "Updating/Measured modes"}));
 }
 
 TEST(ParameterFiles, WhatIsPrintedReadsBackTheSame)

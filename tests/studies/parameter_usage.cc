@@ -50,6 +50,13 @@ namespace
     return a;
   }
 
+  constexpr const char *measured_modes = "state,label,frequency [Hz]\ncoupled,A0-4 -,2200\n";
+
+  Paths updating(const File &measured)
+  {
+    return {"Study=updating", "Updating/Measured modes=" + measured.string(), "Designs/Variables=Pin material/Density = 3000 to 3200"};
+  }
+
   /// A run, the sections of studies of which it uses something, and beginnings of the paths that it does not use beside the other sections.
   struct Usage
   {
@@ -60,7 +67,7 @@ namespace
     {
       Paths beginnings = {"System values", "Sweep/Parameter", "Sweep/Second parameter"}; // of a system file
       for (const char *section :
-           {"Accuracy study/", "Designs/", "Ingredients/", "Reduction/", "Robustness/", "Search/", "Sensitivity/", "Sweep/"})
+           {"Accuracy study/", "Designs/", "Ingredients/", "Reduction/", "Robustness/", "Search/", "Sensitivity/", "Sweep/", "Updating/"})
         if (std::find(sections.begin(), sections.end(), section) == sections.end())
           beginnings.emplace_back(section);
       if (!run.empty() && run.front().rfind("Study=", 0) == 0) // no stability study
@@ -79,6 +86,7 @@ namespace
 
 TEST(ParameterUsage, EveryStudyIsFoundByItsNameAndUsesItsDefaults)
 {
+  const File measured("modes.csv", measured_modes);
   EXPECT_EQ(studies().front(), Parameters().study);
   std::set<std::string> names;
   for (const Study *study : studies())
@@ -88,13 +96,15 @@ TEST(ParameterUsage, EveryStudyIsFoundByItsNameAndUsesItsDefaults)
         run.emplace_back("Designs/Variables=Geometry/Pin height = 0.03 to 0.04 in 2");
       if (run.front() == "Study=robustness")
         run.emplace_back("Robustness/Distributions=Pin material/Density = uniform 90 % to 110 %");
+      if (run.front() == "Study=updating")
+        run = updating(measured);
       EXPECT_EQ(parameters_of(run).study, study) << study->name;
       EXPECT_EQ(unused(run), std::set<std::string>()) << study->name; // by default
       EXPECT_NE(study->run, nullptr) << study->name;
       EXPECT_TRUE(names.insert(study->name).second) << study->name;
     }
   EXPECT_EQ(names, (std::set<std::string>{"accuracy", "geometry", "ingredients", "reduction", "robustness", "search", "sensitivity",
-                                          "stability", "sweep"}));
+                                          "stability", "sweep", "updating"}));
 }
 
 TEST(ParameterUsage, OfASystemFile)
@@ -128,6 +138,7 @@ TEST(ParameterUsage, OfEveryStudy)
   const Paths own_meshes   = {"Discretization/Element", "Geometry/Outlines"};
   const Paths one_mu       = {"Operation/Friction coefficient"};
   const Paths no_rate      = {"Band/Maximum rate"};
+  const File  measured("modes.csv", measured_modes);
 
   const std::vector<Usage> table = {
     {{}, {}, {no_sliding, undamped, krylov}},
@@ -200,7 +211,14 @@ TEST(ParameterUsage, OfEveryStudy)
      {reduced, no_sliding, undamped}},
     {{"Study=robustness", "Robustness/Distributions=Pin material/Density = uniform 90 % to 110 %", "Robustness/Samples with onsets=5"},
      {"Robustness/", "Sweep/"},
-     {reduced, no_sweep, no_sliding, undamped}}};
+     {reduced, no_sweep, no_sliding, undamped}},
+
+    {updating(measured),
+     {"Updating/", "Designs/"},
+     {{"Output/", "Complex modes/Solver", "Complex modes/Shift", "Complex modes/Tolerance", "Complex modes/Iteration", "Designs/Plan",
+       "Designs/File", "Designs/Number", "Designs/Seed", "Designs/Processes"},
+      no_sliding,
+      undamped}}};
   std::set<std::string> conditional;
   for (const Usage &usage : table)
     {

@@ -11,10 +11,10 @@ UNDATED = {"svg": {"Date": None}, "png": {}, "pdf": {"CreationDate": None}}
 
 def figures(results):
     """All figures of a run by their names. Throws Error if its tables give none."""
-    from squeal.plotting import accuracy, branches, complex_plane, designs, ingredients, reduction, robust_search, robustness, sensitivity, stability_map
+    from squeal.plotting import accuracy, branches, complex_plane, designs, ingredients, reduction, robust_search, robustness, sensitivity, stability_map, updating
 
     found = {}
-    for plots in (complex_plane, branches, stability_map, reduction, ingredients, sensitivity, accuracy, designs, robustness, robust_search):
+    for plots in (complex_plane, branches, stability_map, reduction, ingredients, sensitivity, accuracy, designs, robustness, robust_search, updating):
         found.update(plots.figures(results))
     if not found:
         raise Error("no table is there of which a plot is known", f"folder {results.folder}", "run squeal again")

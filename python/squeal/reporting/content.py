@@ -8,10 +8,10 @@ Each kind of results has a module in PAGES: whether it is there (`is_of`), its `
 import base64
 import math
 
-from squeal.reporting import designs, robust_search, robustness, search, sensitivity, stability, stability_map, sweep
+from squeal.reporting import designs, robust_search, robustness, search, sensitivity, stability, stability_map, sweep, updating
 from squeal.reporting.charts import digits
 
-PAGES = (sweep, stability_map, stability, search, robust_search, designs, sensitivity, robustness)
+PAGES = (sweep, stability_map, stability, search, robust_search, designs, sensitivity, robustness, updating)
 LARGEST_TABLE = 2500  # rows
 
 

@@ -90,7 +90,7 @@ namespace Squeal
     bool is_used_with_system(const std::string &path, const Parameters &parameters)
     {
       for (const char *used : {"System", "System values", "Study", "Band/", "Real modes/", "Complex modes/", "Linear algebra/",
-                               "Output/Write system", "Designs/", "Search/", "Robustness/"})
+                               "Output/Write system", "Designs/", "Search/", "Robustness/", "Updating/"})
         if (concerns(used, path))
           return true;
       for (const char *shapes : {"Output/Mode shapes", "Output/Real mode shapes", "Output/Animation frames", "Output/Animation periods",

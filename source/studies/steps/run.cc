@@ -1,6 +1,7 @@
 #include <squeal/base/tasks.h>
 #include <squeal/linear_algebra/blas_threads.h>
 #include <squeal/linear_algebra/communication.h>
+#include <squeal/parameters/csv_file.h>
 #include <squeal/parameters/design_plan.h>
 #include <squeal/studies/steps/run.h>
 
@@ -76,6 +77,13 @@ namespace Squeal
       {
         repeated.designs.file = "designs/given.csv";
         place->write(repeated.designs.file, [&](std::ostream &stream) { stream << std::ifstream(designs, std::ios::binary).rdbuf(); });
+      }
+    if (const std::string &modes = parameters.updating.measured_modes; !modes.empty() && parameters.study->has("Updating/Measured modes"))
+      {
+        repeated.updating.measured_modes = "measured_modes.csv";
+        place->write(repeated.updating.measured_modes, [&](std::ostream &stream) {
+          stream << std::ifstream(input_path(modes, parameters.geometry.directory), std::ios::binary).rdbuf();
+        });
       }
     place->write("parameters.prm", [&](std::ostream &stream) { repeated.print(stream, false); });
     record.files = place->files();

@@ -1,0 +1,154 @@
+#include <squeal/base/groups.h>
+#include <squeal/studies/updating/least_squares.h>
+
+#include <ceres/cost_function.h>
+#include <ceres/problem.h>
+#include <ceres/solver.h>
+
+#include <Eigen/SVD>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace Squeal
+{
+  namespace
+  {
+    /// Distance from an end of the unit interval up to which a parameter is at its limit.
+    constexpr double at_limit = 1e-6;
+
+    /// Singular values up to this part of the largest are errors of the derivatives.
+    constexpr double smallest_singular_value = 1e-7;
+
+    /// Part of a parameter in undetermined directions, squared, from which it is undetermined.
+    constexpr double undetermined_square = 1e-4;
+
+    /// Cosine between two parameters in undetermined directions from which they belong together.
+    constexpr double act_alike = 0.1;
+
+    /// Residuals for Ceres, each point computed once.
+    class RememberedResiduals : public ceres::CostFunction
+    {
+    public:
+      RememberedResiduals(const ResidualsAt &residuals_at, const std::vector<double> &start)
+        : residuals_at(residuals_at)
+        , n(start.size())
+      {
+        set_num_residuals(static_cast<int>(at(start)->r.size()));
+        mutable_parameter_block_sizes()->push_back(static_cast<int>(n));
+      }
+
+      const std::optional<Residuals> &at(const std::vector<double> &x) const
+      {
+        const auto known = points.find(x);
+        return known != points.end() ? known->second : points.emplace(x, residuals_at(x)).first->second;
+      }
+
+      bool Evaluate(const double *const *parameters, double *residuals, double **jacobians) const override
+      {
+        const std::optional<Residuals> &found = at({parameters[0], parameters[0] + n});
+        if (!found)
+          return false;
+        std::copy_n(found->r.data(), found->r.size(), residuals);
+        if (jacobians != nullptr && jacobians[0] != nullptr)
+          Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(jacobians[0], found->J.rows(),
+                                                                                             found->J.cols()) = found->J;
+        return true;
+      }
+
+    private:
+      const ResidualsAt                                              &residuals_at;
+      const std::size_t                                               n;
+      mutable std::map<std::vector<double>, std::optional<Residuals>> points;
+    };
+  } // namespace
+
+  Fit least_squares(const ResidualsAt &residuals_at, const std::vector<double> &start, const double tolerance, const int maximum_iterations)
+  {
+    Fit                       result{start, {}, false, 0, {}};
+    const RememberedResiduals residuals(residuals_at, start);
+
+    ceres::Problem::Options ownership;
+    ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    ceres::Problem problem(ownership);
+    problem.AddResidualBlock(const_cast<RememberedResiduals *>(&residuals), nullptr, result.x.data());
+    for (int i = 0; i < static_cast<int>(start.size()); ++i)
+      {
+        problem.SetParameterLowerBound(result.x.data(), i, 0.);
+        problem.SetParameterUpperBound(result.x.data(), i, 1.);
+      }
+
+    ceres::Solver::Options options;
+    options.linear_solver_type                = ceres::DENSE_QR;
+    options.logging_type                      = ceres::SILENT;
+    options.num_threads                       = 1;
+    options.max_num_iterations                = maximum_iterations;
+    options.parameter_tolerance               = tolerance;
+    options.function_tolerance                = tolerance * tolerance;
+    options.gradient_tolerance                = 1e-16;
+    options.min_trust_region_radius           = tolerance * tolerance;
+    options.max_num_consecutive_invalid_steps = maximum_iterations;
+    ceres::Solver::Summary summary;
+    ceres::Solve(options, &problem, &summary);
+
+    result.has_converged = summary.termination_type == ceres::CONVERGENCE;
+    result.n_iterations  = summary.num_successful_steps + summary.num_unsuccessful_steps;
+    result.message       = summary.message;
+    result.residuals     = *residuals.at(result.x);
+    return result;
+  }
+
+  FitStatistics fit_statistics(const Residuals &residuals, const std::vector<double> &x, const bool is_relative)
+  {
+    const std::size_t        n = x.size();
+    FitStatistics            result{{}, std::vector<std::optional<double>>(n), DenseMatrix::Zero(n, n), {}, {}};
+    std::vector<std::size_t> free;
+    for (std::size_t i = 0; i < n; ++i)
+      {
+        result.is_at_limit.push_back(x[i] <= at_limit || x[i] >= 1. - at_limit);
+        if (!result.is_at_limit.back())
+          free.push_back(i);
+      }
+    if (free.empty())
+      return result;
+
+    const auto                          n_free = static_cast<Eigen::Index>(free.size()), m = residuals.r.size();
+    const Eigen::JacobiSVD<DenseMatrix> svd(residuals.J(Eigen::all, free), Eigen::ComputeFullV);
+    Eigen::VectorXd                     S = Eigen::VectorXd::Zero(n_free); // zeros where there are fewer data than parameters
+    S.head(svd.singularValues().size())   = svd.singularValues();
+    const DenseMatrix &V                  = svd.matrixV();
+    result.singular_values.assign(S.data(), S.data() + n_free);
+    const bool   has_scale = !is_relative || m > n_free;
+    const double s         = !is_relative ? 1. : m > n_free ? std::sqrt(residuals.r.squaredNorm() / static_cast<double>(m - n_free)) : 0.;
+
+    DenseMatrix covariance = DenseMatrix::Zero(n_free, n_free), undetermined = covariance;
+    for (Eigen::Index k = 0; k < n_free; ++k)
+      if (S[k] <= smallest_singular_value * S[0] || S[k] <= s)
+        undetermined += V.col(k) * V.col(k).transpose();
+      else
+        covariance += std::pow(s / S[k], 2) * V.col(k) * V.col(k).transpose();
+
+    std::vector<Eigen::Index> concerned;
+    for (Eigen::Index i = 0; i < n_free; ++i)
+      if (undetermined(i, i) > undetermined_square)
+        concerned.push_back(i);
+      else if (has_scale)
+        result.deviations[free[i]] = std::sqrt(covariance(i, i));
+    for (const std::vector<int> &group : members_of(connected_groups(static_cast<int>(concerned.size()), [&](const int i, const int j) {
+           const Eigen::Index a = concerned[i], b = concerned[j];
+           return std::abs(undetermined(a, b)) > act_alike * std::sqrt(undetermined(a, a) * undetermined(b, b));
+         })))
+      {
+        result.undetermined.emplace_back();
+        for (const int i : group)
+          result.undetermined.back().push_back(free[concerned[i]]);
+      }
+    for (Eigen::Index i = 0; i < n_free; ++i)
+      for (Eigen::Index j = 0; j < n_free; ++j)
+        if (result.deviations[free[i]] && result.deviations[free[j]] && covariance(i, i) > 0. && covariance(j, j) > 0.)
+          result.correlations(static_cast<Eigen::Index>(free[i]), static_cast<Eigen::Index>(free[j])) =
+            covariance(i, j) / std::sqrt(covariance(i, i) * covariance(j, j));
+    return result;
+  }
+} // namespace Squeal

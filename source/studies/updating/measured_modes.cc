@@ -1,0 +1,224 @@
+#include <squeal/base/conventions.h>
+#include <squeal/base/exceptions.h>
+#include <squeal/base/text.h>
+#include <squeal/parameters/csv_file.h>
+#include <squeal/parameters/number_list.h>
+#include <squeal/studies/updating/measured_modes.h>
+
+#include <boost/algorithm/string.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace Squeal
+{
+  namespace
+  {
+    constexpr const char *parameter_of_modes = "Updating/Measured modes";
+
+    /// Columns in their order; the first three are required.
+    const std::vector<std::string> known_columns = {
+      "state", "label", "frequency [Hz]", "member", "deviation [Hz]", "damping ratio [%]", "damping deviation [%]"};
+    constexpr std::size_t n_required = 3;
+
+    /// A row by the names of its columns.
+    class Row
+    {
+    public:
+      Row(const CsvFile &file, const std::size_t number)
+        : where(file.where[number])
+        , file(file)
+        , texts(file.rows[number])
+      {}
+
+      /// The text of a column; empty where there is no such column.
+      std::string text(const char *column) const
+      {
+        const auto place = std::find(file.names.begin(), file.names.end(), column);
+        return place == file.names.end() ? "" : texts[place - file.names.begin()];
+      }
+
+      /// The number of a column; nothing where the cell is empty.
+      std::optional<double> number(const char *column) const
+      {
+        const std::string cell = text(column);
+        if (cell.empty())
+          return {};
+        const auto value = parse_number(cell);
+        if (!value)
+          refuse(in_quotes(cell) + " in column `" + column + "` is not a finite number",
+                 "write a number with a decimal point" + decimal_point_hint(cell));
+        return value;
+      }
+
+      std::optional<double> positive_number(const char *column) const
+      {
+        const auto value = number(column);
+        if (value && !(*value > 0.))
+          refuse(std::string(column) + " is " + exact_text(*value) + ", not positive", "give a positive number");
+        return value;
+      }
+
+      [[noreturn]] void refuse(const std::string &what, const std::string &change) const
+      {
+        throw ParameterError(what, where, change);
+      }
+
+      const std::string &where;
+
+    private:
+      const CsvFile                  &file;
+      const std::vector<std::string> &texts;
+    };
+
+    void check_columns(const CsvFile &file)
+    {
+      const std::string known = boost::algorithm::join(known_columns, ", ");
+      for (std::size_t i = 0; i < file.names.size(); ++i)
+        {
+          const std::string &name = file.names[i];
+          if (std::find(known_columns.begin(), known_columns.end(), name) == known_columns.end())
+            throw ParameterError("unknown column " + in_quotes(name), file.where_names, "the columns are " + known);
+          if (std::count(file.names.begin(), file.names.end(), name) > 1)
+            throw ParameterError("column " + in_quotes(name) + " occurs twice", file.where_names, "leave one of them");
+        }
+      for (std::size_t i = 0; i < n_required; ++i)
+        if (std::find(file.names.begin(), file.names.end(), known_columns[i]) == file.names.end())
+          throw ParameterError("there is no column " + in_quotes(known_columns[i]), file.where_names, "the columns are " + known);
+    }
+
+    MeasuredMode mode_of(const Row &row)
+    {
+      const std::string state = row.text("state");
+      const auto        names = enum_names<MeasuredState>();
+      if (std::find(names.begin(), names.end(), state) == names.end())
+        row.refuse(in_quotes(state) + " is no state", "write one of " + boost::algorithm::join(names, ", "));
+      const std::string label = single_spaced(row.text("label")), member = row.text("member");
+      if (label.empty())
+        row.refuse("the row has no label", "write the label of the mode in the tables of a stability run");
+      const auto number = parse_number(member);
+      if (!member.empty() && member != "lowest" && member != "highest" && !(number && *number >= 1. && *number == std::floor(*number)))
+        row.refuse(in_quotes(member) + " is no member of the modes of a label",
+                   "write lowest, highest or a number from 1 on, or leave it empty for the mean");
+      const auto frequency = row.positive_number("frequency [Hz]");
+      if (!frequency)
+        row.refuse("the row has no frequency", "give a frequency in Hz");
+
+      const auto   deviation = row.positive_number("deviation [Hz]");
+      MeasuredMode result{enum_value<MeasuredState>(state), label, member, {*frequency, deviation ? *deviation : 0.}, {}, row.where};
+      const auto   ratio = row.number("damping ratio [%]"), ratio_deviation = row.positive_number("damping deviation [%]");
+      if (ratio.has_value() != ratio_deviation.has_value())
+        row.refuse("a damping ratio and its deviation belong together", "give both or neither");
+      if (ratio && result.state != MeasuredState::complex)
+        row.refuse(state + " modes have no damping", "set the state to complex, or leave the damping ratio empty");
+      if (ratio)
+        result.damping_ratio = Measured{0.01 * *ratio, 0.01 * *ratio_deviation};
+      return result;
+    }
+
+    /// Label without the sign of a doublet.
+    std::string shape_of(const std::string &label)
+    {
+      return boost::ends_with(label, " -") || boost::ends_with(label, " +") ? label.substr(0, label.size() - 2) : label;
+    }
+
+    /// Labels of a state, each once, for a message.
+    std::string labels_of(const MeasuredState state, const std::vector<ComputedMode> &modes)
+    {
+      constexpr std::size_t    most = 40;
+      std::vector<std::string> result;
+      for (const ComputedMode &mode : modes)
+        if (mode.state == state && std::find(result.begin(), result.end(), mode.label) == result.end())
+          result.push_back(mode.label);
+      if (result.size() > most)
+        {
+          result.resize(most);
+          result.emplace_back("...");
+        }
+      return result.empty() ? "none" : boost::algorithm::join(result, ", ");
+    }
+
+    /// Modes of a label in the order of their frequencies.
+    std::vector<const ComputedMode *> modes_of_label(const MeasuredMode &measured, const std::vector<ComputedMode> &modes)
+    {
+      std::vector<const ComputedMode *> result;
+      for (const ComputedMode &mode : modes)
+        if (mode.state == measured.state && (mode.label == measured.label || shape_of(mode.label) == measured.label))
+          result.push_back(&mode);
+      std::stable_sort(result.begin(), result.end(),
+                       [](const ComputedMode *a, const ComputedMode *b) { return a->lambda.imag() < b->lambda.imag(); });
+      return result;
+    }
+  } // namespace
+
+  std::size_t MeasuredModes::n_numbers() const
+  {
+    return modes.size() +
+           std::count_if(modes.begin(), modes.end(), [](const MeasuredMode &mode) { return mode.damping_ratio.has_value(); });
+  }
+
+  bool MeasuredModes::has(const MeasuredState state) const
+  {
+    return std::any_of(modes.begin(), modes.end(), [state](const MeasuredMode &mode) { return mode.state == state; });
+  }
+
+  MeasuredModes read_measured_modes(const std::string &path)
+  {
+    const CsvFile file = read_csv(path, parameter_of_modes, "measured mode");
+    check_columns(file);
+    MeasuredModes result{{}, true};
+    for (std::size_t i = 0; i < file.rows.size(); ++i)
+      result.modes.push_back(mode_of(Row(file, i)));
+    const auto has_deviation = [](const MeasuredMode &mode) { return mode.frequency.deviation > 0.; };
+    result.are_relative      = std::none_of(result.modes.begin(), result.modes.end(), has_deviation);
+    for (MeasuredMode &mode : result.modes)
+      {
+        if (result.are_relative)
+          mode.frequency.deviation = default_deviation * mode.frequency.value;
+        if (!has_deviation(mode))
+          throw ParameterError("the frequency has no deviation, but others have", mode.where, "give `deviation [Hz]` for all or for none");
+        if (result.are_relative && mode.damping_ratio)
+          throw ParameterError("the damping ratio has a deviation, but frequencies have none", mode.where,
+                               "give `deviation [Hz]` for all frequencies");
+      }
+    return result;
+  }
+
+  Counterpart counterpart_of(const MeasuredMode &measured, const std::vector<ComputedMode> &modes)
+  {
+    std::vector<const ComputedMode *> found  = modes_of_label(measured, modes);
+    const auto                        refuse = [&](const std::string &what) {
+      throw SolverError(text(what, " among the ", to_string(measured.state), " modes in the band"), measured.where,
+                                               "labels there are " + labels_of(measured.state, modes) + "; use one of them, or raise Band/Maximum frequency");
+    };
+    if (found.empty())
+      refuse("no mode is labelled " + in_quotes(measured.label));
+    if (!measured.member.empty())
+      {
+        const auto        number = parse_number(measured.member);
+        const std::size_t place  = number ? static_cast<std::size_t>(*number) - 1 : measured.member == "highest" ? found.size() - 1 : 0;
+        if (place >= found.size())
+          refuse(text("member ", place + 1, " of ", in_quotes(measured.label), " does not exist, there are ", found.size()));
+        found = {found[place]};
+      }
+    Counterpart  result{};
+    const auto   n      = found.front()->derivatives.size();
+    const double weight = 1. / static_cast<double>(found.size());
+    result.frequency_rates.assign(n, 0.);
+    result.damping_ratio_rates.assign(n, 0.);
+    for (const ComputedMode *mode : found)
+      {
+        const double re = mode->lambda.real(), im = mode->lambda.imag(), size = std::abs(mode->lambda);
+        result.frequency += weight * hertz(im);
+        result.damping_ratio -= weight * re / size;
+        for (std::size_t p = 0; p < n; ++p)
+          {
+            const std::complex<double> rate = mode->derivatives[p];
+            result.frequency_rates[p] += weight * hertz(rate.imag());
+            // d(−R/|λ|) = −(ω² R' − R ω ω') / |λ|³
+            result.damping_ratio_rates[p] -= weight * im * (im * rate.real() - re * rate.imag()) / std::pow(size, 3);
+          }
+      }
+    return result;
+  }
+} // namespace Squeal
