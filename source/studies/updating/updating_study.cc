@@ -402,7 +402,7 @@ namespace Squeal
     const MeasuredModes                measured = given_modes(run.parameters);
     const SystemFile                   file     = read_system(run);
     const std::vector<FittedParameter> parameters =
-      fitted_parameters(run.parameters.designs, [&](const std::string &name) { return value_in(file, name, run); });
+      fitted_parameters(run.parameters.designs, [&](const std::string &name) { return value_in(file, name, run.parameters); });
     for (const FittedParameter &parameter : parameters)
       for (const double end : {parameter.lower, parameter.upper})
         {
