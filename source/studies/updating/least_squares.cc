@@ -2,6 +2,7 @@
 #include <squeal/studies/updating/least_squares.h>
 
 #include <ceres/cost_function.h>
+#include <ceres/manifold.h>
 #include <ceres/problem.h>
 #include <ceres/solver.h>
 
@@ -17,6 +18,11 @@ namespace Squeal
   {
     /// Distance from an end of the unit interval up to which a parameter is at its limit.
     constexpr double at_limit = 1e-6;
+
+    bool is_limit(const double x)
+    {
+      return x <= at_limit || x >= 1. - at_limit;
+    }
 
     /// Singular values up to this part of the largest are errors of the derivatives.
     constexpr double smallest_singular_value = 1e-7;
@@ -89,13 +95,24 @@ namespace Squeal
     options.gradient_tolerance                = 1e-16;
     options.min_trust_region_radius           = tolerance * tolerance;
     options.max_num_consecutive_invalid_steps = maximum_iterations;
-    ceres::Solver::Summary summary;
-    ceres::Solve(options, &problem, &summary);
-
-    result.has_converged = summary.termination_type == ceres::CONVERGENCE;
-    result.n_iterations  = summary.num_successful_steps + summary.num_unsuccessful_steps;
-    result.message       = summary.message;
-    result.residuals     = *residuals.at(result.x);
+    // Steps towards a limit that is reached are cut off and end the search too early: parameters there are held, and the others go on
+    for (std::vector<int> held;;)
+      {
+        ceres::Solver::Summary summary;
+        ceres::Solve(options, &problem, &summary);
+        result.has_converged = summary.termination_type == ceres::CONVERGENCE;
+        result.n_iterations += summary.num_successful_steps + summary.num_unsuccessful_steps;
+        result.message = summary.message;
+        std::vector<int> reached;
+        for (int i = 0; i < static_cast<int>(start.size()); ++i)
+          if (is_limit(result.x[i]))
+            reached.push_back(i);
+        if (!result.has_converged || reached == held || reached.size() == start.size())
+          break;
+        held = reached;
+        problem.SetManifold(result.x.data(), new ceres::SubsetManifold(static_cast<int>(start.size()), held));
+      }
+    result.residuals = *residuals.at(result.x);
     return result;
   }
 
@@ -106,7 +123,7 @@ namespace Squeal
     std::vector<std::size_t> free;
     for (std::size_t i = 0; i < n; ++i)
       {
-        result.is_at_limit.push_back(x[i] <= at_limit || x[i] >= 1. - at_limit);
+        result.is_at_limit.push_back(is_limit(x[i]));
         if (!result.is_at_limit.back())
           free.push_back(i);
       }

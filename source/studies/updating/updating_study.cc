@@ -225,7 +225,7 @@ namespace Squeal
       const MeasuredMode *worst = nullptr;
     };
 
-    Agreement agreement(const std::vector<FittedNumber> &numbers, double FittedNumber::*value)
+    Agreement frequency_agreement(const std::vector<FittedNumber> &numbers, double FittedNumber::*value)
     {
       Agreement result;
       int       n = 0;
@@ -269,8 +269,8 @@ namespace Squeal
 
     void say_what_was_fitted(const UpdatingProblem &problem, const Residuals &before, const Residuals &after, Run &run)
     {
-      const Agreement start   = agreement(problem.numbers, &FittedNumber::start),
-                      updated = agreement(problem.numbers, &FittedNumber::updated);
+      const Agreement start   = frequency_agreement(problem.numbers, &FittedNumber::start),
+                      updated = frequency_agreement(problem.numbers, &FittedNumber::updated);
       run.measure("rms difference of frequencies at the start [%]", start.rms);
       run.measure("rms difference of frequencies after the fit [%]", updated.rms);
       run.measure("largest difference of frequencies after the fit [%]", std::abs(updated.largest));
@@ -425,6 +425,7 @@ namespace Squeal
     study.rules = {{"Output/", [](const Parameters &) { return "the study writes no mode shapes"; }},
                    {"Complex modes/Solver", [](const Parameters &) { return "left and right modes come from the residual iteration"; }},
                    {"Complex modes/Iteration tolerance", [](const Parameters &) { return "derivatives need the least one"; }},
+                   {"Complex modes/Maximum basis", [](const Parameters &) -> Reason { return nullptr; }},
                    {"Complex modes/Shift inverse", [](const Parameters &) { return "of the solver Krylov"; }},
                    {"Complex modes/Tolerance", [](const Parameters &) { return "of the solver Krylov"; }}};
     study.check = [](const Parameters &p) {
