@@ -2,6 +2,7 @@
 """Compares the default model with D. Brizard, O. Chiello, J.-J. Sinou, X. Lorang, J. Sound Vib. 330 (2011) 703.
 
     scripts/paper.py [--results DIR] [--set "Section/Name=value"]...
+    scripts/paper.py --measured-modes FILE
 
 runs squeal without radial dissipation (C_b) and with each reading of it, unless DIR (results/paper) holds these runs already, prints the
 comparison, and writes to DIR:
@@ -11,7 +12,8 @@ comparison, and writes to DIR:
     dissipation.csv  divergence rates of all modes with each reading of C_b
     figure6.svg      divergence rate over frequency without and with C_b; needs python3-matplotlib
 
-"With C_b" is consistent and about steady sliding, the reading closest to the paper.
+"With C_b" is consistent and about steady sliding, the reading closest to the paper. The second command writes the component and coupled modes
+of Table 1 that have a label as measured modes for Study = updating, and runs nothing.
 """
 
 import csv
@@ -151,6 +153,16 @@ def printed_rows():
         label, *cells = line.split(",")
         matches = [pattern.fullmatch(cell) for cell in cells]
         yield label, [match and Printed(match[1] or "", float(match[2]), match[3] and float(match[3])) for match in matches]
+
+
+def measured_modes():
+    """Component and coupled modes of Table 1 that are found by a label: rows of a file for Study = updating."""
+    yield "state", "label", "member", "frequency [Hz]"
+    for state, column in (("component", 0), ("coupled", 1)):
+        for label, cells in printed_rows():
+            if (printed := cells[column]) and printed.how != "~":
+                family, _, member = label.partition(" ") if ":" in printed.how else (label, "", "")
+                yield state, family, member, f"{printed.frequency:g}"
 
 
 def table_one(without, damped):
@@ -385,7 +397,12 @@ def main():
     parser.add_argument("--results", metavar="DIR", type=pathlib.Path, default=SOURCE / "results" / "paper")
     parser.add_argument("--set", action="append", default=[], dest="settings", metavar="Section/Name=value",
                         help="of every run, for another mesh for example")
+    parser.add_argument("--measured-modes", metavar="FILE", type=pathlib.Path, help="only write this file for Study = updating")
     arguments = parser.parse_args()
+    if arguments.measured_modes:
+        with open(arguments.measured_modes, "w", newline="", encoding="utf-8") as file:
+            csv.writer(file, lineterminator="\n").writerows(measured_modes())
+        return
     if fixed := [setting for setting in arguments.settings if setting.startswith(FIXED)]:
         parser.error(f"--set {fixed[0]}: the comparison chooses {', '.join(FIXED)} itself; leave it out")
     compare(arguments.results, arguments.settings)

@@ -53,6 +53,10 @@ class TableOne(PaperTest):
         self.assertEqual((row["mode with C_b"], row["divergence with C_b paper [%]"], row["divergence with C_b [%]"]), ("A0-4 +", 0.65, 0.7))
         self.assertEqual((row["coupled paper [Hz]"], row["coupled [Hz]"]), (2284, None))
 
+    def test_measured_modes_are_those_of_the_file(self):
+        with open(SCRIPTS.parent / "prm" / "table1_modes.csv", newline="", encoding="utf-8") as file:
+            self.assertEqual([tuple(row) for row in csv.reader(file)], list(paper.measured_modes()))
+
     def test_modes_without_a_name_are_found_by_frequency(self):
         near, far = [("A0-0", 1100, 0, None)], [("A0-0", 1200, 0, None)]
         row = self.row("unnamed", self.results("without", near), self.results("with", far))
