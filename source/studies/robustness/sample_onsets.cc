@@ -10,16 +10,16 @@ namespace Squeal
 {
   namespace
   {
-    /// Where the modes of a label begin to grow over the samples.
+    /// Onsets of instability of the modes with a label, over all samples.
     struct OnsetDistribution
     {
-      std::string         label;           ///< empty: the first of all modes
-      double              divergence_rate; ///< that is exceeded from there on [-]
-      int                 n_samples;       ///< whose modes are known
-      std::vector<double> onsets;          ///< ascending, those of the samples in which the mode grows
-      double              uncertainty;     ///< largest of one of them
+      std::string         label;           ///< empty: the first onset of any mode
+      double              divergence_rate; ///< threshold that is exceeded above the onset [-]
+      int                 n_samples;       ///< samples that meet the tolerance at all points
+      std::vector<double> onsets;          ///< of the samples in which the threshold is exceeded, ascending
+      double              uncertainty;     ///< largest uncertainty of an onset
 
-      /// Value below which the onsets of a part @p p of all samples lie; nothing if fewer grow.
+      /// @p p-quantile of the onsets over all samples; nothing if a smaller fraction of the samples has an onset.
       Entry quantile_of_all(const double p) const
       {
         std::vector<double> all = onsets;
@@ -46,7 +46,7 @@ namespace Squeal
       return result;
     }
 
-    /// Of all modes, then of each mode that grows in some sample, those first that grow most often.
+    /// Distributions of the first onset of any mode, then of each label with an onset, most frequent first; each for both thresholds.
     std::vector<OnsetDistribution> distributions(const std::vector<FollowedSample> &followed)
     {
       std::set<std::string> labels;
@@ -97,7 +97,7 @@ namespace Squeal
                    rows);
     }
 
-    /// The first onsets of every sample.
+    /// First onsets of each sample.
     Table sample_onset_table(const std::vector<FollowedSample> &followed, const std::string &parameter)
     {
       using Row        = int;
@@ -124,7 +124,7 @@ namespace Squeal
       return Table(columns, all);
     }
 
-    /// The onsets of every mode of every sample.
+    /// Onsets of all modes of each sample.
     Table mode_onset_table(const std::vector<FollowedSample> &followed, const std::string &parameter)
     {
       using Row = std::pair<int, const SquealOnset *>;
@@ -185,13 +185,13 @@ namespace Squeal
         const std::vector<SquealOnset> onsets = mode_onsets(model, s);
         followed[s].onsets.insert(followed[s].onsets.end(), onsets.begin(), onsets.end());
         n_onsets += onsets.size();
-        model.known.clear(); // with their vectors all samples would fill the memory
+        model.known.clear(); // the vectors of all samples may exceed the memory
       }
     const std::string how = model.reduced ? text(model.reduced->size(), " vectors") : "full order";
     run.progress.finish(text(followed.size(), " samples, ", how, ", ", n_onsets, " onsets"));
     if (n_missed > 0)
-      run.warn(text(n_missed, " points of the samples with onsets miss the tolerance of ", options.tolerance, ": ", why_stopped,
-                    "; these samples are left out of the distributions of onsets. Raise Sweep/Tolerance or Sweep/Maximum basis"));
+      run.warn(text(n_missed, " points of the followed samples miss the tolerance ", options.tolerance, ": ", why_stopped,
+                    ". The distributions of onsets exclude these samples. Raise Sweep/Tolerance or Sweep/Maximum basis"));
   }
 
   void write_onsets(const std::vector<FollowedSample> &followed, const std::string &parameter, Run &run)

@@ -13,28 +13,28 @@ namespace Squeal
 
   namespace
   {
-    /// Designs that show which terms of the model keep the ratio of their coefficients, and that the starting basis serves.
+    /// Fewest designs to detect terms with coefficients in a fixed ratio and to train the initial basis.
     constexpr std::size_t fewest_first_designs = 4;
 
-    /// A design by the values of its variables.
+    /// Values of the variables of a design.
     using DesignValues = std::vector<std::string>;
 
-    /// What a mesh or a system file says of designs.
+    /// Designs and samples of a mesh or a system file.
     struct DesignSpace
     {
-      std::vector<std::string>                                           pins; ///< that may differ from each other
+      std::vector<std::string>                                           pins; ///< volumes of pins that may have individual numbers
       std::function<Parameters(const DesignValues &)>                    design;
       std::function<Parameters(const SamplePlan &, int sample)>          sample;
-      std::function<double(const Parameters &, const std::string &name)> nominal; ///< value of a parameter
+      std::function<double(const Parameters &, const std::string &name)> nominal; ///< nominal value of a parameter
       std::function<SampledSystems(const SamplePlan &)>                  systems;
     };
 
-    /// The modes of the band in a sample, in short.
+    /// Summary of the modes in the band of a sample.
     struct SampleRate
     {
-      double rate      = std::numeric_limits<double>::infinity(); ///< largest divergence rate [-]; infinite: the tolerance is missed
-      bool   grows     = false;                                   ///< a mode is unstable
-      bool   undecided = true;                                    ///< none is, but one may be
+      double rate      = std::numeric_limits<double>::infinity(); ///< largest divergence rate [-]; infinite if the tolerance is missed
+      bool   grows     = false;                                   ///< at least one mode is unstable
+      bool   undecided = true;                                    ///< none is unstable, but at least one is undecided
     };
 
     SampleRate sample_rate(const SweepModel &model, const ChartPoint &point)
@@ -42,30 +42,30 @@ namespace Squeal
       SampleRate result{-std::numeric_limits<double>::infinity(), false, false};
       for (const int j : model.in_band(point))
         {
-          const bool is_neutral = point.verdicts[j] == Verdict::neutral; // its rate is a rounding error
+          const bool is_neutral = point.verdicts[j] == Verdict::neutral; // its rate is rounding error
           result.rate           = std::max(result.rate, is_neutral ? 0. : modal_quantities(point.lambda[j]).divergence_rate);
           result.grows          = result.grows || point.verdicts[j] == Verdict::unstable;
           result.undecided      = result.undecided || point.verdicts[j] == Verdict::undecided;
         }
       result.undecided = result.undecided && !result.grows;
       if (!std::isfinite(result.rate))
-        result.rate = 0.; // no mode is in the band
+        result.rate = 0.; // no modes in the band
       return result;
     }
 
-    /// A design with what its samples say.
+    /// A design and the statistics of its samples.
     struct RobustDesign
     {
       DesignValues values;
       std::string  phase;
       Estimate     squeal;      ///< probability that a mode grows
-      double       doubtful;    ///< part of the samples that are undecided
-      double       quantile;    ///< of the largest divergence rate of a sample [-]
+      double       doubtful;    ///< fraction of undecided samples
+      double       quantile;    ///< of the largest divergence rates of the samples [-]
       double       worst_error; ///< largest estimated error of λ [-]
-      int          n_vectors;   ///< of the basis
-      int          worst;       ///< sample with the largest rate; −1: none meets the tolerance
+      int          n_vectors;   ///< size of the basis
+      int          worst;       ///< sample with the largest rate; −1 if none meets the tolerance
 
-      /// Undecided samples count as squeal, so that a search is not drawn to designs that cannot be judged [%].
+      /// Counts undecided samples as squeal, so that the search does not favour designs that cannot be judged [%].
       double probability_of_doubt() const
       {
         return 100. * (squeal.value + doubtful);
@@ -97,7 +97,7 @@ namespace Squeal
       return result;
     }
 
-    /// Designs that were judged, and the model that judges them.
+    /// Evaluated designs and the model that evaluates them.
     class RobustDesigns
     {
     public:
@@ -111,7 +111,7 @@ namespace Squeal
         begin();
       }
 
-      /// The objective at a point; nothing if it is new and the budget is used up.
+      /// Objective at a point; nothing if it is new and Search/Evaluations is reached.
       std::optional<double> value(const SearchPoint &point)
       {
         const DesignValues values = values_at(point);
@@ -130,13 +130,13 @@ namespace Squeal
         return std::min_element(designs.begin(), designs.end(), smaller) - designs.begin();
       }
 
-      /// A design with samples of other random numbers.
+      /// Evaluates a design with samples of another seed.
       RobustDesign solve_again(const DesignValues &values, const SamplePlan &other)
       {
         return solve(values, other, "other samples", "Other samples");
       }
 
-      /// Samples of the scene as it is.
+      /// Samples of the nominal model.
       SamplePlan sample(const unsigned int seed) const
       {
         RobustnessParameters options = run.parameters.robustness;
@@ -147,7 +147,8 @@ namespace Squeal
           options, [this](const std::string &name) { return space.nominal(run.parameters, name); }, space.pins);
       }
 
-      /// Samples of some designs: their variables, and numbers in percent relative to them; the first samples of all designs come first.
+      /// Samples of several designs: values of the variables, then uncertain numbers, where percentages refer to the values of the design.
+      /// Rows are ordered by sample, then by design.
       SamplePlan samples_of(const std::vector<DesignValues> &some, const SamplePlan &samples) const
       {
         SamplePlan result{{}, {}, 0, false};
@@ -172,7 +173,7 @@ namespace Squeal
       }
 
       const std::vector<DesignVariable> variables;
-      std::vector<SearchPoint>          starts; ///< the first points
+      std::vector<SearchPoint>          starts; ///< points of the initial designs
       std::vector<RobustDesign>         designs;
 
     private:
@@ -189,7 +190,7 @@ namespace Squeal
         return result;
       }
 
-      /// Factor of a number in a design.
+      /// Nominal value of an uncertain number in a design over that in the parameter file; 1 unless its distribution is in percent.
       double scale(const DesignValues &design, const UncertainNumber &number) const
       {
         return number.is_relative ? nominal_in(design, number) / space.nominal(run.parameters, number.parameter) : 1.;
@@ -205,11 +206,11 @@ namespace Squeal
         const DesignValues lowest = values_at(SearchPoint(variables.size(), 0.)), highest = values_at(SearchPoint(variables.size(), 1.));
         for (const UncertainNumber &number : inner.numbers)
           if (!number.is_relative && nominal_in(lowest, number) != nominal_in(highest, number))
-            throw ParameterError(in_quotes(number.parameter) + " varies from design to design, but its distribution does not", number.where,
-                                 "give the distribution in %, of the value that the design has");
+            throw ParameterError(in_quotes(number.parameter) + " varies from design to design, but its distribution is absolute",
+                                 number.where, "give the distribution in % of the value in the design");
       }
 
-      /// The model of the first designs, and what their samples say.
+      /// Builds the model and evaluates the initial designs.
       void begin()
       {
         const SearchParameters &search = run.parameters.search;
@@ -262,7 +263,7 @@ namespace Squeal
 
       const DesignSpace            &space;
       Run                          &run;
-      const SamplePlan              inner; ///< of the scene as it is
+      const SamplePlan              inner; ///< of the nominal model
       std::optional<SampledSystems> systems;
       std::unique_ptr<SweepModel>   model;
     };
@@ -291,10 +292,10 @@ namespace Squeal
               {"largest estimated error of lambda", "-", &Row::worst_error, 1, true}};
     }
 
-    /// The designs in the order of their evaluation, with the goal and the best so far.
+    /// Designs in order of evaluation, with the objective and its best value so far.
     Table robust_search_table(const RobustDesigns &found, const SearchParameters &search)
     {
-      using Row            = std::size_t; // number of a design
+      using Row            = std::size_t; // index of a design
       const auto  &designs = found.designs;
       Columns<Row> columns = {{"design", "-", [](const Row &i) { return i + 1; }},
                               {"phase", "", [&](const Row &i) { return designs[i].phase; }}};
@@ -323,7 +324,7 @@ namespace Squeal
       return Table(columns, rows);
     }
 
-    /// The best design by its samples and by others.
+    /// The best design, with the samples of the search and with those of another seed.
     Table best_design_table(const std::vector<std::pair<unsigned int, RobustDesign>> &by_seed, const SearchParameters &search)
     {
       using Row                                 = std::pair<unsigned int, RobustDesign>;
@@ -348,7 +349,7 @@ namespace Squeal
       for (const std::size_t start : starts_of_search(values))
         {
           const std::string end = minimise(search, found.starts[start], [&](const SearchPoint &point) { return found.value(point); });
-          ends.push_back(text("    from design ", start + 1, ": ", end.empty() ? "Search/Evaluations is used up" : end));
+          ends.push_back(text("    search from design ", start + 1, ": ", end.empty() ? "the limit Search/Evaluations is reached" : end));
         }
 
       const std::size_t  best   = found.best();
@@ -370,9 +371,9 @@ namespace Squeal
       run.count("designs", found.designs.size());
       run.count("samples of a design", other.n());
       run.count("basis vectors", checked.n_vectors);
-      run.progress.note(text("  search: design ", best + 1, " of ", found.designs.size(), " is the best; ",
+      run.progress.note(text("  search: the best design is ", best + 1, " of ", found.designs.size(), "; ",
                              goal_column(search.goal, search).name, ": ", decimal_text(*std::min_element(values.begin(), values.end())),
-                             " % at the best of the first designs, ", decimal_text(winner.objective(search.goal)), " % there, ",
+                             " % for the best initial design, ", decimal_text(winner.objective(search.goal)), " % for the best design, ",
                              decimal_text(checked.objective(search.goal)), " % with other samples"));
       for (const std::string &end : ends)
         run.progress.note(end);
@@ -399,7 +400,7 @@ namespace Squeal
     const std::vector<DesignVariable> variables  = search_variables(parameters.designs);
     const SystemFile                  file       = read_system(run);
     for (const DesignVariable &variable : variables)
-      value_in(file, variable.name, parameters); // refuses what is no parameter
+      value_in(file, variable.name, parameters); // throws if the file has no such parameter
     const auto design = [&](const DesignValues &values) {
       Parameters result  = parameters;
       result.system.file = std::filesystem::absolute(result.system.path()).string();

@@ -13,7 +13,7 @@ namespace Squeal
 
   namespace
   {
-    /// Searches from different starts.
+    /// Maximum number of searches, each from a different start.
     constexpr std::size_t most_searches = 2;
 
     nlopt::algorithm algorithm(const SearchMethod method)
@@ -58,7 +58,7 @@ namespace Squeal
                        const SearchPoint                                               &start,
                        const std::function<std::optional<double>(const SearchPoint &)> &value)
   {
-    std::exception_ptr                               error; // which NLopt would replace by one of its own
+    std::exception_ptr                               error; // saved because NLopt would replace it by its own exception
     const std::function<double(const SearchPoint &)> guarded = [&](const SearchPoint &x) {
       try
         {
@@ -84,7 +84,7 @@ namespace Squeal
     try
       {
         method.optimize(x, smallest);
-        return "steps are smaller than Search/Smallest step";
+        return "the step is smaller than Search/Smallest step";
       }
     catch (const nlopt::forced_stop &)
       {
@@ -94,11 +94,11 @@ namespace Squeal
       }
     catch (const nlopt::roundoff_limited &)
       {
-        return "rounding errors are larger than what steps change";
+        return "rounding errors exceed the change of the objective";
       }
     catch (const std::exception &failure)
       {
-        return std::string("NLopt says: ") + failure.what();
+        return std::string("NLopt reports: ") + failure.what();
       }
   }
 
@@ -126,8 +126,8 @@ namespace Squeal
                            to_string(friction.labels[leading - lambda.begin()]),
                            *std::max_element(residuals.begin(), residuals.end())};
 
-    run.progress.finish(text(result.n_modes, " modes, ", result.n_unstable, " unstable, ",
-                             decimal_text(100. * result.leading.divergence_rate), " % at most (", result.label, ")"));
+    run.progress.finish(text(result.n_modes, " modes, ", result.n_unstable, " unstable, largest divergence rate ",
+                             decimal_text(100. * result.leading.divergence_rate), " % (", result.label, ")"));
     return result;
   }
 

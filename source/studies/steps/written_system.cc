@@ -14,16 +14,16 @@ namespace Squeal
   {
     constexpr double largest_friction_coefficient = 10.;
 
-    /// Ends of the ranges of parameters relative to their values.
+    /// Ranges extend by this factor below and above the value.
     constexpr double range_factor = 100.;
 
-    /// Parameters of a file, and a map from parameters of the terms to their names in the file.
+    /// Parameters of a file, and the map from names in the terms to names in the file.
     struct NamedParameters
     {
       std::vector<FileParameter>         parameters;
       std::map<std::string, std::string> names;
 
-      /// Names a parameter of the terms; those with the same description are one.
+      /// Adds a parameter of the terms under a unique name; parameters with the same description are merged.
       void name(const std::string &of_terms, FileParameter parameter)
       {
         const auto find = [&](std::string FileParameter::*text, const std::string &wanted) {
@@ -42,7 +42,7 @@ namespace Squeal
       }
     };
 
-    /// Lower-case letters, digits and _, which replaces all other characters.
+    /// Converts to lower case and replaces each run of non-alphanumeric characters by _.
     std::string identifier(const std::string &text)
     {
       std::string result = is_parameter_name(text.substr(0, 1)) ? "" : "of_";
@@ -60,7 +60,7 @@ namespace Squeal
       return {identifier(name), value, lower, upper, unit, description};
     }
 
-    /// Volumes with the material of the disc or of the pins share its parameters.
+    /// Names the material constants; volumes with the material of the disc or the pins share its parameters.
     void name_materials(NamedParameters &named, const std::vector<std::string> &volumes, const MaterialParameters &materials)
     {
       for (const std::string &volume : volumes)
@@ -91,14 +91,14 @@ namespace Squeal
         {
           FileParameter speed = scaled_parameter(BodyParameter::angular_velocity, parameters.operation.angular_velocity(), "rad/s",
                                                  "Operation/Rotation speed, positive about z");
-          if (parameters.has_contact_damping()) // depends on it as well
+          if (parameters.has_contact_damping()) // depends on the speed as well
             speed.lower = speed.upper = speed.value;
           result.name(BodyParameter::angular_velocity, speed);
         }
       return result;
     }
 
-    /// Renames the parameters of a monomial. At p = 1 its value is its factor, and its derivatives are the factor times the exponents.
+    /// Renames the parameters of a monomial. With all p = 1 it equals its factor, and its derivatives are the factor times the exponents.
     Coefficient in_names(const Coefficient &monomial, const std::map<std::string, std::string> &names)
     {
       ParameterValues ones;
@@ -112,7 +112,7 @@ namespace Squeal
       return {factor, powers};
     }
 
-    /// Terms of the bodies in parameters of the file; sums those with the same coefficient.
+    /// Terms of the bodies in the parameters of the file; terms with the same coefficient are summed.
     std::vector<Term> summed_terms(const BodyTerms &bodies, const std::map<std::string, std::string> &names)
     {
       std::vector<Term>                                                                result;
@@ -143,7 +143,7 @@ namespace Squeal
       return result;
     }
 
-    /// The coupled system in parameters of the file.
+    /// The coupled system in the parameters of the file.
     CoupledSystem system_with_parameters(const Linearisation &linearisation, const NamedParameters &named, const Parameters &parameters)
     {
       const Model &model  = *linearisation.scene->model;
@@ -188,7 +188,7 @@ namespace Squeal
       return result;
     }
 
-    /// Nodes that move.
+    /// Positions of the unclamped nodes, and the matrix from coupled dofs to their displacements.
     ShapePoints points_of(const Model &model, const SparseMatrix &kernel)
     {
       std::vector<Node>   own;
@@ -219,7 +219,7 @@ namespace Squeal
     FileParameter result{SystemParameter::friction, mu};
     result.lower       = depends ? mu : 0.;
     result.upper       = depends ? mu : largest_friction_coefficient;
-    result.description = depends ? "friction coefficient, about the state of contact at this value" : "friction coefficient";
+    result.description = depends ? "friction coefficient; the contact state holds at this value only" : "friction coefficient";
     return result;
   }
 
@@ -245,7 +245,7 @@ namespace Squeal
     const Model        &model  = *linearisation.scene->model;
     const SparseMatrix &kernel = *linearisation.coupled.kernel;
     write_system(system.terms, system.values,
-                 {named.parameters, "coupled system, displacements in m, forces in N; groups without the dofs that the contact eliminates",
+                 {named.parameters, "coupled system, displacements in m, forces in N; groups exclude the dofs eliminated by the contact",
                   groups_of_bodies(model, kernel), points_of(model, kernel)},
                  folder, run);
   }

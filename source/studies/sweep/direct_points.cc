@@ -7,14 +7,14 @@ namespace Squeal
 {
   namespace
   {
-    /// X + iY of all processes, the columns chosen.
+    /// Selected columns of X + iY, with the rows of all processes.
     ComplexDenseMatrix gathered(const MultiVector &X, const MultiVector &Y, const std::vector<int> &columns)
     {
       const std::complex<double> i(0., 1.);
       return (replicate(X).cast<std::complex<double>>() + i * replicate(Y))(Eigen::all, columns);
     }
 
-    /// ‖ψᵀQ(λ)‖ / (w ‖ψ‖) of left vectors, see backward_errors().
+    /// Backward errors ‖ψᵀQ(λ)‖ / (w ‖ψ‖) of left vectors, see backward_errors().
     std::vector<double> left_backward_errors(const CoupledSystem &system, const ParameterValues &values, const ComplexModes &modes)
     {
       const MultiVector        &X = *modes.left_real_part, &Y = *modes.left_imaginary_part;
@@ -70,7 +70,7 @@ namespace Squeal
       result.uncertainties.push_back(result.errors[j] * std::abs(result.lambda[j]));
     result.right = gathered(*modes.real_part, *modes.imaginary_part, listed);
     result.left  = gathered(*modes.left_real_part, *modes.left_imaginary_part, listed);
-    // ψ are dual to φ: what the residuals change of λ, of first order
+    // First-order correction of λ by the residuals, since ψ is dual to φ
     const int         n         = static_cast<int>(modes.lambda.size());
     const MultiVector residuals = force_residuals(system, values, modes.lambda, *modes.real_part, *modes.imaginary_part);
     result.corrections          = -result.left.transpose() * gathered(view(residuals, 0, n), view(residuals, n, n), listed);

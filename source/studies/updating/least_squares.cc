@@ -16,7 +16,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Distance from an end of the unit interval up to which a parameter is at its limit.
+    /// A parameter within this distance of an end of the unit interval is at its limit.
     constexpr double at_limit = 1e-6;
 
     bool is_limit(const double x)
@@ -24,16 +24,16 @@ namespace Squeal
       return x <= at_limit || x >= 1. - at_limit;
     }
 
-    /// Singular values up to this part of the largest are errors of the derivatives.
+    /// Singular values up to this fraction of the largest are attributed to errors of the derivatives.
     constexpr double smallest_singular_value = 1e-7;
 
-    /// Part of a parameter in undetermined directions, squared, from which it is undetermined.
+    /// A parameter is undetermined if the square of its component in undetermined directions exceeds this.
     constexpr double undetermined_square = 1e-4;
 
-    /// Cosine between two parameters in undetermined directions from which they belong together.
+    /// Undetermined parameters form a group if the cosine between them, in the undetermined directions, exceeds this.
     constexpr double act_alike = 0.1;
 
-    /// Residuals for Ceres, each point computed once.
+    /// Residuals for Ceres, cached so that each point is computed once.
     class RememberedResiduals : public ceres::CostFunction
     {
     public:
@@ -95,7 +95,7 @@ namespace Squeal
     options.gradient_tolerance                = 1e-16;
     options.min_trust_region_radius           = tolerance * tolerance;
     options.max_num_consecutive_invalid_steps = maximum_iterations;
-    // Steps towards a limit that is reached are cut off and end the search too early: parameters there are held, and the others go on
+    // Steps truncated at a limit end the search too early: hold the parameters at their limits and continue with the others
     for (std::vector<int> held;;)
       {
         ceres::Solver::Summary summary;
@@ -132,7 +132,7 @@ namespace Squeal
 
     const auto                          n_free = static_cast<Eigen::Index>(free.size()), m = residuals.r.size();
     const Eigen::JacobiSVD<DenseMatrix> svd(residuals.J(Eigen::all, free), Eigen::ComputeFullV);
-    Eigen::VectorXd                     S = Eigen::VectorXd::Zero(n_free); // zeros where there are fewer data than parameters
+    Eigen::VectorXd                     S = Eigen::VectorXd::Zero(n_free); // zero-padded if there are fewer data than parameters
     S.head(svd.singularValues().size())   = svd.singularValues();
     const DenseMatrix &V                  = svd.matrixV();
     result.singular_values.assign(S.data(), S.data() + n_free);

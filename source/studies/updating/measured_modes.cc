@@ -16,12 +16,12 @@ namespace Squeal
   {
     constexpr const char *parameter_of_modes = "Updating/Measured modes";
 
-    /// Columns in their order; the first three are required.
+    /// All columns; the first three are required.
     const std::vector<std::string> known_columns = {
       "state", "label", "frequency [Hz]", "member", "deviation [Hz]", "damping ratio [%]", "damping deviation [%]"};
     constexpr std::size_t n_required = 3;
 
-    /// A row by the names of its columns.
+    /// Access to the cells of a row by column name.
     class Row
     {
     public:
@@ -31,14 +31,14 @@ namespace Squeal
         , texts(file.rows[number])
       {}
 
-      /// The text of a column; empty where there is no such column.
+      /// Text in a column; empty if the column is missing.
       std::string text(const char *column) const
       {
         const auto place = std::find(file.names.begin(), file.names.end(), column);
         return place == file.names.end() ? "" : texts[place - file.names.begin()];
       }
 
-      /// The number of a column; nothing where the cell is empty.
+      /// Number in a column; nothing if the cell is empty.
       std::optional<double> number(const char *column) const
       {
         const std::string cell = text(column);
@@ -80,11 +80,11 @@ namespace Squeal
           if (std::find(known_columns.begin(), known_columns.end(), name) == known_columns.end())
             throw ParameterError("unknown column " + in_quotes(name), file.where_names, "the columns are " + known);
           if (std::count(file.names.begin(), file.names.end(), name) > 1)
-            throw ParameterError("column " + in_quotes(name) + " occurs twice", file.where_names, "leave one of them");
+            throw ParameterError("column " + in_quotes(name) + " occurs twice", file.where_names, "remove one of them");
         }
       for (std::size_t i = 0; i < n_required; ++i)
         if (std::find(file.names.begin(), file.names.end(), known_columns[i]) == file.names.end())
-          throw ParameterError("there is no column " + in_quotes(known_columns[i]), file.where_names, "the columns are " + known);
+          throw ParameterError("missing column " + in_quotes(known_columns[i]), file.where_names, "the columns are " + known);
     }
 
     MeasuredMode mode_of(const Row &row)
@@ -92,14 +92,14 @@ namespace Squeal
       const std::string state = row.text("state");
       const auto        names = enum_names<MeasuredState>();
       if (std::find(names.begin(), names.end(), state) == names.end())
-        row.refuse(in_quotes(state) + " is no state", "write one of " + boost::algorithm::join(names, ", "));
+        row.refuse(in_quotes(state) + " is not a state", "write one of " + boost::algorithm::join(names, ", "));
       const std::string label = single_spaced(row.text("label")), member = row.text("member");
       if (label.empty())
-        row.refuse("the row has no label", "write the label of the mode in the tables of a stability run");
+        row.refuse("the row has no label", "write the label of the mode as in the tables of a stability run");
       const auto number = parse_number(member);
       if (!member.empty() && member != "lowest" && member != "highest" && !(number && *number >= 1. && *number == std::floor(*number)))
-        row.refuse(in_quotes(member) + " is no member of the modes of a label",
-                   "write lowest, highest or a number from 1 on, or leave it empty for the mean");
+        row.refuse(in_quotes(member) + " is not a member of the modes with a label",
+                   "write lowest, highest or an integer >= 1, or leave the cell empty for the mean");
       const auto frequency = row.positive_number("frequency [Hz]");
       if (!frequency)
         row.refuse("the row has no frequency", "give a frequency in Hz");
@@ -108,9 +108,9 @@ namespace Squeal
       MeasuredMode result{enum_value<MeasuredState>(state), label, member, {*frequency, deviation ? *deviation : 0.}, {}, row.where};
       const auto   ratio = row.number("damping ratio [%]"), ratio_deviation = row.positive_number("damping deviation [%]");
       if (ratio.has_value() != ratio_deviation.has_value())
-        row.refuse("a damping ratio and its deviation belong together", "give both or neither");
+        row.refuse("only one of damping ratio and damping deviation is given", "give both or neither");
       if (ratio && result.state != MeasuredState::complex)
-        row.refuse(state + " modes have no damping", "set the state to complex, or leave the damping ratio empty");
+        row.refuse(state + " modes are computed without damping", "set the state to complex, or leave damping ratio and deviation empty");
       if (ratio)
         result.damping_ratio = Measured{0.01 * *ratio, 0.01 * *ratio_deviation};
       return result;
@@ -122,7 +122,7 @@ namespace Squeal
       return boost::ends_with(label, " -") || boost::ends_with(label, " +") ? label.substr(0, label.size() - 2) : label;
     }
 
-    /// Labels of a state, each once, for a message.
+    /// Distinct labels of a state, for messages.
     std::string labels_of(const MeasuredState state, const std::vector<ComputedMode> &modes)
     {
       constexpr std::size_t    most = 40;
@@ -138,7 +138,7 @@ namespace Squeal
       return result.empty() ? "none" : boost::algorithm::join(result, ", ");
     }
 
-    /// Modes of a label in the order of their frequencies.
+    /// Modes with the measured label, by ascending frequency.
     std::vector<const ComputedMode *> modes_of_label(const MeasuredMode &measured, const std::vector<ComputedMode> &modes)
     {
       std::vector<const ComputedMode *> result;
@@ -176,9 +176,10 @@ namespace Squeal
         if (result.are_relative)
           mode.frequency.deviation = default_deviation * mode.frequency.value;
         if (!has_deviation(mode))
-          throw ParameterError("the frequency has no deviation, but others have", mode.where, "give `deviation [Hz]` for all or for none");
+          throw ParameterError("this frequency has no deviation, but others have one", mode.where,
+                               "give `deviation [Hz]` for all or for none");
         if (result.are_relative && mode.damping_ratio)
-          throw ParameterError("the damping ratio has a deviation, but frequencies have none", mode.where,
+          throw ParameterError("the damping ratio has a deviation, but the frequencies have none", mode.where,
                                "give `deviation [Hz]` for all frequencies");
       }
     return result;
@@ -189,16 +190,16 @@ namespace Squeal
     std::vector<const ComputedMode *> found  = modes_of_label(measured, modes);
     const auto                        refuse = [&](const std::string &what) {
       throw SolverError(text(what, " among the ", to_string(measured.state), " modes in the band"), measured.where,
-                                               "labels there are " + labels_of(measured.state, modes) + "; use one of them, or raise Band/Maximum frequency");
+                                               "write one of the labels " + labels_of(measured.state, modes) + ", or raise Band/Maximum frequency");
     };
     if (found.empty())
-      refuse("no mode is labelled " + in_quotes(measured.label));
+      refuse("there is no mode " + in_quotes(measured.label));
     if (!measured.member.empty())
       {
         const auto        number = parse_number(measured.member);
         const std::size_t place  = number ? static_cast<std::size_t>(*number) - 1 : measured.member == "highest" ? found.size() - 1 : 0;
         if (place >= found.size())
-          refuse(text("member ", place + 1, " of ", in_quotes(measured.label), " does not exist, there are ", found.size()));
+          refuse(text("member ", place + 1, " of ", in_quotes(measured.label), " does not exist: there are ", found.size()));
         found = {found[place]};
       }
     Counterpart  result{};

@@ -13,7 +13,7 @@ namespace Squeal
   {
     using Derivatives = std::vector<std::vector<std::complex<double>>>;
 
-    /// Numbers of modes that oscillate, by clusters of equal λ.
+    /// Indices of the modes with Im λ > 0, in clusters of equal λ.
     std::vector<std::vector<int>> clusters_of(const std::vector<std::complex<double>> &lambda)
     {
       std::vector<int>                  numbers;
@@ -31,7 +31,7 @@ namespace Squeal
       return result;
     }
 
-    /// Sum of the factors times φ_jᵀ A φ_j.
+    /// Σ c φ_jᵀ A φ_j over the factors c and matrices A of the sum, for each mode j.
     Eigen::VectorXd diagonal_of(const BodyRates::Sum &sum, const MultiVector &shapes)
     {
       Eigen::VectorXd result = Eigen::VectorXd::Zero(shapes.n_columns());
@@ -80,7 +80,7 @@ namespace Squeal
   {
     if (measured.has(MeasuredState::component))
       throw ParameterError("a system file has no component modes", "parameter Updating/Measured modes",
-                           "give modes in the states coupled and complex");
+                           "use the states coupled and complex only");
     return [&](const std::vector<double> &values) {
       GivenSystem given{file, {}, {}, 0.};
       auto        others = run.parameters.system.values;

@@ -18,16 +18,16 @@ namespace Squeal
 
   namespace
   {
-    /// Step over the range of a parameter to either side, for rates of change. Most are exact, for most parameters are factors.
+    /// Step of the difference quotients to either side, as a fraction of the range. Quotients of factors, the most common case, are exact.
     constexpr double step_of_rates = 1e-4;
 
     constexpr const char *where_fitted = "parameter Designs/Variables";
 
-    /// How a parameter acts.
+    /// What a parameter changes.
     enum class Action
     {
-      factor,   ///< on coefficients of terms
-      matrices, ///< on matrices of the bodies, on the same mesh
+      factor,   ///< coefficients of terms
+      matrices, ///< matrices of the bodies, on the same mesh
       mesh
     };
 
@@ -36,7 +36,7 @@ namespace Squeal
       throw ParameterError(what, where_fitted, change);
     }
 
-    /// The parameter file of a solution at full order.
+    /// Parameters of a solution at full order.
     Parameters solved_parameters(Parameters parameters)
     {
       parameters.study    = &stability_study;
@@ -46,7 +46,7 @@ namespace Squeal
       return parameters;
     }
 
-    /// (p2 − p1)/h of lists of numbers; those that are missing count as zeros.
+    /// (p2 − p1)/h of lists of numbers; missing entries count as zero.
     ParameterValues difference_quotient(const ParameterValues &before, const ParameterValues &after, const double h)
     {
       ParameterValues result;
@@ -67,7 +67,7 @@ namespace Squeal
       return result;
     }
 
-    /// The same of merged terms.
+    /// (X2 − X1)/h of merged terms; missing matrices count as zero.
     std::vector<Term> difference_quotient(const std::vector<Term> &before, const std::vector<Term> &after, const double h)
     {
       const auto counterpart = [](const Term &term, const std::vector<Term> &others) {
@@ -91,7 +91,7 @@ namespace Squeal
       return result;
     }
 
-    /// A scene whose fitted parameters take other and other values.
+    /// A meshed model at changing values of the fitted parameters.
     class ChangingScene
     {
     public:
@@ -105,18 +105,20 @@ namespace Squeal
       {
         const bool is_complex = measured.has(MeasuredState::complex);
         if (is_complex && !base.damping.modal_ratios.empty())
-          refuse_fit("modal damping has no derivatives here", "leave Damping/Modal damping ratio empty, or fit to modes without friction");
+          refuse_fit("complex modes with modal damping have no derivatives",
+                     "clear Damping/Modal damping ratio, or fit to component and coupled modes only");
         if (is_complex && base.needs_steady_sliding() && base.has_contact_damping())
-          refuse_fit("damping by the reactions of steady sliding has no derivatives here",
-                     "set Steady sliding/Contact state = equal load, or fit to modes without friction");
+          refuse_fit("complex modes with contact damping about steady sliding have no derivatives",
+                     "set Steady sliding/Contact state = equal load, or fit to component and coupled modes only");
         for (std::size_t p = 0; p < parameters.size(); ++p)
           {
             actions.push_back(action_of(p));
             if (actions.back() == Action::mesh)
               for (const MeshMotion &motion : motions_of(p, base.geometry))
                 if (is_complex && motion.moves_contact)
-                  refuse_fit(in_quotes(parameters[p].name) + " moves contact nodes, whose friction has no derivatives here",
-                             "fit it to component and coupled modes");
+                  refuse_fit(in_quotes(parameters[p].name) +
+                               " moves contact nodes, so complex modes have no derivatives with respect to it",
+                             "fit it to component and coupled modes only");
           }
       }
 
@@ -155,20 +157,20 @@ namespace Squeal
         const FittedParameter &parameter = parameters[p];
         const std::string      lower     = text_without_coefficients(with_value(base, p, parameter.lower)),
                           upper          = text_without_coefficients(with_value(base, p, parameter.upper));
-        // Names that are joined may differ before they take the same value
+        // Parameters joined by + may have different values in the parameter file
         if (lower == upper && lower == text_without_coefficients(with_value(base, p, parameter.start)))
           return Action::factor;
         for (const char *section : {"Disc material/", "Pin material/", "Materials/", "Mounts/"})
           if (boost::starts_with(parameter.name, section))
             return Action::matrices;
         if (motions_of(p, base.geometry).empty())
-          refuse_fit(in_quotes(parameter.name) + " has no derivatives",
-                     "fit constants of materials, mounts, lengths and angles of the geometry disc_pins.geo, friction coefficient, or load, "
-                     "speed and slope in ranges without zero");
+          refuse_fit(in_quotes(parameter.name) + " cannot be fitted: modes have no derivatives with respect to it",
+                     "fit material constants, mounts, lengths and angles of disc_pins.geo, the friction coefficient, or load, speed and "
+                     "friction slope in ranges that exclude zero");
         return Action::mesh;
       }
 
-      /// Motions of the mesh with a parameter: one for each name and pin; empty if there is one without.
+      /// Mesh motions due to a parameter, one for each joined name; empty if any name has none.
       std::vector<MeshMotion> motions_of(const std::size_t p, const GeometryParameters &geometry) const
       {
         if (geometry.file != GeometryParameters().file)
@@ -189,7 +191,7 @@ namespace Squeal
         return result;
       }
 
-      /// The bodies of a design, with a new mesh only if it has another one.
+      /// Assembles the bodies of a design. Remeshes only if more than coefficients change.
       void assemble(const Parameters &design, Run &quiet)
       {
         const std::string matrices = text_without_coefficients(design);
@@ -223,7 +225,7 @@ namespace Squeal
         return merged(result.terms, result.values);
       }
 
-      /// By differences within the range, of which those of factors are exact.
+      /// Difference quotients within the range; exact for factors.
       EquationRates rates_of(const std::size_t                  p,
                              const double                       value,
                              const Parameters                  &design,
@@ -259,7 +261,7 @@ namespace Squeal
         return result;
       }
 
-      /// On the mesh with nodes moved by the change of a parameter.
+      /// Model on the mesh with its nodes moved by the change of a parameter.
       Model moved_model(const std::size_t p, const double change, const Parameters &design) const
       {
         Mesh mesh = scene.mesh;
@@ -334,7 +336,7 @@ namespace Squeal
       const MeasuredModes                &measured;
       Run                                &run;
       const Parameters                    base;
-      std::string                         meshed; ///< text_without_coefficients() of what the scene is
+      std::string                         meshed; ///< text_without_coefficients() of the current mesh
       BodyTerms                           bodies;
       std::vector<Action>                 actions;
     };

@@ -17,7 +17,7 @@ namespace Squeal
   {
     constexpr const char *where_variables_are = "parameter Designs/Variables";
 
-    /// A measured number beside the computed one before and after the fit.
+    /// A measured number and its computed values before and after the fit.
     struct FittedNumber
     {
       const MeasuredMode *mode;
@@ -34,7 +34,7 @@ namespace Squeal
         return (computed - measured().value) / measured().deviation;
       }
 
-      /// [Hz] or [%]
+      /// Value in Hz or %.
       double shown(const double value) const
       {
         return is_damping ? 100. * value : value;
@@ -53,7 +53,7 @@ namespace Squeal
       return result;
     }
 
-    /// The fit of all numbers: residuals over the unit cube of the parameters.
+    /// Residuals of all measured numbers over the unit cube of the parameters.
     class UpdatingProblem
     {
     public:
@@ -73,7 +73,7 @@ namespace Squeal
         return result;
       }
 
-      /// Residuals, and the computed numbers.
+      /// Residuals and computed numbers.
       std::pair<Residuals, std::vector<double>> evaluate(const std::vector<double> &x)
       {
         const std::vector<ComputedMode> modes = modes_at(values_at(x));
@@ -95,7 +95,7 @@ namespace Squeal
         return {result, computed};
       }
 
-      /// Residuals; nothing where the model has no modes to compare.
+      /// Residuals; nothing if the modes cannot be computed or paired.
       std::optional<Residuals> try_to_evaluate(const std::vector<double> &x)
       {
         try
@@ -120,12 +120,12 @@ namespace Squeal
       const ModesAtValues                 modes_at;
       Run                                &run;
       int                                 n_evaluations = 0;
-      std::string                         why_failed; ///< last point without residuals; empty: none
+      std::string                         why_failed; ///< reason at the last point without residuals; empty if there is none
     };
 
     // --------------------------------------------------------------------- results
 
-    /// A parameter and what the fit says of it.
+    /// Fitted value, standard deviation and status of a parameter.
     struct UpdatedParameter
     {
       const FittedParameter *parameter;
@@ -218,7 +218,7 @@ namespace Squeal
                    numbers);
     }
 
-    /// Root mean square and largest of the relative differences of frequencies.
+    /// RMS and largest relative frequency differences.
     struct Agreement
     {
       double              rms = 0., largest = 0.; ///< [%]
@@ -253,17 +253,17 @@ namespace Squeal
       for (const UpdatedParameter &row : updated)
         if (row.status.rfind("at ", 0) == 0)
           run.warn(text(row.parameter->name, " ends ", row.status, " ", exact_text(row.value),
-                        ": widen its range, or something else in the model differs from what was measured"));
+                        ": widen its range, or look for other differences between the model and the measured brake"));
       for (const std::vector<std::size_t> &group : statistics.undetermined)
         {
           std::vector<std::string> names;
           for (const std::size_t p : group)
             names.push_back(problem.parameters[p].name);
-          run.warn(
-            names.size() == 1 ?
-              "the measured modes do not determine " + names.front() + ": leave it out, or measure modes that depend on it" :
-              "the measured modes do not determine " + boost::algorithm::join(names, ", ") +
-                " separately, only some of their combinations: keep one of them fixed, or measure modes on which they act differently");
+          run.warn(names.size() == 1 ?
+                     "the measured modes do not determine " + names.front() +
+                       ": remove it from Designs/Variables, or add measured modes that depend on it" :
+                     "the measured modes do not determine " + boost::algorithm::join(names, ", ") +
+                       " individually, only combinations of them: fix one of them, or add measured modes that they affect differently");
         }
     }
 
@@ -277,9 +277,9 @@ namespace Squeal
       run.measure("sum of squared residuals at the start [-]", before.r.squaredNorm());
       run.measure("sum of squared residuals after the fit [-]", after.r.squaredNorm());
       run.progress.note(text("  ", problem.parameters.size(), " parameters fitted to ", problem.numbers.size(),
-                             " measured numbers: frequencies differ by ", updated.rms, " % rms (", start.rms, " % before), at most ",
+                             " measured numbers: frequency differences ", updated.rms, " % rms (", start.rms, " % before), at most ",
                              updated.largest, " % (", to_string(updated.worst->state), " ", updated.worst->label,
-                             "); agreement with numbers that were fitted is no validation"));
+                             "); agreement with fitted numbers does not validate the model"));
     }
 
     // --------------------------------------------------------------------- study
@@ -307,10 +307,10 @@ namespace Squeal
         [&, &before = before](const std::vector<double> &x) { return x == start ? std::optional(before) : problem.try_to_evaluate(x); },
         start, options.tolerance, static_cast<int>(options.n_iterations));
       if (!fit.has_converged)
-        throw SolverError(text("the fit has not converged after ", fit.n_iterations, " iterations: residuals ",
+        throw SolverError(text("the fit has not converged after ", fit.n_iterations, " iterations: residual ",
                                UpdatingProblem::root_mean_square(fit.residuals.r), " rms (", UpdatingProblem::root_mean_square(before.r),
                                " at the start)",
-                               problem.why_failed.empty() ? "" : "; some points have no modes to compare: " + problem.why_failed),
+                               problem.why_failed.empty() ? "" : "; at some points modes could not be compared: " + problem.why_failed),
                           "Study = updating", "raise Updating/Iterations or Updating/Tolerance, or narrow the ranges of Designs/Variables");
       for (std::size_t i = 0; i < problem.numbers.size(); ++i)
         {
@@ -340,7 +340,7 @@ namespace Squeal
       return read_measured_modes(name.empty() ? "" : input_path(name, parameters.geometry.directory));
     }
 
-    /// Those of a parameter file with a mesh.
+    /// Fitted parameters of a meshed model.
     std::vector<FittedParameter> parameters_of_scene(const Parameters &parameters)
     {
       return fitted_parameters(parameters.designs, [&parameters](const std::string &name) {
@@ -348,11 +348,11 @@ namespace Squeal
         if (const auto number = parse_number(value))
           return *number;
         throw ParameterError("the value of " + in_quotes(name) + " is " + in_quotes(value) + ", not a number", where_variables_are,
-                             "name the k-th number of it: Section/Name[k]");
+                             "to fit the k-th number of a list, write Section/Name[k]");
       });
     }
 
-    /// A parameter file of a stability run.
+    /// Parameters of a stability run.
     Parameters without_fit(Parameters parameters)
     {
       parameters.study    = studies().front();
@@ -371,7 +371,7 @@ namespace Squeal
                                "write Section/Name = a to b");
         const double start = current(variable.name);
         if (start < variable.first || start > variable.last)
-          throw ParameterError("the fit starts at " + variable.name + " = " + exact_text(start) + ", outside of its range " +
+          throw ParameterError("the fit starts at " + variable.name + " = " + exact_text(start) + ", outside its range " +
                                  exact_text(variable.first) + " to " + exact_text(variable.last),
                                where_variables_are, "set the parameter to a value in the range, or widen the range");
         result.push_back({variable.name, start, variable.first, variable.last});
@@ -379,7 +379,7 @@ namespace Squeal
     return result;
   }
 
-  /// `Study = updating`: parameters fitted to measured modes by bounded weighted least squares.
+  /// `Study = updating`: fits parameters to measured modes by bounded weighted least squares.
   static void run_updating_study(Scene &scene, Run &run)
   {
     const Parameters                  &p          = run.parameters;
@@ -408,7 +408,7 @@ namespace Squeal
         {
           auto values            = run.parameters.system.values;
           values[parameter.name] = end;
-          file.values(values); // refuses ranges beyond those of the file
+          file.values(values); // throws if the range exceeds that of the file
         }
     const auto write = [&](const std::vector<double> &values) {
       Parameters updated = without_fit(run.parameters);
@@ -422,12 +422,13 @@ namespace Squeal
 
   extern const Study updating_study = [] {
     Study study{"updating", run_updating_study, {"Updating/", "Designs/Variables"}};
-    study.rules = {{"Output/", [](const Parameters &) { return "the study writes no mode shapes"; }},
-                   {"Complex modes/Solver", [](const Parameters &) { return "left and right modes come from the residual iteration"; }},
-                   {"Complex modes/Iteration tolerance", [](const Parameters &) { return "derivatives need the least one"; }},
-                   {"Complex modes/Maximum basis", [](const Parameters &) -> Reason { return nullptr; }},
-                   {"Complex modes/Shift inverse", [](const Parameters &) { return "of the solver Krylov"; }},
-                   {"Complex modes/Tolerance", [](const Parameters &) { return "of the solver Krylov"; }}};
+    study.rules = {
+      {"Output/", [](const Parameters &) { return "the study writes no mode shapes"; }},
+      {"Complex modes/Solver", [](const Parameters &) { return "left and right modes come from the residual iteration"; }},
+      {"Complex modes/Iteration tolerance", [](const Parameters &) { return "derivatives always use the smallest tolerance"; }},
+      {"Complex modes/Maximum basis", [](const Parameters &) -> Reason { return nullptr; }},
+      {"Complex modes/Shift inverse", [](const Parameters &) { return "of the solver Krylov"; }},
+      {"Complex modes/Tolerance", [](const Parameters &) { return "of the solver Krylov"; }}};
     study.check = [](const Parameters &p) {
       given_modes(p);
       parameters_of_scene(p);

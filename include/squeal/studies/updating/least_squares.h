@@ -16,7 +16,7 @@ namespace Squeal
     DenseMatrix     J; ///< m × n [-]
   };
 
-  /// Residuals at a point of the unit cube; nothing where there are none.
+  /// Residuals at a point of the unit cube; nothing if they cannot be computed.
   using ResidualsAt = std::function<std::optional<Residuals>(const std::vector<double> &x)>;
 
   struct Fit
@@ -25,37 +25,37 @@ namespace Squeal
     Residuals           residuals;
     bool                has_converged;
     int                 n_iterations;
-    std::string         message; ///< of the method, for an error
+    std::string         message; ///< from Ceres, for error messages
   };
 
   /**
-   * A local minimum of ½ |r(x)|² in the unit cube by Ceres' trust-region method of Levenberg and Marquardt. Points without residuals count
-   * as failed steps, after which shorter ones are tried.
+   * Finds a local minimum of ½ |r(x)|² in the unit cube with the Levenberg–Marquardt trust-region method of Ceres. A point without
+   * residuals counts as a failed step, and a shorter step is tried.
    *
-   * @param start with residuals
-   * @param tolerance the fit ends when |Δx| is smaller, or when |r|² changes by no more than the square of this part
+   * @param start     residuals must exist here
+   * @param tolerance the fit ends when |Δx| falls below it, or the relative change of |r|² below its square
    */
   Fit least_squares(const ResidualsAt &residuals_at, const std::vector<double> &start, double tolerance, int maximum_iterations);
 
-  /// What residuals tell about the parameters of a fit.
+  /// Uncertainty of fitted parameters.
   struct FitStatistics
   {
     std::vector<bool>                     is_at_limit;
     std::vector<std::optional<double>>    deviations;   ///< standard deviation of x; none at a limit or if undetermined
-    DenseMatrix                           correlations; ///< n × n; zero of parameters without a deviation
+    DenseMatrix                           correlations; ///< n × n; zero for parameters without a deviation
     std::vector<double>                   singular_values;
-    std::vector<std::vector<std::size_t>> undetermined; ///< groups of parameters of which the data determine some combinations only
+    std::vector<std::vector<std::size_t>> undetermined; ///< groups of parameters; the data determine only some combinations
   };
 
   /**
-   * Covariance s² (JᵀJ)⁻¹ of the parameters that are not at a limit, by the singular value decomposition J = U S Vᵀ.
+   * Covariance s² (JᵀJ)⁻¹ of the parameters that are not at a limit, from the singular value decomposition J = U S Vᵀ.
    *
-   * Directions of V with s / S_k > 1, whose deviation exceeds the ranges, or with S_k up to 1e-7 of the largest, are undetermined, and so are
-   * parameters of which they contain more than 1 %.
+   * A direction of V is undetermined if s / S_k >= 1, that is, if its standard deviation is at least as large as the ranges, or if
+   * S_k <= 1e-7 S_1. A parameter is undetermined if its component in these directions exceeds 1 %.
    *
    * @param residuals   at the minimum x
-   * @param is_relative the weights are known up to a common factor: s² = |r|² / (m − n); else s = 1. Without redundant data there are no
-   *                    deviations then
+   * @param is_relative weights are known up to a common factor: s² = |r|² / (m − n) with n free parameters, and no deviations unless m > n;
+   *                    else s = 1
    */
   FitStatistics fit_statistics(const Residuals &residuals, const std::vector<double> &x, bool is_relative);
 } // namespace Squeal

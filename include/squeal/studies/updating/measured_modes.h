@@ -9,12 +9,12 @@
 
 namespace Squeal
 {
-  /// State in which a mode is measured.
+  /// State of the brake in which a mode is measured.
   enum class MeasuredState
   {
     component, ///< free disc, or pins with sliding contact
     coupled,   ///< bodies in contact without friction and damping
-    complex    ///< at the friction coefficient of the operation
+    complex    ///< at Operation/Friction coefficient
   };
 
   template <>
@@ -22,44 +22,44 @@ namespace Squeal
                                                                           {MeasuredState::coupled, "coupled"},
                                                                           {MeasuredState::complex, "complex"}};
 
-  /// A measured number with its standard deviation.
+  /// A measured number and its standard deviation.
   struct Measured
   {
     double value, deviation;
   };
 
-  /// A measured mode, and which computed modes it is compared with: the mean of all of a label, or one of them.
+  /// A measured mode and its computed counterpart: one mode with this label, or the mean of all of them.
   struct MeasuredMode
   {
     MeasuredState           state;
     std::string             label;         ///< with or without the sign of a doublet
-    std::string             member;        ///< "lowest", "highest", or a number from one on; empty: the mean of all
+    std::string             member;        ///< "lowest", "highest", or a number >= 1; empty: the mean of all
     Measured                frequency;     ///< [Hz]
     std::optional<Measured> damping_ratio; ///< ζ = −Re λ / |λ| [-]
-    std::string             where;         ///< file and line
+    std::string             where;         ///< file and line, for messages
   };
 
   struct MeasuredModes
   {
     std::vector<MeasuredMode> modes;
 
-    /// Deviations are not measured but the same part of every frequency.
+    /// No deviations are given: each is the same fraction of its frequency.
     bool are_relative;
 
-    /// Numbers, frequencies and damping ratios.
+    /// Number of frequencies and damping ratios.
     std::size_t n_numbers() const;
 
     bool has(MeasuredState state) const;
   };
 
-  /// Deviation of frequencies where none is given, part of them [-].
+  /// Relative standard deviation of frequencies if none is given [-].
   inline constexpr double default_deviation = 0.01;
 
-  /// Reads the file of measured modes; see doc/updating.md. Throws FileError, or ParameterError naming the line.
+  /// Reads the file of measured modes; see doc/updating.md. Throws FileError, or ParameterError with the line number.
   MeasuredModes read_measured_modes(const std::string &path);
 
-  /// A computed mode with its derivatives with respect to the fitted parameters. In a cluster of equal eigenvalues, whose members have
-  /// none, they are those of their mean.
+  /// A computed mode and its derivatives with respect to the fitted parameters. Equal eigenvalues have no individual derivatives: all modes
+  /// of a cluster have the derivatives of its mean.
   struct ComputedMode
   {
     MeasuredState                     state;
@@ -68,7 +68,7 @@ namespace Squeal
     std::vector<std::complex<double>> derivatives; ///< dλ/dp [rad/s per unit of p]
   };
 
-  /// Computed counterpart of a measured mode, with derivatives with respect to each parameter.
+  /// Computed counterpart of a measured mode and its derivatives with respect to each parameter.
   struct Counterpart
   {
     double              frequency;                            ///< [Hz]
@@ -76,6 +76,6 @@ namespace Squeal
     std::vector<double> frequency_rates, damping_ratio_rates; ///< per unit of each parameter
   };
 
-  /// The counterpart among computed modes. Throws SolverError if no mode of the state has the label, or too few.
+  /// Finds the counterpart of a measured mode. Throws SolverError if no mode of the state has the label, or if the member does not exist.
   Counterpart counterpart_of(const MeasuredMode &measured, const std::vector<ComputedMode> &modes);
 } // namespace Squeal
