@@ -28,9 +28,12 @@ namespace Squeal
     {
       if (path.empty())
         throw ParameterError("no file of " + row + "s is named", "parameter " + parameter, "name a CSV file");
-      std::ifstream     stream(path, std::ios::binary);
-      const std::string content{std::istreambuf_iterator<char>(stream), {}};
-      if (!stream.is_open() || stream.bad() || std::filesystem::is_directory(path))
+      std::ifstream stream(path, std::ios::binary);
+      std::string   content;
+      const bool    is_file = stream.is_open() && !std::filesystem::is_directory(path);
+      if (is_file)
+        content.assign(std::istreambuf_iterator<char>(stream), {});
+      if (!is_file || stream.bad())
         throw FileError("the file of " + row + "s cannot be read", "file " + path + ", parameter " + parameter,
                         "check its name and permissions");
       constexpr const char *utf8_mark = "\xEF\xBB\xBF";

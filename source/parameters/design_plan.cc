@@ -32,12 +32,14 @@ namespace Squeal
     constexpr const char *where_variables = "parameter Designs/Variables";
     const std::string     how_to_write    = "write Section/Name = a, b, c; or Section/Name = a to b in n";
 
-    /// A value that people can read: six digits tell designs apart.
-    std::string rounded(const double value)
+    /// A value of a range that people can read: six digits, and more where the range is narrow, tell designs apart.
+    std::string rounded(const double value, const double first, const double last)
     {
+      constexpr int      most_digits = 17;
+      const double       size        = std::max(std::abs(first), std::abs(last)) / (last - first);
       std::ostringstream stream;
-      stream << std::setprecision(6) << value;
-      return exact_text(std::stod(stream.str()));
+      stream << std::setprecision(std::min(most_digits, 6 + static_cast<int>(std::max(0., std::floor(std::log10(size)))))) << value;
+      return exact_text(std::clamp(std::stod(stream.str()), first, last));
     }
 
     [[noreturn]] void refuse(const std::string &what, const std::string &change = how_to_write)
@@ -279,7 +281,7 @@ namespace Squeal
   std::string DesignVariable::at(const double t) const
   {
     if (is_range)
-      return rounded(by_ratio ? first * std::pow(last / first, t) : first + t * (last - first));
+      return rounded(by_ratio ? first * std::pow(last / first, t) : first + t * (last - first), first, last);
     return levels[std::min(levels.size() - 1, static_cast<std::size_t>(t * static_cast<double>(levels.size())))];
   }
 

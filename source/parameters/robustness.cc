@@ -177,6 +177,10 @@ namespace Squeal
             if (found->for_each_pin)
               refuse(in_quotes(name) + " is independent for each pin");
           }
+        for (const Correlation &other : result)
+          if ((other.first == names.front() && other.second == names.back()) ||
+              (other.first == names.back() && other.second == names.front()))
+            refuse(in_quotes(names.front() + ", " + names.back()) + " has two correlations");
         result.push_back({names.front(), names.back(), *value});
       }
     return result;

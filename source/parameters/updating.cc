@@ -11,7 +11,8 @@ namespace Squeal
       "(component: free disc, or pins with sliding contact; coupled: without friction; complex: at Operation/Friction coefficient), "
       "`label`, `frequency [Hz]`; optional `member`, `deviation [Hz]`, `damping ratio [%]`, `damping deviation [%]`. The program looks "
       "in the folder of the parameter file, then in the current directory.");
-    declarations.add("Tolerance", tolerance, "none", "The fit ends when steps are smaller than this fraction of the ranges.", {1e-12, 0.1});
+    declarations.add("Tolerance", tolerance, "none", "The fit ends when steps are smaller than this fraction of the ranges.",
+                     {1e-12, 1e-3});
     declarations.add("Iterations", n_iterations, "none",
                      "Maximum number of iterations. The run fails if the fit has not converged by then.", {1., 1e4});
   }

@@ -391,6 +391,7 @@ namespace Squeal
       for (const auto &[name, entry] : entries.members(true))
         {
           result.push_back({name, {}});
+          std::vector<bool> is_known(n, false);
           for (const auto &[number, range] : entry.members(false))
             {
               std::vector<int> ends;
@@ -398,8 +399,16 @@ namespace Squeal
                 ends.push_back(end.integer());
               if (ends.size() != 2 || ends[0] < 1 || ends[0] > ends[1] || ends[1] > n)
                 range.refuse(text("not a range of dofs from 1 to ", n), "write [first, last]");
+              for (int dof = ends[0] - 1; dof < ends[1]; ++dof)
+                {
+                  if (is_known[dof])
+                    range.refuse(text("dof ", dof + 1, " is in the group twice"), "give ranges that do not overlap");
+                  is_known[dof] = true;
+                }
               result.back().ranges.emplace_back(ends[0] - 1, ends[1] - 1);
             }
+          if (result.back().ranges.empty())
+            entry.refuse("a group without dofs", "give ranges of dofs, [[first, last], ...]");
         }
       return result;
     }
@@ -481,6 +490,16 @@ namespace Squeal
         const auto other       = others.find(parameter.name);
         result[parameter.name] = {other == others.end() ? parameter.value : other->second};
       }
+    for (const Term &term : terms)
+      if (!std::isfinite(term.coefficient.at(result)))
+        {
+          std::string at;
+          for (const FileParameter &parameter : parameters)
+            at += (at.empty() ? "" : ", ") + parameter.name + " = " + exact_text(result.at(parameter.name).front());
+          throw ParameterError("the coefficient " + in_quotes(term.coefficient.text()) + " of " + in_quotes(term.name) +
+                                 " is not finite at " + at,
+                               "file " + path, "narrow the ranges of the parameters, or correct the coefficient");
+        }
     return result;
   }
 

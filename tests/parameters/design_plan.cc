@@ -141,7 +141,7 @@ TEST(DesignPlan, RefusesWhatItDoesNotUnderstandOrVariesTwiceOrIsEqual)
                                                         {"A/x = 1, 1.0", "`1` and `1.0`"},
                                                         {"A/x = red, green, red", "equal values"},
                                                         {"A/x = -10, 10 | 0, 5 | -10,10.0", "equal values"},
-                                                        {"A/x = 1 to 1.0000001 in 5", "equal values"},
+                                                        {"A/x = 1 to 1.0000000000000002 in 5", "equal values"},
                                                         {"A/x = 0,3, 0,4", "decimal"},
                                                         {"A/x = 0,3; 0,4", "`0,4` has no `=`"},
                                                         {"A/x = 0,3 to 0,5 in 3", "`0,3` in"}})

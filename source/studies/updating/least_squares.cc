@@ -19,13 +19,44 @@ namespace Squeal
     /// A parameter within this distance of an end of the unit interval is at its limit.
     constexpr double at_limit = 1e-6;
 
-    bool is_limit(const double x)
+    /// Gauss-Newton step left at a minimum [-]: less is left to rounding and to the curvature of the residuals.
+    constexpr double step_at_minimum = 1e-3;
+
+    /// Parameters at limits beyond which |r| would decrease.
+    std::vector<int> held_by_limits(const std::vector<double> &x, const Residuals &residuals)
     {
-      return x <= at_limit || x >= 1. - at_limit;
+      const Eigen::VectorXd gradient = residuals.J.transpose() * residuals.r;
+      std::vector<int>      result;
+      for (int i = 0; i < static_cast<int>(x.size()); ++i)
+        if ((x[i] <= at_limit && gradient[i] > 0.) || (x[i] >= 1. - at_limit && gradient[i] < 0.))
+          result.push_back(i);
+      return result;
+    }
+
+    /// Parameters that no limit holds.
+    std::vector<Eigen::Index> free_parameters(const std::vector<double> &x, const Residuals &residuals)
+    {
+      const std::vector<int>    held = held_by_limits(x, residuals);
+      std::vector<Eigen::Index> result;
+      for (int i = 0; i < static_cast<int>(x.size()); ++i)
+        if (std::find(held.begin(), held.end(), i) == held.end())
+          result.push_back(i);
+      return result;
     }
 
     /// Singular values up to this fraction of the largest are attributed to errors of the derivatives.
     constexpr double smallest_singular_value = 1e-7;
+
+    /// Largest component of the Gauss-Newton step of the free parameters, in directions that the data determine.
+    double remaining_step(const std::vector<double> &x, const Residuals &residuals)
+    {
+      const std::vector<Eigen::Index> free = free_parameters(x, residuals);
+      if (free.empty())
+        return 0.;
+      Eigen::JacobiSVD<DenseMatrix> svd(residuals.J(Eigen::all, free), Eigen::ComputeThinU | Eigen::ComputeThinV);
+      svd.setThreshold(smallest_singular_value);
+      return svd.solve(residuals.r).cwiseAbs().maxCoeff();
+    }
 
     /// A parameter is undetermined if the square of its component in undetermined directions exceeds this.
     constexpr double undetermined_square = 1e-4;
@@ -95,38 +126,39 @@ namespace Squeal
     options.gradient_tolerance                = 1e-16;
     options.min_trust_region_radius           = tolerance * tolerance;
     options.max_num_consecutive_invalid_steps = maximum_iterations;
-    // Steps truncated at a limit end the search too early: hold the parameters at their limits and continue with the others
-    for (std::vector<int> held;;)
+    // Steps truncated at a limit end the search too early: hold the parameters that limits stop and continue with the others
+    std::vector<int>  held;
+    const std::size_t most_changes = 4 * start.size();
+    for (std::size_t change = 0;; ++change)
       {
         ceres::Solver::Summary summary;
         ceres::Solve(options, &problem, &summary);
         result.has_converged = summary.termination_type == ceres::CONVERGENCE;
         result.n_iterations += summary.num_successful_steps + summary.num_unsuccessful_steps;
-        result.message = summary.message;
-        std::vector<int> reached;
-        for (int i = 0; i < static_cast<int>(start.size()); ++i)
-          if (is_limit(result.x[i]))
-            reached.push_back(i);
-        if (!result.has_converged || reached == held || reached.size() == start.size())
+        result.message                 = summary.message;
+        result.residuals               = *residuals.at(result.x);
+        const std::vector<int> reached = held_by_limits(result.x, result.residuals);
+        if (!result.has_converged || reached.size() == start.size())
           break;
+        if (reached == held || change == most_changes)
+          {
+            result.has_converged = reached == held && remaining_step(result.x, result.residuals) <= std::max(step_at_minimum, tolerance);
+            break;
+          }
         held = reached;
         problem.SetManifold(result.x.data(), new ceres::SubsetManifold(static_cast<int>(start.size()), held));
       }
-    result.residuals = *residuals.at(result.x);
     return result;
   }
 
   FitStatistics fit_statistics(const Residuals &residuals, const std::vector<double> &x, const bool is_relative)
   {
-    const std::size_t        n = x.size();
-    FitStatistics            result{{}, std::vector<std::optional<double>>(n), DenseMatrix::Zero(n, n), {}, {}};
-    std::vector<std::size_t> free;
-    for (std::size_t i = 0; i < n; ++i)
-      {
-        result.is_at_limit.push_back(is_limit(x[i]));
-        if (!result.is_at_limit.back())
-          free.push_back(i);
-      }
+    const std::size_t               n = x.size();
+    FitStatistics                   result{{}, std::vector<std::optional<double>>(n), DenseMatrix::Zero(n, n), {}, {}};
+    const std::vector<Eigen::Index> free = free_parameters(x, residuals);
+    result.is_at_limit.assign(n, true);
+    for (const Eigen::Index i : free)
+      result.is_at_limit[i] = false;
     if (free.empty())
       return result;
 
@@ -164,8 +196,7 @@ namespace Squeal
     for (Eigen::Index i = 0; i < n_free; ++i)
       for (Eigen::Index j = 0; j < n_free; ++j)
         if (result.deviations[free[i]] && result.deviations[free[j]] && covariance(i, i) > 0. && covariance(j, j) > 0.)
-          result.correlations(static_cast<Eigen::Index>(free[i]), static_cast<Eigen::Index>(free[j])) =
-            covariance(i, j) / std::sqrt(covariance(i, i) * covariance(j, j));
+          result.correlations(free[i], free[j]) = covariance(i, j) / std::sqrt(covariance(i, i) * covariance(j, j));
     return result;
   }
 } // namespace Squeal

@@ -87,6 +87,9 @@ namespace Squeal
           throw ParameterError("missing column " + in_quotes(known_columns[i]), file.where_names, "the columns are " + known);
     }
 
+    /// Relative deviation below which numbers cannot be told apart.
+    constexpr double smallest_deviation = 1e-12;
+
     MeasuredMode mode_of(const Row &row)
     {
       const std::string state = row.text("state");
@@ -104,7 +107,10 @@ namespace Squeal
       if (!frequency)
         row.refuse("the row has no frequency", "give a frequency in Hz");
 
-      const auto   deviation = row.positive_number("deviation [Hz]");
+      const auto deviation = row.positive_number("deviation [Hz]");
+      if (deviation && !(*deviation > smallest_deviation * *frequency))
+        row.refuse("the deviation of " + exact_text(*deviation) + " Hz is less than the rounding error of the frequency",
+                   "give the standard deviation of the measurement");
       MeasuredMode result{enum_value<MeasuredState>(state), label, member, {*frequency, deviation ? *deviation : 0.}, {}, row.where};
       const auto   ratio = row.number("damping ratio [%]"), ratio_deviation = row.positive_number("damping deviation [%]");
       if (ratio.has_value() != ratio_deviation.has_value())

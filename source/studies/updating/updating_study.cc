@@ -10,6 +10,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <map>
 
 namespace Squeal
 {
@@ -90,6 +91,7 @@ namespace Squeal
             for (Eigen::Index p = 0; p < n; ++p)
               result.J(i, p) = rates[p] * (parameters[p].upper - parameters[p].lower) / number.measured().deviation;
           }
+        computed_at[x] = computed;
         ++n_evaluations;
         run.progress.update(text("evaluation ", n_evaluations, ", residuals ", root_mean_square(result.r), " rms"));
         return {result, computed};
@@ -114,13 +116,14 @@ namespace Squeal
         return r.norm() / std::sqrt(static_cast<double>(r.size()));
       }
 
-      const std::vector<FittedParameter> &parameters;
-      const MeasuredModes                &measured;
-      std::vector<FittedNumber>           numbers;
-      const ModesAtValues                 modes_at;
-      Run                                &run;
-      int                                 n_evaluations = 0;
-      std::string                         why_failed; ///< reason at the last point without residuals; empty if there is none
+      const std::vector<FittedParameter>                &parameters;
+      const MeasuredModes                               &measured;
+      std::vector<FittedNumber>                          numbers;
+      const ModesAtValues                                modes_at;
+      Run                                               &run;
+      int                                                n_evaluations = 0;
+      std::map<std::vector<double>, std::vector<double>> computed_at; ///< the numbers at each point
+      std::string                                        why_failed; ///< reason at the last point without residuals; empty if there is none
     };
 
     // --------------------------------------------------------------------- results
@@ -313,11 +316,7 @@ namespace Squeal
                                problem.why_failed.empty() ? "" : "; at some points modes could not be compared: " + problem.why_failed),
                           "Study = updating", "raise Updating/Iterations or Updating/Tolerance, or narrow the ranges of Designs/Variables");
       for (std::size_t i = 0; i < problem.numbers.size(); ++i)
-        {
-          const FittedNumber &number = problem.numbers[i];
-          problem.numbers[i].updated =
-            number.measured().value + fit.residuals.r[static_cast<Eigen::Index>(i)] * number.measured().deviation;
-        }
+        problem.numbers[i].updated = problem.computed_at.at(fit.x)[i];
       run.count("evaluations", problem.n_evaluations);
       run.progress.finish(text(fit.n_iterations, " iterations, ", problem.n_evaluations, " evaluations, residuals ",
                                UpdatingProblem::root_mean_square(before.r), " to ", UpdatingProblem::root_mean_square(fit.residuals.r),
@@ -336,8 +335,15 @@ namespace Squeal
 
     MeasuredModes given_modes(const Parameters &parameters)
     {
-      const std::string &name = parameters.updating.measured_modes;
-      return read_measured_modes(name.empty() ? "" : input_path(name, parameters.geometry.directory));
+      const std::string  &name   = parameters.updating.measured_modes;
+      const MeasuredModes result = read_measured_modes(name.empty() ? "" : input_path(name, parameters.geometry.directory));
+      const double        end    = parameters.discretization.maximum_frequency;
+      for (const MeasuredMode &mode : result.modes)
+        if (mode.frequency.value > end)
+          throw ParameterError(
+            text("the frequency of ", exact_text(mode.frequency.value), " Hz is above Band/Maximum frequency, ", exact_text(end), " Hz"),
+            mode.where, "raise Band/Maximum frequency, or remove the mode");
+      return result;
     }
 
     /// Fitted parameters of a meshed model.
