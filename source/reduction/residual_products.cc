@@ -418,8 +418,8 @@ namespace Squeal
         }
       return halves(result);
     };
-    // A C of a matrix A with as many columns as W
-    const auto times = [](const auto &A, const std::vector<Group> &C, const Eigen::Index n) {
+    // A C, and Cᵀ A, of a matrix A with as many columns, or rows, as W
+    const auto times = [](const Matrix &A, const std::vector<Group> &C, const Eigen::Index n) {
       Matrix       result = Matrix::Zero(A.rows(), n);
       Eigen::Index first  = 0;
       for (const Group &group : C)
@@ -431,6 +431,18 @@ namespace Squeal
         }
       return result;
     };
+    const auto transposed_times = [](const std::vector<Group> &C, const Eigen::Index n, const Matrix &A) {
+      Matrix       result = Matrix::Zero(n, A.cols());
+      Eigen::Index first  = 0;
+      for (const Group &group : C)
+        {
+          const int width = group.blocks.front().first->n;
+          for (const auto &[block, factor] : group.blocks)
+            result.middleRows(first, width) += static_cast<Number>(factor) * A.middleRows(block->first, width);
+          first += width;
+        }
+      return result;
+    };
     const auto apply = [](const Matrix &A, const DenseMatrix &X) {
       return sparing_zeros(X, [&A](const DenseMatrix &Y) -> DenseMatrix { return (A * Y.cast<Number>()).template cast<double>(); });
     };
@@ -438,9 +450,9 @@ namespace Squeal
     const std::vector<Group> C = groups(values, false), D = groups(values, true);
     const DenseMatrix        c = stack(C, right), d = stack(D, left);
     const Matrix             BC = times(B, C, c.rows()), BD = times(B, D, d.rows());
-    return {product_of_halves(d.transpose() * apply(times(BC.transpose(), D, d.rows()).transpose(), c)),
-            hermitian_products(c, apply(times(BC.transpose(), C, c.rows()), c)),
-            hermitian_products(d, apply(times(BD.transpose(), D, d.rows()), d))};
+    return {product_of_halves(d.transpose() * apply(transposed_times(D, d.rows(), BC), c)),
+            hermitian_products(c, apply(transposed_times(C, c.rows(), BC), c)),
+            hermitian_products(d, apply(transposed_times(D, d.rows(), BD), d))};
   }
 
   ResidualProducts ProjectedResiduals::products(const ParameterValues      &values,
