@@ -418,29 +418,30 @@ namespace Squeal
         }
       return halves(result);
     };
-    // A C, and Cᵀ A, of a matrix A with as many columns, or rows, as W
-    const auto times = [](const Matrix &A, const std::vector<Group> &C, const Eigen::Index n) {
-      Matrix       result = Matrix::Zero(A.rows(), n);
-      Eigen::Index first  = 0;
+    // add(first, width, block, factor) for every block of W in the groups, which begin at row first of c
+    const auto for_blocks = [](const std::vector<Group> &C, const auto &add) {
+      Eigen::Index first = 0;
       for (const Group &group : C)
         {
           const int width = group.blocks.front().first->n;
           for (const auto &[block, factor] : group.blocks)
-            result.middleCols(first, width) += static_cast<Number>(factor) * A.middleCols(block->first, width);
+            add(first, width, block->first, static_cast<Number>(factor));
           first += width;
         }
+    };
+    // A C, and Cᵀ A, of a matrix A with as many columns, or rows, as W
+    const auto times = [&](const Matrix &A, const std::vector<Group> &C, const Eigen::Index n) {
+      Matrix result = Matrix::Zero(A.rows(), n);
+      for_blocks(C, [&](const Eigen::Index first, const int width, const int of_block, const Number factor) {
+        result.middleCols(first, width) += factor * A.middleCols(of_block, width);
+      });
       return result;
     };
-    const auto transposed_times = [](const std::vector<Group> &C, const Eigen::Index n, const Matrix &A) {
-      Matrix       result = Matrix::Zero(n, A.cols());
-      Eigen::Index first  = 0;
-      for (const Group &group : C)
-        {
-          const int width = group.blocks.front().first->n;
-          for (const auto &[block, factor] : group.blocks)
-            result.middleRows(first, width) += static_cast<Number>(factor) * A.middleRows(block->first, width);
-          first += width;
-        }
+    const auto transposed_times = [&](const std::vector<Group> &C, const Eigen::Index n, const Matrix &A) {
+      Matrix result = Matrix::Zero(n, A.cols());
+      for_blocks(C, [&](const Eigen::Index first, const int width, const int of_block, const Number factor) {
+        result.middleRows(first, width) += factor * A.middleRows(of_block, width);
+      });
       return result;
     };
     const auto apply = [](const Matrix &A, const DenseMatrix &X) {

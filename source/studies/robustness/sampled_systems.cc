@@ -137,12 +137,12 @@ namespace Squeal
     return result;
   }
 
-  double nominal_value(const Parameters &parameters, const std::string &name)
+  double nominal_value(const Parameters &parameters, const std::string &name, const char *where)
   {
     const std::string value = current_value(parameters, name);
     if (const auto number = parse_number(value))
       return *number;
-    throw ParameterError("the value of " + in_quotes(name) + " is " + in_quotes(value) + ", not a number", where_uncertain,
+    throw ParameterError("the value of " + in_quotes(name) + " is " + in_quotes(value) + ", not a number", where,
                          "name the k-th number of it: Section/Name[k]");
   }
 

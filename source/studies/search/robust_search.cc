@@ -389,7 +389,8 @@ namespace Squeal
     for (const DesignVariable &variable : search_variables(parameters.designs))
       names.push_back(variable.name);
     search_robustly({alike_pins(scene, parameters), [&](const DesignValues &values) { return with_design(parameters, names, values); },
-                     [&](const SamplePlan &plan, const int s) { return with_sample(parameters, plan, s); }, nominal_value,
+                     [&](const SamplePlan &plan, const int s) { return with_sample(parameters, plan, s); },
+                     [](const Parameters &p, const std::string &name) { return nominal_value(p, name); },
                      [&](const SamplePlan &plan) { return sampled_scene(scene, bodies, plan, run); }},
                     run);
   }

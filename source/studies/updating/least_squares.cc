@@ -154,7 +154,7 @@ namespace Squeal
   FitStatistics fit_statistics(const Residuals &residuals, const std::vector<double> &x, const bool is_relative)
   {
     const std::size_t               n = x.size();
-    FitStatistics                   result{{}, std::vector<std::optional<double>>(n), DenseMatrix::Zero(n, n), {}, {}};
+    FitStatistics                   result{{}, std::vector<std::optional<double>>(n), DenseMatrix::Zero(n, n), {}};
     const std::vector<Eigen::Index> free = free_parameters(x, residuals);
     result.is_at_limit.assign(n, true);
     for (const Eigen::Index i : free)
@@ -167,9 +167,8 @@ namespace Squeal
     Eigen::VectorXd                     S = Eigen::VectorXd::Zero(n_free); // zero-padded if there are fewer data than parameters
     S.head(svd.singularValues().size())   = svd.singularValues();
     const DenseMatrix &V                  = svd.matrixV();
-    result.singular_values.assign(S.data(), S.data() + n_free);
-    const bool   has_scale = !is_relative || m > n_free;
-    const double s         = !is_relative ? 1. : m > n_free ? std::sqrt(residuals.r.squaredNorm() / static_cast<double>(m - n_free)) : 0.;
+    const bool         has_scale          = !is_relative || m > n_free;
+    const double       s = !is_relative ? 1. : m > n_free ? std::sqrt(residuals.r.squaredNorm() / static_cast<double>(m - n_free)) : 0.;
 
     DenseMatrix covariance = DenseMatrix::Zero(n_free, n_free), undetermined = covariance;
     for (Eigen::Index k = 0; k < n_free; ++k)

@@ -349,13 +349,8 @@ namespace Squeal
     /// Fitted parameters of a meshed model.
     std::vector<FittedParameter> parameters_of_scene(const Parameters &parameters)
     {
-      return fitted_parameters(parameters.designs, [&parameters](const std::string &name) {
-        const std::string value = current_value(parameters, name);
-        if (const auto number = parse_number(value))
-          return *number;
-        throw ParameterError("the value of " + in_quotes(name) + " is " + in_quotes(value) + ", not a number", where_variables_are,
-                             "to fit the k-th number of a list, write Section/Name[k]");
-      });
+      return fitted_parameters(parameters.designs,
+                               [&](const std::string &name) { return nominal_value(parameters, name, where_variables_are); });
     }
 
     /// Parameters of a stability run.

@@ -45,7 +45,7 @@ namespace Squeal
   double value_in(const SystemFile &file, const std::string &name, const Parameters &parameters);
 
   /// The value of a parameter of a scene. Throws ParameterError unless it is a number.
-  double nominal_value(const Parameters &parameters, const std::string &name);
+  double nominal_value(const Parameters &parameters, const std::string &name, const char *where = "parameter Robustness/Distributions");
 
   /// Volumes of pins that have no material of their own.
   std::vector<std::string> alike_pins(const Scene &scene, const Parameters &parameters);
