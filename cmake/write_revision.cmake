@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 # Writes FILE, which defines the revision of the sources in SOURCE_DIRECTORY, unless it says so already:
 #
 #   cmake -D SOURCE_DIRECTORY=... -D FILE=... -P write_revision.cmake

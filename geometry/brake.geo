@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // A disc brake: a disc with its hat, and two pads, each of lining and backplate, chamfered, with one slot. Pads and disc are meshed by
 // themselves, with quadratic tetrahedra: their faces need not match. An example of a solid of one's own; prm/brake.prm says which surfaces
 // rub, and what the parts are made of. Units: m, degree.

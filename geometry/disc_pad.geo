@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Plan of a disc with one brake pad on each face instead of pins: a sector of
 // an annulus, the same on both faces. An example of a plan of one's own; Squeal
 // extrudes the disc and both pads from it. Lines that name volumes or layers

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Plan of the built-in geometry: an annular disc and round pins on its two
 // faces. Squeal meshes this plan in two dimensions, fills the pins' circles
 // with a structured grid and extrudes disc and pins layer by layer; opened in

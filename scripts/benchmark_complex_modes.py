@@ -1,4 +1,6 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Times the complex modes of one run on one core: squeal and SLEPc in turn, with the same BLAS kernels.
 
     scripts/benchmark_complex_modes.py DIRECTORY [--formulations linear,toar] [--runs 3] [--core 0]

@@ -1,4 +1,6 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Linearisations of the small quadratic eigenproblem of a chart with dissipation, timed beside each other.
 
     scripts/benchmark_linearisations.py DIRECTORY [--vectors 234] [--runs 3] [--core 0]

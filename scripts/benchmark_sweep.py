@@ -1,4 +1,6 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Times an error-controlled sweep on one core beside full-order solutions by SLEPc, with the same BLAS kernels.
 
     scripts/benchmark_sweep.py PRM [--set "Section/Name=value"]... [--runs 3] [--core 0]

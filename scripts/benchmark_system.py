@@ -1,4 +1,6 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Times a sweep over a parameter of a system on one core beside full-order solutions by SLEPc at every one of its values.
 
     scripts/benchmark_system.py PRM [--set "Section/Name=value"]... [--runs 3] [--core 0] [--eigenvalues N] [--basis N] [--tolerance 1e-12]

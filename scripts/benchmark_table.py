@@ -1,4 +1,6 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The whole table of doc/benchmarks.md: charts, one friction coefficient and the default run, on one core and on two.
 
     scripts/benchmark_table.py [--runs 3] [--cores 0,1] [--rows chart,damped,one,default]

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """What the benchmarks share: the machine, runs of squeal and of SLEPc on one core with the same BLAS kernels, medians."""
 
 import json

@@ -1,4 +1,6 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Holds the errors that a run with `set Accuracy` estimates against a run on a much finer mesh.
 
     scripts/check_accuracy.py RUN REFERENCE

@@ -1,4 +1,6 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Checks the complex modes of a run with other people's eigensolvers.
 
     scripts/check_eigenvalues.py DIRECTORY [--modes FILE] [--solver scipy|slepc|both] [--system FOLDER]

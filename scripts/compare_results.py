@@ -1,4 +1,6 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Compares the tables of two result folders and prints the largest difference of each.
 
     scripts/compare_results.py OLD NEW [--tolerance 1e-9] [--ignore COLUMN]... [--tables PATTERN]

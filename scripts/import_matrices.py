@@ -1,4 +1,6 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Writes matrices of another program as a system that squeal and its Python module read.
 
     scripts/import_matrices.py CONFIG.yaml --output FOLDER

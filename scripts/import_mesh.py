@@ -1,4 +1,6 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Writes a mesh of another pre-processor as a .msh that squeal reads.
 
     scripts/import_mesh.py brake.inp                       what is in the file

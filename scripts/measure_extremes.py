@@ -1,4 +1,6 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Runs the cases of doc/extremes.md, holds each against an independent solution, and prints the table of that page.
 
     scripts/measure_extremes.py                    # all cases, some twenty minutes on two idle cores

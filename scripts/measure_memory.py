@@ -1,4 +1,6 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Memory of every process of a run, step by step: the largest resident size in each, beside what all of them have at once.
 
     scripts/measure_memory.py N PRM [ARGUMENT]...

@@ -1,4 +1,6 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Time and memory over the size of the mesh: the default scene with finer and finer meshes, one process with all its cores.
 
     scripts/measure_scaling.py [--sizes 32,78,138,281,476,1000] [--study stability|sweep] [--set "Section/Name=value"]...

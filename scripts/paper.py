@@ -1,4 +1,6 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Compares the default model with D. Brizard, O. Chiello, J.-J. Sinou, X. Lorang, J. Sound Vib. 330 (2011) 703.
 
     scripts/paper.py [--results DIR] [--set "Section/Name=value"]...

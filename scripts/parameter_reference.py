@@ -1,4 +1,6 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Writes doc/parameters.md from what the program says of its parameters.
 
     scripts/parameter_reference.py            # writes the page

@@ -1,4 +1,6 @@
 #!/usr/bin/env pvpython
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Shows modes of a run in ParaView, as a session to open there, as pictures, or as a film.
 
     scripts/paraview_modes.py RESULTS --state FILE.pvsm                   all modes, to be opened with: paraview FILE.pvsm

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """What ParaView shows of the modes of a run: pipelines, views and pictures.
 
 A module of its own, since scripts of ParaView's filters run in the namespace of the main one, whose names they replace.

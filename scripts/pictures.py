@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The page of the scripts that draw results: its scale of colours, texts and colour bar, laid out in pixels. Needs python3-matplotlib."""
 
 import math

@@ -1,4 +1,6 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Draws the plots of a run from the tables in its folder.
 
     scripts/plot_results.py RESULTS [--format svg|png|pdf] [--output DIR]

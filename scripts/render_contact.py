@@ -1,4 +1,6 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Draws a field on the contact faces of the pins of one side, over the outline of the disc.
 
     scripts/render_contact.py RESULTS/sliding_state_contact.vtu [-o PICTURE] [--field FIELD] [--view VIEW]

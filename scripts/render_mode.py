@@ -1,4 +1,6 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Draws modes: the deformed bodies, coloured, over the outline of the undeformed ones; points where there are no cells.
 
     scripts/render_mode.py MODE... [-o PICTURE] [--field FIELD] [--view VIEW] [--bodies all|moving]

@@ -1,4 +1,6 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Turns a folder of results into one HTML file that needs no network.
 
     scripts/report.py RESULTS [-o FILE.html]

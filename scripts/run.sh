@@ -1,4 +1,6 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 # Installs what is missing, builds, and runs squeal on parameter files:
 #
 #   scripts/run.sh [PRM]... [-- OPTION...]

@@ -1,4 +1,6 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 # Makes the checkout ready: installs the Debian packages that are missing, configures and builds.
 # run.sh and test.sh source this file; called by itself it builds the program and stops there:
 #

@@ -1,4 +1,6 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 # Builds the documentation as a site in build/site and checks its links and anchors; a warning is an error:
 #
 #   scripts/site.sh           builds and checks
@@ -12,7 +14,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
 case ${1:-} in
   "" | --serve) ;;
-  -h | --help) sed -n '2,/^$/s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; exit 0 ;;
+  -h | --help) sed -n '4,/^$/s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; exit 0 ;;
   *) complain "usage: scripts/site.sh [--serve]"; exit 2 ;;
 esac
 

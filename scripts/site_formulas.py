@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Renders the Unicode formulas of the pages in the site: K_c as K with a subscript, e^(λt) with a superscript.
 
 MkDocs calls on_page_content() with the HTML of each page; code, commands and file names stay as they are.

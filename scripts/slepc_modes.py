@@ -1,4 +1,6 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Complex modes by SLEPc: Krylov methods, shift-invert with an LU factorisation by MUMPS, in several formulations.
 
     scripts/slepc_modes.py DIRECTORY [--formulation linear|toar|q-arnoldi|linearised] [--modes 66] [--runs 3]

@@ -1,4 +1,6 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 # Builds, and runs the tests that hang on dense decompositions with several sets of OpenBLAS kernels, whose results differ in the last digits:
 #
 #   scripts/test_kernels.sh

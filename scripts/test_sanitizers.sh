@@ -1,4 +1,6 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 # Builds with the assertions of deal.II and of squeal and with the address and undefined-behaviour sanitizers, and runs the quick
 # tests; arguments are handed to ctest:
 #

@@ -1,4 +1,6 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 # Tries the README's two commands on a bare Debian in a chroot: what they need and this machine happens to have
 # cannot hide there. Needs root and debootstrap.
 #
@@ -19,7 +21,7 @@ if [[ -z ${squeal_private_mounts:-} ]] && (($(id -u) == 0)); then
   squeal_private_mounts=yes exec unshare --mount "${BASH_SOURCE[0]}" "$@"
 fi
 squeal_root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
-usage() { sed -n '2,/^$/s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; }
+usage() { sed -n '4,/^$/s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; }
 complain() { printf '%s\n' "$*" >&2; }
 
 release=bookworm kernels=() run_only=false keep=false directory=

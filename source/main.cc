@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "revision.h"
 
 #include <squeal/base/command_line.h>
@@ -6,6 +8,7 @@
 #include <squeal/base/memory.h>
 #include <squeal/base/text.h>
 #include <squeal/base/version.h>
+#include <squeal/output/result_folder.h>
 #include <squeal/parameters/parameters.h>
 #include <squeal/studies/steps/parameter_usage.h>
 #include <squeal/studies/steps/run.h>
@@ -37,7 +40,7 @@ Decides whether a disc rubbed by friction pins squeals.
   --designs LIST             only these designs of Study = geometry, as in 3,7-9
   --dry-run                  reads, checks, meshes, prints counts, and stops
   --print-parameters         prints every parameter with its value and meaning
-  --version                  prints the version
+  --version                  prints the version, the licence and the libraries
   -h, --help                 prints this text
 )";
 
@@ -51,7 +54,9 @@ Decides whether a disc rubbed by friction pins squeals.
       }
     if (line.version)
       {
-        screen << "squeal " << version << " (" << revision << ")\n";
+        screen << "squeal " << version << " (" << revision << "), GPL-3.0-or-later, without any warranty\n";
+        for (const auto &[library, its_version] : library_versions())
+          screen << library << " " << its_version << "\n";
         return;
       }
     if (line.print_parameters)

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 #include <squeal/linear_algebra/blas_threads.h>
 
 #include <deal.II/base/mpi.h>

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Python module of squeal: results of runs, and systems Q(λ; p) = Σ θ_k(p) λ^(power_k) A_k.
 
     results = squeal.run("x.prm", {"Operation/Friction coefficient": 0.3})

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """What scripts share: how they read their command line and how they end."""
 
 import argparse

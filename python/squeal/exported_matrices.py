@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Reads the matrices that a run of squeal has exported and forms the quadratic eigenproblem from them.
 
 The files of DIRECTORY/matrices, in Matrix Market form, are

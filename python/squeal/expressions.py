@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Coefficients: expressions of muParser in named parameters.
 
 Operators are + - * / ^, functions sin, cos, tan, exp, log and ln (natural), sqrt and abs; _pi is pi.

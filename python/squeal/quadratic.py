@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Eigenvalues of quadratic pencils Q(λ) = λ² M + λ C + K.
 
 Matrices are scaled as by Fan, Lin and Van Dooren, λ = γ μ with γ² = |K| / |M|, before they are linearised. Small problems are solved by the QZ

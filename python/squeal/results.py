@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The files of a run: tables, parameters, fields and the record."""
 
 import csv

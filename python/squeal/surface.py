@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Outer faces of the bodies in a file of fields, and their edges; points are numbers of those of the file."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Systems Q(λ; p) = Σ θ_k(p) λ^(power_k) A_k, in a folder with `system.json` and Matrix Market files."""
 
 import csv

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Reads the .vtu files of a run without VTK."""
 
 import array

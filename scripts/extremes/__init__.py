@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Parameters far from those of a brake: scenes, an independent solution of each, and the judgement of what the program says.
 
     cases.py     the scenes as data

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The cases of doc/extremes.md as data: what is set, and what has to come of it."""
 
 import dataclasses

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Runs a case and says whether the program is right, refuses with a reason, or is wrong."""
 
 import dataclasses

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """All eigenvalues of a band from the exported matrices, by means that share nothing with the program.
 
 Three steps:

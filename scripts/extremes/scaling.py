@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The same scene in other units of length: every result that has no unit must be the same.
 
 Lengths times s, with Young's moduli, densities and pressures as they are: frequencies, rates and speeds go with 1 / s, forces with s^2,

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The numbers that the pages quote: for each sentence the runs it needs, and what is to be read from them.
 
 A page has a module of its name here. An entry of it is a function with the decorator `entry(sentence)` that is given the runs

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Lists or reproduces the numbers of pages: see scripts/reproduce.sh."""
 
 import importlib

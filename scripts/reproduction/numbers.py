@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Numbers as the pages print them, beside what is found."""
 
 import dataclasses

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Runs of squeal that entries share, kept in results/reproduce/."""
 
 import squeal.results

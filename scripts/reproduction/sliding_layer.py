@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Waves of an elastic layer that slides with friction on a rigid plane: the continuum to which meshes are compared.
 
 The layer 0 <= y <= H is held at y = H. At y = 0 it does not lift off, u_y = 0, and slides: sigma_xy = mu sigma_yy. Of displacements

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 #include <squeal/base/memory.h>
 
 #include <boost/algorithm/string/predicate.hpp>

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 #include <squeal/base/groups.h>
 #include <squeal/bases/component_modes.h>
 #include <squeal/linear_algebra/communication.h>

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 #include <squeal/contact/coupled_system.h>
 #include <squeal/linear_algebra/dense.h>
 #include <squeal/linear_algebra/sparse_matrix.h>

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 #include <squeal/base/exceptions.h>
 #include <squeal/contact/imported_system.h>
 #include <squeal/linear_algebra/factorization.h>

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 #include <squeal/eigen/dense_quadratic.h>
 #include <squeal/linear_algebra/dense_eigenproblems.h>
 #include <squeal/linear_algebra/dense_lu.h>

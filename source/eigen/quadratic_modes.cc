@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "inverse_at_shift.h"
 
 #include <squeal/base/conventions.h>

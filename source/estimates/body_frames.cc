@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 #include <squeal/estimates/body_frames.h>
 #include <squeal/linear_algebra/communication.h>
 

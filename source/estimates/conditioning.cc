@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 #include <squeal/estimates/conditioning.h>
 #include <squeal/estimates/mode_groups.h>
 #include <squeal/linear_algebra/sparse_matrix.h>

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 #include <squeal/estimates/eigenvalue_estimates.h>
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 #include <squeal/base/exceptions.h>
 #include <squeal/base/installation.h>
 #include <squeal/base/text.h>

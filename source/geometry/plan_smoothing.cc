@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 #include <squeal/geometry/plan_smoothing.h>
 #include <squeal/geometry/polygon.h>
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 #include <squeal/geometry/polygon.h>
 #include <squeal/geometry/second_order.h>
 

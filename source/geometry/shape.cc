@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 #include <squeal/geometry/shape.h>
 
 #include <deal.II/base/quadrature_lib.h>

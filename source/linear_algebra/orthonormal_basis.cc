@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 #include <squeal/linear_algebra/orthonormal_basis.h>
 
 #include <Eigen/Cholesky>

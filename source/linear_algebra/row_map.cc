@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 #include <squeal/linear_algebra/communication.h>
 #include <squeal/linear_algebra/dense_serialization.h>
 #include <squeal/linear_algebra/row_map.h>

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 #include <squeal/linear_algebra/slave_rows.h>
 
 namespace Squeal

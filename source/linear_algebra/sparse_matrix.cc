@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "sparse_products.h"
 #include <squeal/base/exceptions.h>
 #include <squeal/base/tasks.h>

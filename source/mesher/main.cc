@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Runs Gmsh for squeal in a process of its own, which a geometry can neither take down nor get out of.
 // Started by run_mesher() (geometry/mesher.h); no program for users.
 

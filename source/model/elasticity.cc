@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 #include <squeal/model/cell_integrals.h>
 #include <squeal/model/cell_stiffness.h>
 #include <squeal/model/elasticity.h>

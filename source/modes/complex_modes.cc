@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 #include <squeal/linear_algebra/multivector.h>
 #include <squeal/eigen/quadratic_modes.h>
 #include <squeal/modes/complex_modes.h>

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "followed_determinant.h"
 
 #include <squeal/base/conventions.h>

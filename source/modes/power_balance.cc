@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 #include <squeal/linear_algebra/communication.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
 #include <squeal/modes/power_balance.h>

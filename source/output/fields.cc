@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 #include <squeal/output/fields.h>
 
 #include <deal.II/base/data_out_base.h>

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 #include <squeal/base/exceptions.h>
 #include <squeal/base/file_writing.h>
 #include <squeal/base/text.h>
@@ -248,23 +250,28 @@ namespace Squeal
     }
   } // namespace
 
+  std::vector<std::pair<std::string, std::string>> library_versions()
+  {
+    return {{"deal.II", DEAL_II_PACKAGE_VERSION},
+            {"Trilinos", TRILINOS_VERSION_STRING},
+            {"MUMPS", MUMPS_VERSION},
+            {"CHOLMOD", text(CHOLMOD_MAIN_VERSION, ".", CHOLMOD_SUB_VERSION, ".", CHOLMOD_SUBSUB_VERSION)},
+            {"UMFPACK", UMFPACK_VERSION},
+            {"Gmsh", GMSH_API_VERSION}};
+  }
+
   void write_run_record(std::ostream &stream, const RunRecord &record, const Progress &progress)
   {
     Json tree;
     tree["command"]  = record.command;
     tree["finished"] = utc_time();
-    tree["versions"] = {{"squeal", version},
-                        {"revision", record.revision},
-                        {"deal.II", DEAL_II_PACKAGE_VERSION},
-                        {"Trilinos", TRILINOS_VERSION_STRING},
-                        {"MUMPS", MUMPS_VERSION},
-                        {"CHOLMOD", text(CHOLMOD_MAIN_VERSION, ".", CHOLMOD_SUB_VERSION, ".", CHOLMOD_SUBSUB_VERSION)},
-                        {"UMFPACK", UMFPACK_VERSION},
-                        {"Gmsh", GMSH_API_VERSION}};
-    tree["machine"]  = {{"cores", std::thread::hardware_concurrency()},
-                        {"processes", record.n_processes},
-                        {"threads per process", record.n_threads},
-                        {"BLAS threads per process", record.blas_threads}};
+    tree["versions"] = {{"squeal", version}, {"revision", record.revision}};
+    for (const auto &[library, its_version] : library_versions())
+      tree["versions"][library] = its_version;
+    tree["machine"] = {{"cores", std::thread::hardware_concurrency()},
+                       {"processes", record.n_processes},
+                       {"threads per process", record.n_threads},
+                       {"BLAS threads per process", record.blas_threads}};
     for (const auto &[name, count] : record.counts)
       tree["counts"][name] = count;
     for (const auto &[name, value] : record.quantities)

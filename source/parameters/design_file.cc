@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 #include <squeal/parameters/csv_file.h>
 #include <squeal/parameters/design_plan.h>
 

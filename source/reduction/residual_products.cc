@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 #include <squeal/linear_algebra/dense_lu.h>
 #include <squeal/linear_algebra/multivector.h>
 #include <squeal/linear_algebra/sparse_matrix.h>

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 #include <squeal/studies/steps/imported_modes.h>
 
 namespace Squeal

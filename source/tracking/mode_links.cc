@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 #include <squeal/base/groups.h>
 #include <squeal/linear_algebra/orthonormal_basis.h>
 #include <squeal/tracking/mode_links.h>

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "boxes.h"
 #include "faces.h"
 #include "solutions.h"

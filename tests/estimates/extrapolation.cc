@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 #include <squeal/estimates/discretisation_error.h>
 
 #include <gtest/gtest.h>

@@ -1,4 +1,6 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Runs the program on damaged input and reports failures.
 
     SQUEAL=build/sanitizers/squeal tests/fuzz/fuzz.py [--cases N] [--first N] [--seed N] [--kind KIND]

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """A little of what fuzz.py makes up."""
 
 import unittest

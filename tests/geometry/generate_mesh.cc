@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "scenes.h"
 
 #include <squeal/geometry/mesh_check.h>

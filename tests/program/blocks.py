@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """A geometry small enough to be changed line by line."""
 
 # Two blocks one upon the other; tests add names.

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Hexahedral meshes of a disc with pads, which tests spoil in the ways of real meshes."""
 
 import math

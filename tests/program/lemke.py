@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Steady sliding solved again from exported matrices by Lemke's complementary pivoting."""
 
 import csv

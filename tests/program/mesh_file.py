@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Changes meshes in Gmsh's text format 4.1."""
 
 

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Runs the executable on a small scene and reads what it leaves.
 
 The environment variable SQUEAL names the executable, MPIRUN the launcher of several processes.

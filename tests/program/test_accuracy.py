@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """`Study = accuracy` as a user runs it, on a small scene."""
 
 import math

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Studies of designs, held against single runs of the same designs, interrupted and resumed, and told of designs that make no sense."""
 
 import os

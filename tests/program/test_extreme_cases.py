@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """A representative part of the cases of doc/extremes.md, judged as there, and the table of that page."""
 
 import os

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Parameters far from the default: the spectrum is right and complete, or the run ends early and says why.
 
 What is found is compared with eigenvalues of the exported matrices that scripts/extremes/oracle.py refines with 64 bits of mantissa.

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Designs that share a mesh: solved by one basis, held against the same designs solved alone, interrupted and resumed, and told apart
 from designs that cannot share it."""
 

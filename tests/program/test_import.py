@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """scripts/import_mesh.py: the same mesh from several pre-processors gives the same modes; nothing is guessed or left out silently."""
 
 import itertools

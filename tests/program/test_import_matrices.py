@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """From matrices of other programs to a study on the command line: the results are SciPy's on the matrices before they were written."""
 
 import math

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """`Study = ingredients`: rows of all parts of the model, their effects beside runs of their own, and the cheapest model."""
 
 import math

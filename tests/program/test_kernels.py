@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """A sweep of twelve pins refines at the same places with the kernels of BLAS for other processors."""
 
 import os

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Results are never lost: two runs into one folder, files of the user, killed runs, full disks, folders that cannot be written."""
 
 import json

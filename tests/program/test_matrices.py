@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The exported matrices: form, structure, and the eigenvalues that others find from them."""
 
 import csv

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Meshes as other programs write them: names, tags, handedness, and what is said of those that cannot be read."""
 
 import math

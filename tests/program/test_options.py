@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Options that print and compute nothing, and the parameter files that come with the program."""
 
 from program import SOURCE, ProgramTest, contents

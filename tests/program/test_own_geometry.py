@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Anybody's geometry: what it may do, what is understood of it, what is refused, and what is kept of it."""
 
 import re

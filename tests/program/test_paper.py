@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The comparison with the paper, scripts/paper.py, of the default model on a coarse mesh."""
 
 import os

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The plots of every study: which there are, what they say of themselves, and what becomes of them."""
 
 import json

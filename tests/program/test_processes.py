@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The same results on several processes as on one: solvers, steady sliding, damping, and a sweep.
 
 These runs are apart from the other tests because they need cores of their own: processes that share theirs with other

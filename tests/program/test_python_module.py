@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The Python module on a run of the program: tables, fields, plots and the report are those of the files."""
 
 import contextlib

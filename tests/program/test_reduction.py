@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The study of reduced bases: sizes, errors, verdicts, and what it refuses."""
 
 import math

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Every refusal: one message that says what, where and what to change, a non-zero exit status, nothing written."""
 
 import os

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Pictures that scripts/render_mode.py and render_contact.py draw of results; those of modes where VTK and a (virtual) screen are there."""
 
 import importlib.util

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """scripts/report.py: what its page says is what the tables say, and a browser shows it."""
 
 import html

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """What a run leaves behind, and that it can be repeated from it."""
 
 import json

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Samples of uncertain parameters: against closed forms, and against runs at full order."""
 
 import json

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Searches for quiet designs: budgets, what they report, held against single runs and full order; interrupted and resumed."""
 
 import re

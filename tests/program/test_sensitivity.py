@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """`Study = sensitivity`: derivatives held against differences of runs with other parameters, and its tables."""
 
 import math

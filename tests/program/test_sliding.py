@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Runs about steady sliding: the state of contact, what it does to the modes, and damping."""
 
 import cmath

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The same eigenvalues by every solver and on several processes, and what friction and its absence do to them."""
 
 import json

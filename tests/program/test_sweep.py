@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Runs that sweep the friction coefficient, held against runs at single friction coefficients."""
 
 import json

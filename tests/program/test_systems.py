@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Systems of matrices in the place of a mesh: against dense eigenvalues and closed forms, written and read back."""
 
 import csv

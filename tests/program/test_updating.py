@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Parameters fitted to measured modes: those of synthetic measurements are found again, and what measurements do not tell is said."""
 
 import collections

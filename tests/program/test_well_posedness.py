@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Growing waves of a sliding pad beside the continuum, which Chebyshev polynomials solve: doc/well_posedness.md."""
 
 import math

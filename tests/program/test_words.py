@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """What the program says: of wrong values and files, of parameters that a run does not use, and of its results."""
 
 import os

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """What counts as zero does not depend on the band, and a verdict knows how many digits an eigenvalue keeps."""
 
 import json

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """A small brake of quadratic tetrahedra whose faces do not match, which tests write in several formats, move and spoil."""
 
 import itertools

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Tests of scripts/check_eigenvalues.py on a small run whose eigenvalues come from a dense solver."""
 
 import pathlib

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """scripts/import_matrices.py: the same matrices from every format give the same system; nothing is guessed."""
 
 import json

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """scripts/import_mesh.py: what Exodus, MED and VTK call volumes and surfaces; formats that are not read are refused."""
 
 import pathlib

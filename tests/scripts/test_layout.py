@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The rooms of the code include only from their own row of the table in doc/structure.md or from rows above."""
 
 import pathlib

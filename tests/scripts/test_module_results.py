@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """squeal.Results and squeal.run(): what the files hold, with a small program in place of squeal."""
 
 import json

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Tests of scripts/paper.py on small tables; tests/program/test_paper.py has its command."""
 
 import csv

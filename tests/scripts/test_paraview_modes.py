@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """What scripts/paraview_modes.py says without ParaView: titles, which mode is meant, and what is refused."""
 
 import pathlib

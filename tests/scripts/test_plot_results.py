@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Tests of squeal.plotting on small tables, where what has to be drawn is known; skipped where matplotlib is missing."""
 
 import math

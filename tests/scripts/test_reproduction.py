@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Tests of scripts/reproduce.sh: what it lists, what agrees and what differs, and that pages say what is quoted from them."""
 
 import importlib

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Formulas of the documentation's site: subscripts and superscripts in text and formulas, none in code."""
 
 import pathlib

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Tests of scripts/slepc_modes.py: its formulations on a small problem beside a dense solver, and which of them fit."""
 
 import math

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """squeal.System: reads and writes systems, solves them, and rejects bad ones with file and entry."""
 
 import json

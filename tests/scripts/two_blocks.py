@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """A run as squeal exports it, made without squeal: a plate on springs rubbed by a block whose top is clamped.
 
 Both are lattices of point masses that springs join along edges and diagonals. The contact normal is z, the plate slides along x, hence b = n x t = y.

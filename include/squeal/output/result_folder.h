@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 #pragma once
 
 #include <squeal/base/progress.h>
@@ -30,6 +32,9 @@ namespace Squeal
     FileSizes                                   files    = {};        ///< what the run has written, but for the record itself
     std::string                                 revision = "unknown"; ///< of the program's sources
   };
+
+  /// Names and versions of the libraries that this build uses.
+  std::vector<std::pair<std::string, std::string>> library_versions();
 
   /// Versions, revision, machine, counts, time and peak memory of each step, and files, as JSON.
   void write_run_record(std::ostream &stream, const RunRecord &record, const Progress &progress);

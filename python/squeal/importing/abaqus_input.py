@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Reads nodes, elements, sets, surfaces and elastic materials of an Abaqus input file with its includes."""
 
 import itertools

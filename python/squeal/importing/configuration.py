@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Reads what the user writes about an import, in YAML or JSON."""
 
 import json

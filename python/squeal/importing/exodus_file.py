@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Reads nodes, element blocks, side sets and node sets of an Exodus II file, of which meshio reads neither names of blocks nor side sets."""
 
 import re

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """A mesh of another pre-processor, from its own input file or from what meshio reads."""
 
 import contextlib

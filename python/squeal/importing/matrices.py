@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Reads matrices from files of other programs: entries by row and column, or by the nodes and their dofs."""
 
 import dataclasses

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """A mesh of another pre-processor as a .msh of squeal: which sets become volumes and faces, and a parameter file."""
 
 import collections

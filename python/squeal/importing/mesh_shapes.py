@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """What the readers of meshes share: shapes of elements and their faces."""
 
 import functools

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Reads nodes and elements of Nastran bulk data in free, small and large fields; sets of elements are those of a property."""
 
 import collections

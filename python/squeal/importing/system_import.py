@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """A system from matrices of other programs, as a configuration says."""
 
 import csv

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """What accuracy costs: errors of meshes, elements and bases over time."""
 
 from squeal.plotting import style

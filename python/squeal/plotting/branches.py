@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Frequencies and divergence rates over the friction coefficient, as in figures 7 to 9 of the paper."""
 
 import math

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Modes over the friction coefficient, as a sweep writes them: branches and their thresholds."""
 
 import dataclasses

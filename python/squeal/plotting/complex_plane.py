@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The complex plane, as in figure 6 of the paper: divergence rate over frequency."""
 
 import dataclasses

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """What each variable of a study of designs does to the onset of squeal and to the largest divergence rate."""
 
 import math

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """What each part of a model changes at most, beside the accuracy asked for, and what the variant costs."""
 
 import math

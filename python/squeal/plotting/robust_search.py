@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """A search with uncertain parameters: its history, and the goal over the variables."""
 
 from squeal.plotting import style

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Clouds of modes over uncertain parameters, the distribution of the largest divergence rate, and the parameters that decide it."""
 
 import math

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """What one per cent of each parameter changes of the divergence rates of the growing modes."""
 
 import math

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The cells of a stability map: their edges, limits between them, regions of one leading mode and places for its name."""
 
 import collections

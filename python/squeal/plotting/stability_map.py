@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Stability over the friction coefficient and the load or the rotation speed."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """What all plots have in common: colours, marks, sizes, and the key below the panels."""
 
 import math

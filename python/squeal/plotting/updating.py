@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Differences between computed and measured frequencies before and after a fit."""
 
 from squeal.plotting import style

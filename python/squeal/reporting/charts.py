@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Colours, axes and numbers of the charts of a page."""
 
 import math

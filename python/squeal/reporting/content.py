@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """What a page says of a run: verdict, sections, tables, what was checked, and how to repeat it. Everything is read from the results, nothing is
 computed anew.
 

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The page of a study of designs: where squeal begins, how fast it grows, and which values make a design quiet."""
 
 from squeal.reporting.charts import WEAK, digits, layout, number, plain, short

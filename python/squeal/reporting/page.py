@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """One HTML file with everything in it: data, drawing libraries, styles."""
 
 import base64

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The page of a search with uncertain parameters: the best design, by its samples and by others."""
 
 from squeal.reporting.charts import STABLE, UNSTABLE, digits, layout, number, plain, short

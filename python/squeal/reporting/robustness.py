@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The page of a study of uncertain parameters: how probable squeal is. Plots: modes of all samples and influential parameters."""
 
 from squeal.reporting.charts import digits, number

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The page of a search: its history, the best design with what full order says of it, and all designs over their variables."""
 
 import re

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """What one per cent of each parameter changes: of modes, of thresholds; pairs of modes that coalesce, and how accurate derivatives are."""
 
 from squeal.reporting.charts import FREQUENCY, RATE, STABLE, UNSTABLE, digits, layout, number, short

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Surfaces of disc and pins with the shapes of growing modes, small enough for a page."""
 
 import base64

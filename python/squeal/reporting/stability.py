@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The page of a run at one friction coefficient: damping ratios, modes that grow, and where their energy enters."""
 
 from squeal.reporting import shapes

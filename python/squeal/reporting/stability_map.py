@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The map of a sweep: stability over the friction coefficient and the load or the rotation speed."""
 
 import math

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The page of a sweep: growth over the friction coefficient, and which modes meet."""
 
 from squeal.reporting.charts import FREQUENCY, PALE, RATE, UNSTABLE, WEAK, digits, end_of_band, layout, names_apart, number, short

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The page of a fit to measured modes. Plot: differences of frequencies before and after."""
 
 from squeal.reporting.charts import digits, number

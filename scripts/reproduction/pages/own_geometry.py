@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """doc/own_geometry.md"""
 
 from reproduction.numbers import Number, entry, of_mode

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """doc/reduction.md, but for times"""
 
 from reproduction.numbers import Number, entry, several

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """doc/sensitivity.md"""
 
 from reproduction.numbers import Number, entry, of_mode

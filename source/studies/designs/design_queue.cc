@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 #include <squeal/base/exceptions.h>
 #include <squeal/base/file_writing.h>
 #include <squeal/base/worker_process.h>

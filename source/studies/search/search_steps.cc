@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 #include <squeal/base/exceptions.h>
 #include <squeal/studies/search/search_steps.h>
 #include <squeal/studies/steps/imported_modes.h>

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 #include <squeal/linear_algebra/multivector.h>
 #include <squeal/studies/sensitivity/sensitivity_results.h>
 

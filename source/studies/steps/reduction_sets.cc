@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 #include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/estimates/residual_iteration.h>

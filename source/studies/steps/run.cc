@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 #include <squeal/base/tasks.h>
 #include <squeal/linear_algebra/blas_threads.h>
 #include <squeal/linear_algebra/communication.h>

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 #include <squeal/studies/steps/material_numbers.h>
 #include <squeal/studies/steps/written_system.h>
 #include <squeal/system/expression.h>

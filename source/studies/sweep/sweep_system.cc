@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 #include <squeal/linear_algebra/multivector.h>
 #include <squeal/studies/steps/written_system.h>
 #include <squeal/studies/sweep/sweep_charts.h>
