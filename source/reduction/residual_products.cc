@@ -405,57 +405,65 @@ namespace Squeal
                                                    const ComplexDenseMatrix   &right,
                                                    const ComplexDenseMatrix   &left) const
   {
-    using Matrix     = ProjectedResiduals::Matrix<Number>;
-    const auto stack = [&](const std::vector<Group> &C, const ComplexDenseMatrix &vectors) {
-      const std::vector<ComplexDenseMatrix> rows = group_rows(C, values, lambda, vectors);
-      Eigen::Index                          n    = 0;
-      for (const ComplexDenseMatrix &some : rows)
-        n += some.rows();
-      ComplexDenseMatrix result(n, vectors.cols());
-      n = 0;
-      for (const ComplexDenseMatrix &some : rows)
+    using Matrix = ProjectedResiduals::Matrix<Number>;
+    // Left and right residuals share most groups
+    const std::vector<Group> C = groups(values, false), D = groups(values, true);
+    std::vector<Group>       all = C;
+    std::vector<std::size_t> of_D;
+    for (const Group &group : D)
+      {
+        const auto same = std::find_if(all.begin(), all.end(), [&group](const Group &other) { return other.blocks == group.blocks; });
+        of_D.push_back(same - all.begin());
+        if (same == all.end())
+          all.push_back(group);
+      }
+    std::vector<Eigen::Index> first(1, 0);
+    for (const Group &group : all)
+      first.push_back(first.back() + group.blocks.front().first->n);
+    std::vector<Eigen::Index> rows_of_D;
+    for (const std::size_t g : of_D)
+      for (Eigen::Index i = first[g]; i < first[g + 1]; ++i)
+        rows_of_D.push_back(i);
+
+    // The bracket is symmetric and too large for the processor's cache: half of it is read, once
+    Matrix small(first.back(), first.back());
+    for (std::size_t g = 0; g < all.size(); ++g)
+      for (std::size_t h = 0; h <= g; ++h)
         {
-          result.middleRows(n, some.rows()) = some;
-          n += some.rows();
+          const auto &rows = all[g].blocks, &columns = all[h].blocks;
+          Matrix      sum = Matrix::Zero(first[g + 1] - first[g], first[h + 1] - first[h]);
+          const auto  add = [&](const auto &x, const auto &y) {
+            sum += static_cast<Number>(x.second * y.second) * B.block(x.first->first, y.first->first, x.first->n, y.first->n);
+          };
+          for (std::size_t x = 0; x < rows.size(); ++x)
+            for (std::size_t y = 0; y < (g == h ? x : columns.size()); ++y)
+              add(rows[x], columns[y]);
+          if (g == h)
+            {
+              sum += sum.transpose().eval();
+              for (const auto &x : rows)
+                add(x, x);
+            }
+          small.block(first[g], first[h], sum.rows(), sum.cols()) = sum;
+          if (g != h)
+            small.block(first[h], first[g], sum.cols(), sum.rows()) = sum.transpose();
         }
-      return halves(result);
-    };
-    // add(first, width, block, factor) for every block of W in the groups, which begin at row first of c
-    const auto for_blocks = [](const std::vector<Group> &C, const auto &add) {
-      Eigen::Index first = 0;
-      for (const Group &group : C)
+
+    const auto stack = [&](const std::vector<Group> &some, const ComplexDenseMatrix &vectors) {
+      DenseMatrix result(0, 2 * vectors.cols());
+      for (const ComplexDenseMatrix &rows : group_rows(some, values, lambda, vectors))
         {
-          const int width = group.blocks.front().first->n;
-          for (const auto &[block, factor] : group.blocks)
-            add(first, width, block->first, static_cast<Number>(factor));
-          first += width;
+          result.conservativeResize(result.rows() + rows.rows(), Eigen::NoChange);
+          result.bottomRows(rows.rows()) = halves(rows);
         }
-    };
-    // A C, and Cᵀ A, of a matrix A with as many columns, or rows, as W
-    const auto times = [&](const Matrix &A, const std::vector<Group> &C, const Eigen::Index n) {
-      Matrix result = Matrix::Zero(A.rows(), n);
-      for_blocks(C, [&](const Eigen::Index first, const int width, const int of_block, const Number factor) {
-        result.middleCols(first, width) += factor * A.middleCols(of_block, width);
-      });
-      return result;
-    };
-    const auto transposed_times = [&](const std::vector<Group> &C, const Eigen::Index n, const Matrix &A) {
-      Matrix result = Matrix::Zero(n, A.cols());
-      for_blocks(C, [&](const Eigen::Index first, const int width, const int of_block, const Number factor) {
-        result.middleRows(first, width) += factor * A.middleRows(of_block, width);
-      });
       return result;
     };
     const auto apply = [](const Matrix &A, const DenseMatrix &X) {
       return sparing_zeros(X, [&A](const DenseMatrix &Y) -> DenseMatrix { return (A * Y.cast<Number>()).template cast<double>(); });
     };
-
-    const std::vector<Group> C = groups(values, false), D = groups(values, true);
-    const DenseMatrix        c = stack(C, right), d = stack(D, left);
-    const Matrix             BC = times(B, C, c.rows()), BD = times(B, D, d.rows());
-    return {product_of_halves(d.transpose() * apply(transposed_times(D, d.rows(), BC), c)),
-            hermitian_products(c, apply(transposed_times(C, c.rows(), BC), c)),
-            hermitian_products(d, apply(transposed_times(D, d.rows(), BD), d))};
+    const DenseMatrix c = stack(C, right), d = stack(D, left), products = apply(small.leftCols(c.rows()), c);
+    return {product_of_halves(d.transpose() * products(rows_of_D, Eigen::all)), hermitian_products(c, products.topRows(c.rows())),
+            hermitian_products(d, apply(small(rows_of_D, rows_of_D), d))};
   }
 
   ResidualProducts ProjectedResiduals::products(const ParameterValues      &values,
