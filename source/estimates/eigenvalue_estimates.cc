@@ -45,8 +45,7 @@ namespace Squeal
                                    const ReducedModes   &modes)
   {
     const auto force = [&](const ComplexDenseMatrix &vectors, const bool left) {
-      return force_residuals(system, modes.values, modes.lambda, model.times_basis(vectors.real()), model.times_basis(vectors.imag()),
-                             left);
+      return force_residuals(system, modes.values, modes.lambda, model.basis() * vectors.real(), model.basis() * vectors.imag(), left);
     };
     const MultiVector R = force(modes.right, false), L = force(modes.left, true);
     return {R, L, inverse.solve_frictionless(R), inverse.solve_frictionless(L)};

@@ -112,7 +112,7 @@ namespace Squeal
   void remove_basis(const SparseMatrix &M, const ReducedModel &model, MultiVector &X)
   {
     for (unsigned int pass = 0; pass < 2; ++pass)
-      X -= model.times_basis(model.basis_products(M * X));
+      X -= model.basis() * gram(model.basis(), M * X);
   }
 
   ReducedModel starting_model(const CoupledSystem  &system,
@@ -167,12 +167,7 @@ namespace Squeal
     if (columns.empty())
       return {};
     MultiVector X = compress(M, model, selected(all, columns));
-    if (!model.is_restricted())
-      return orthonormalize_if_any(M, &model.basis(), std::move(X), dependence_tolerance, nullptr, FirstProjection::done);
-    auto result = orthonormalize_if_any(M, nullptr, std::move(X), dependence_tolerance);
-    if (result)
-      remove_basis(M, model, *result);
-    return result;
+    return orthonormalize_if_any(M, &model.basis(), std::move(X), dependence_tolerance, nullptr, FirstProjection::done);
   }
 
   GrownBasis grow_residual_basis(const CoupledSystem            &system,

@@ -76,8 +76,6 @@ namespace Squeal
   ReducedModel ReducedModel::restricted(const DenseMatrix &Z) const
   {
     ReducedModel result(*system);
-    result.parent = T ? T : parent;
-    result.Z      = T ? Z : DenseMatrix(this->Z * Z);
     for (const auto &[factor, motions] : factors)
       result.factors[factor] = motions * Z;
     for (std::size_t k = 0; k < matrices.size(); ++k)
@@ -85,55 +83,6 @@ namespace Squeal
         result.matrices[k] = Z.transpose() * matrices[k] * Z;
     result.find_norms();
     return result;
-  }
-
-  ReducedModel ReducedModel::restricted(const SystemMember &member, const DenseMatrix &Z) const
-  {
-    ReducedModel result(member.system);
-    result.parent  = T;
-    result.Z       = Z;
-    const auto sum = [&](const TermShares &shares, const auto &part) {
-      DenseMatrix total = DenseMatrix::Zero(part(shares.front().first).rows(), size());
-      for (const auto &[number, factor] : shares)
-        total += factor * part(number);
-      return total;
-    };
-    for (std::size_t k = 0; k < result.matrices.size(); ++k)
-      {
-        const Term       &term   = member.system.terms[k];
-        const TermShares &shares = member.shares[k];
-        if (term.matrix)
-          {
-            result.matrices[k] =
-              Z.transpose() * sum(shares, [&](const std::size_t number) -> const DenseMatrix & { return matrices[number]; }) * Z;
-            continue;
-          }
-        result.factors[term.left.get()] = motions(*term.left) * Z;
-        if (term.right != term.left)
-          result.factors[term.right.get()] =
-            sum(shares, [&](const std::size_t number) -> const DenseMatrix & { return motions(*system->terms[number].right); }) * Z;
-        if (term.weights.empty())
-          result.matrices[k] = result.motions(*term.left).transpose() * result.motions(*term.right);
-      }
-    result.find_norms();
-    return result;
-  }
-
-  MultiVector ReducedModel::times_basis(const DenseMatrix &X) const
-  {
-    return T ? *T * X : *parent * DenseMatrix(Z * X);
-  }
-
-  DenseMatrix ReducedModel::basis_products(const MultiVector &Y) const
-  {
-    return T ? gram(*T, Y) : DenseMatrix(Z.transpose() * gram(*parent, Y));
-  }
-
-  const MultiVector &ReducedModel::basis() const
-  {
-    if (!T)
-      T = std::make_shared<MultiVector>(*parent * Z);
-    return *T;
   }
 
   const ReducedModel::Modal &ReducedModel::modal() const

@@ -34,9 +34,13 @@ namespace Squeal
     }
   } // namespace
 
-  ProjectedResiduals::ProjectedResiduals(const CoupledSystem &system, const UpdatedInverse &inverse, const ParameterValues &values)
+  ProjectedResiduals::ProjectedResiduals(const CoupledSystem   &system,
+                                         const UpdatedInverse  &inverse,
+                                         const double           shift,
+                                         const ParameterValues &values)
     : system(system)
     , inverse(inverse)
+    , shift(shift)
   {
     const ParameterValues with_friction = system.at(1., values);
     for (std::size_t k = 0; k < system.terms.size(); ++k)
@@ -55,15 +59,6 @@ namespace Squeal
                 n_factor_columns += factor->rank();
               }
         }
-  }
-
-  ProjectedResiduals::ProjectedResiduals(const CoupledSystem   &system,
-                                         const UpdatedInverse  &inverse,
-                                         const double           shift,
-                                         const ParameterValues &values)
-    : ProjectedResiduals(system, inverse, values)
-  {
-    this->shift = shift;
     // What S has of a term whose coefficient is a number leaves nothing
     sparse.erase(std::remove_if(sparse.begin(), sparse.end(),
                                 [](const Sparse &part) { return is_symmetric(*part.term, 0) && part.term->coefficient.is_constant(); }),
@@ -132,82 +127,6 @@ namespace Squeal
       part.projected = model.projected(part.number);
     pencil      = model.stiffness() + shift * shift * model.mass();
     is_prepared = false;
-  }
-
-  ProjectedResiduals ProjectedResiduals::restricted(const SystemMember &member, const DenseMatrix &Z) const
-  {
-    ProjectedResiduals result(member.system, inverse, member.system.values);
-    const std::size_t  n = sparse.size();
-    result.shift         = shift;
-    result.r             = static_cast<int>(Z.cols());
-    result.pencil        = Z.transpose() * pencil * Z;
-
-    // Each term of the member as a sum of those of the family, its stiffness without S
-    std::vector<Sparse>              parts;
-    std::vector<std::vector<double>> shares;
-    for (Sparse &part : result.sparse)
-      {
-        std::vector<double> c(n, 0.);
-        for (std::size_t i = 0; i < n; ++i)
-          {
-            for (const auto &[number, factor] : member.shares[part.number])
-              if (sparse[i].number == number)
-                c[i] += factor;
-            if (is_symmetric(*part.term, 0))
-              c[i] -= sparse[i].sigma;
-          }
-        if (std::all_of(c.begin(), c.end(), [](const double x) { return x == 0.; }))
-          continue;
-        parts.push_back(part);
-        shares.push_back(c);
-      }
-    result.sparse = std::move(parts);
-
-    // Rows of the member's factors from those of the family's
-    const auto part_of = [&](const Factor &factor, const auto &rows) -> DenseMatrix {
-      if (const std::size_t same = number_of(*factor.factor); same < factors.size())
-        return rows(factors[same]);
-      DenseMatrix sum;
-      for (std::size_t k = 0; k < member.system.terms.size(); ++k)
-        if (member.system.terms[k].right.get() == factor.factor)
-          for (const auto &[number, weight] : member.shares[k])
-            {
-              const DenseMatrix part = weight * rows(factors[number_of(*system.terms[number].right)]);
-              sum                    = sum.size() == 0 ? part : DenseMatrix(sum + part);
-            }
-      return sum;
-    };
-    const auto combined = [&](const DenseMatrix &X) {
-      DenseMatrix Y(result.n_factor_columns, X.cols());
-      for (const Factor &f : result.factors)
-        Y.middleRows(f.first, f.factor->rank()) =
-          part_of(f, [&](const Factor &g) -> DenseMatrix { return X.middleRows(g.first, g.factor->rank()); });
-      return Y;
-    };
-    result.factor_gram = combined(combined(factor_gram).transpose());
-    for (const Factor &f : result.factors)
-      result.motions[f.factor] = part_of(f, [&](const Factor &g) -> DenseMatrix { return motions.at(g.factor); }) * Z;
-
-    const auto weighted = [&](const std::vector<double> &c, const auto &matrix) {
-      DenseMatrix sum;
-      for (std::size_t i = 0; i < n; ++i)
-        if (c[i] != 0.)
-          sum = sum.size() == 0 ? DenseMatrix(c[i] * matrix(i)) : DenseMatrix(sum + c[i] * matrix(i));
-      return sum;
-    };
-    for (std::size_t t = 0; t < result.sparse.size(); ++t)
-      {
-        Sparse &part         = result.sparse[t];
-        part.projected       = Z.transpose() * weighted(shares[t], [&](const std::size_t i) { return sparse[i].projected; }) * Z;
-        part.factor_products = combined(weighted(shares[t], [&](const std::size_t i) { return sparse[i].factor_products; })) * Z;
-        for (std::size_t l = 0; l < result.sparse.size(); ++l)
-          part.products.push_back(
-            Z.transpose() *
-            weighted(shares[t],
-                     [&](const std::size_t i) { return weighted(shares[l], [&](const std::size_t j) { return sparse[i].products[j]; }); }) *
-            Z);
-      }
-    return result;
   }
 
   int ProjectedResiduals::number_of(const LowRankFactor &factor) const
@@ -518,7 +437,7 @@ namespace Squeal
       {
         const DenseMatrix rows = C.middleRows(block.first, block.n);
         if (block.sparse >= 0)
-          WC += *sparse[block.sparse].term->matrix * model.times_basis(rows);
+          WC += *sparse[block.sparse].term->matrix * model.basis() * rows;
         else if (block.term != nullptr)
           WC += *factors[block.factor].factor * (motions.at(&block.term->source(!block.in_right)) * rows);
         else

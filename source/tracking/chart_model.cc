@@ -12,7 +12,6 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 namespace Squeal
@@ -88,20 +87,6 @@ namespace Squeal
   {
     residuals.extend(model);
   }
-
-  ChartModel::ChartModel(const CoupledSystem  &member,
-                         const UpdatedInverse &inverse,
-                         const double          shift,
-                         ReducedModel          model,
-                         ProjectedResiduals    residuals,
-                         const double          largest_circular_frequency)
-    : system(member)
-    , inverse(inverse)
-    , shift(shift)
-    , largest_circular_frequency(largest_circular_frequency)
-    , model(std::move(model))
-    , residuals(std::move(residuals))
-  {}
 
   void ChartModel::prepare() const
   {
@@ -236,23 +221,6 @@ namespace Squeal
         modes.push_back({system.at(set.point.friction_coefficient, set.point.values), lambda,
                          with_rows(orthonormal_in_clusters(set.chart->right(Eigen::all, set.modes), lambda), model.size()),
                          with_rows(orthonormal_in_clusters(set.chart->left(Eigen::all, set.modes), lambda), model.size())});
-      }
-    if (model.is_restricted())
-      {
-        // Of a member of a family, at full order
-        std::vector<MultiVector> directions;
-        for (const ProjectedResiduals::ModesAt &set : modes)
-          {
-            ReducedModes reduced;
-            reduced.values = set.values;
-            reduced.lambda = set.lambda;
-            reduced.right  = set.right;
-            reduced.left   = set.left;
-            std::vector<int> all(set.lambda.size());
-            std::iota(all.begin(), all.end(), 0);
-            directions.push_back(residual_directions(residual_vectors(system, inverse, model, reduced), reduced, all));
-          }
-        return Squeal::new_vectors(system, model, directions);
       }
     std::optional<MultiVector> responses = residuals.principal_responses(model, modes, compression_tolerance);
     if (!responses)

@@ -34,15 +34,8 @@ namespace Squeal
     /// Appends the columns of @p vectors, n × k, to the basis.
     void extend(MultiVector vectors);
 
-    /// The model on the basis TZ, Z: r × k; it refers to this basis.
+    /// The matrices of the model on the basis TZ, Z: r × k; it has no basis of its own.
     ReducedModel restricted(const DenseMatrix &Z) const;
-
-    /**
-     * The model of a member of the family that is this one's system, on the basis TZ; it refers to this basis.
-     *
-     * @param Z r × k
-     */
-    ReducedModel restricted(const SystemMember &member, const DenseMatrix &Z) const;
 
     /// r
     int size() const
@@ -50,17 +43,10 @@ namespace Squeal
       return mass_matrix.rows();
     }
 
-    /// T, n × r. All processes must call.
-    const MultiVector &basis() const;
-
-    /// T X and TᵀY; the basis of a restricted model need not be formed for them. All processes must call.
-    MultiVector times_basis(const DenseMatrix &X) const;
-    DenseMatrix basis_products(const MultiVector &Y) const;
-
-    /// Whether the basis is a part of another model's.
-    bool is_restricted() const
+    /// T, n × r; not of a restricted model.
+    const MultiVector &basis() const
     {
-      return parent != nullptr;
+      return *T;
     }
 
     const CoupledSystem &full_order() const
@@ -102,13 +88,11 @@ namespace Squeal
     void find_norms();
 
     const CoupledSystem                         *system;
-    mutable std::shared_ptr<MultiVector>         T;      ///< null as long as nobody asks for that of a restricted model:
-    std::shared_ptr<const MultiVector>           parent; ///< TZ of these
-    DenseMatrix                                  Z;
+    std::shared_ptr<MultiVector>                 T;        ///< null in a restricted model
     std::vector<DenseMatrix>                     matrices; ///< TᵀAT of each term; empty for those with weights
     std::map<const LowRankFactor *, DenseMatrix> factors;
     DenseMatrix                                  mass_matrix, stiffness_matrix;
-    mutable std::shared_ptr<const Modal>         modes; ///< null as long as nobody asks
+    mutable std::shared_ptr<const Modal>         modes; ///< null until modal() is called
   };
 
   struct ReducedModel::Modal

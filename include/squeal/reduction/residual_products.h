@@ -62,10 +62,6 @@ namespace Squeal
     /// Forgets the basis; the next extend() begins another one.
     void clear();
 
-    /// The residuals of a member of the family that is this one's system, of the model that ReducedModel::restricted() makes with the same
-    /// Z. S stays that of the family: by what the stiffness of the member differs from it, energies of residuals do, too.
-    ProjectedResiduals restricted(const SystemMember &member, const DenseMatrix &Z) const;
-
     /// Puts the bracket together from its parts, which products() needs; it does so itself, but not for several threads that call it.
     void prepare() const;
 
@@ -92,9 +88,6 @@ namespace Squeal
     std::optional<MultiVector> principal_responses(const ReducedModel &model, const std::vector<ModesAt> &modes, double tolerance) const;
 
   private:
-    /// Finds the parts of W without their numbers; @p values as above.
-    ProjectedResiduals(const CoupledSystem &system, const UpdatedInverse &inverse, const ParameterValues &values);
-
     /// Coefficients y, or z of the transposed problem, with zeros for columns that are not theirs; real and imaginary halves.
     DenseMatrix coefficients(const ParameterValues                   &values,
                              const std::vector<std::complex<double>> &lambda,

@@ -228,7 +228,4 @@ namespace Squeal
    * @param members values of the parameters of the terms for each member, of one at least
    */
   TermFamily term_family(const std::vector<Term> &terms, const std::vector<ParameterValues> &members);
-
-  /// A term of a member as a sum of terms of its family: their numbers and factors.
-  using TermShares = std::vector<std::pair<std::size_t, double>>;
 } // namespace Squeal

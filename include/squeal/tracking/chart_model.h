@@ -47,21 +47,6 @@ namespace Squeal
                const MultiVector    &real_modes,
                double                largest_circular_frequency);
 
-    /**
-     * The model of a member of a family from what is projected of that. It has no real modes to be compressed around, and does
-     * not grow: its family does.
-     *
-     * @param inverse   factor of the family, which serves all members
-     * @param model     restricted to the @p member
-     * @param residuals likewise
-     */
-    ChartModel(const CoupledSystem  &member,
-               const UpdatedInverse &inverse,
-               double                shift,
-               ReducedModel          model,
-               ProjectedResiduals    residuals,
-               double                largest_circular_frequency);
-
     /// Leaves out modes that decay faster than this [1/s]; at first none is.
     void leave_out_faster_decay(const double rate)
     {
@@ -145,7 +130,7 @@ namespace Squeal
   private:
     const CoupledSystem  &system;
     const UpdatedInverse &inverse;
-    const MultiVector    *real_modes = nullptr; ///< null: of a member of a family
+    const MultiVector    *real_modes;
     double                shift, largest_circular_frequency, largest_decay = std::numeric_limits<double>::infinity();
     bool                  allows_cancellation = true;
     ReducedModel          model;

@@ -226,8 +226,8 @@ namespace Squeal
     const DesignFamily::Member member     = family.solve(design);
     double                     largest_mu = 0.;
     DesignResult               result     = begun_result(family.scene);
-    take_over(*member.model, member.chart, reference, largest_mu, result);
-    compare_counts(*member.model, member.chart, member.n_counted, result);
+    take_over(member.model, member.chart, reference, largest_mu, result);
+    compare_counts(member.model, member.chart, member.n_counted, result);
     sort_thresholds(result);
     result.seconds = stopwatch.cost().seconds;
     return result;

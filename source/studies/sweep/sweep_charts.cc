@@ -152,7 +152,7 @@ namespace Squeal
     // tell between which modes there are thresholds; which of them are uncertain is not asked, for that hangs on rounding.
     ChartOptions coarse        = options;
     coarse.maximum_refinements = 0;
-    if (model.reduced && !model.reduced->reduced().is_restricted())
+    if (model.reduced)
       sharpen(model, line, stability_chart(grid, evaluate, coarse), grid);
     SweepChart            result{chart_of(model, line, grid, evaluate), {}, {}, {}};
     const StabilityChart &chart  = result.chart;

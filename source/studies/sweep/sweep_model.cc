@@ -82,21 +82,12 @@ namespace Squeal
                              [](const OperatingPoint &a, const OperatingPoint &b) { return damping_of(a) < damping_of(b); });
   }
 
-  SweepModel::SweepModel(const SweepPlan            &plan,
-                         const ContactRegime        &regime,
-                         Run                        &run,
-                         FrictionlessModes           frictionless,
-                         std::unique_ptr<ChartModel> reduced)
+  SweepModel::SweepModel(const SweepPlan &plan, const ContactRegime &regime, Run &run, FrictionlessModes frictionless)
     : plan(plan)
     , regime(regime)
     , run(run)
     , largest_circular_frequency(circular_frequency(run.parameters.discretization.maximum_frequency))
     , frictionless(std::move(frictionless))
-    , reduced(std::move(reduced))
-  {}
-
-  SweepModel::SweepModel(const SweepPlan &plan, const ContactRegime &regime, Run &run, FrictionlessModes frictionless)
-    : SweepModel(plan, regime, run, std::move(frictionless), nullptr)
   {
     start();
   }
@@ -176,33 +167,24 @@ namespace Squeal
         return {distribute(X.real(), map), distribute(X.imag(), map)};
       }
     const ComplexDenseMatrix X = with_rows(point.right(Eigen::all, modes), reduced->size());
-    return {reduced->reduced().times_basis(X.real()), reduced->reduced().times_basis(X.imag())};
+    const MultiVector       &T = reduced->reduced().basis();
+    return {T * DenseMatrix(X.real()), T * DenseMatrix(X.imag())};
   }
 
   std::vector<ShapeShares> SweepModel::shape_shares(const ChartPoint &point, const std::vector<int> &modes) const
   {
     const ReducedModel &model = reduced->reduced();
-    if (!model.is_restricted())
+    // The basis only grows once modes are named
+    const int n_known = reference_products.empty() ? 0 : static_cast<int>(reference_products.front().cols());
+    if (n_known < model.size())
       {
-        // The basis only grows once modes are named
-        const int n_known = reference_products.empty() ? 0 : static_cast<int>(reference_products.front().cols());
-        if (n_known < model.size())
-          {
-            const auto added = frictionless.reference_products(view(model.basis(), n_known, model.size() - n_known));
-            reference_products.resize(added.size());
-            for (std::size_t i = 0; i < added.size(); ++i)
-              reference_products[i] = append_columns(reference_products[i], added[i]);
-          }
-        return Squeal::shape_shares(frictionless.references(), reference_products, model.mass(),
-                                    halves(with_rows(point.right(Eigen::all, modes), model.size())));
+        const auto added = frictionless.reference_products(view(model.basis(), n_known, model.size() - n_known));
+        reference_products.resize(added.size());
+        for (std::size_t i = 0; i < added.size(); ++i)
+          reference_products[i] = append_columns(reference_products[i], added[i]);
       }
-    std::vector<ShapeShares> shares;
-    for_column_blocks(static_cast<int>(modes.size()), [&](const int first, const int n) {
-      const auto [re, im] = shapes(point, {modes.begin() + first, modes.begin() + first + n});
-      const auto some     = frictionless.shape_shares(re, &im);
-      shares.insert(shares.end(), some.begin(), some.end());
-    });
-    return shares;
+    return Squeal::shape_shares(frictionless.references(), reference_products, model.mass(),
+                                halves(with_rows(point.right(Eigen::all, modes), model.size())));
   }
 
   std::vector<ModeLabel> SweepModel::labels(const ChartPoint &point, const std::vector<int> &modes) const

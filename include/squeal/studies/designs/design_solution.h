@@ -49,12 +49,11 @@ namespace Squeal
   std::string family_key(const Parameters &design);
 
   /**
-   * A reduced model that serves several designs on one mesh, which differ in moduli, densities, Rayleigh's coefficients, stiffnesses of
-   * mounts, load and speed: they are coefficients θ of terms of one system Q(λ; p) = Σ θ_k(p) λ^p A_k.
+   * One reduced model for several designs on one mesh, which differ in moduli, densities, Rayleigh coefficients, stiffnesses of mounts, load
+   * and speed: coefficients θ of the terms of one system Q(λ; p) = Σ θ_k(p) λ^p A_k. Each design is a line of a sweep plan.
    *
-   * Its basis starts from the real modes in the middle of the family and grows by the residuals of each design in turn until these meet the
-   * tolerance, by one factor of the middle, so that the modes of a design follow from small matrices: S⁻¹ of the middle stands for K_c⁻¹ of
-   * the design in its errors. What is found for a design depends on those before it.
+   * The basis starts from the real modes in the middle of the family, is compressed at the last friction coefficients of all designs, and
+   * grows where a point misses Sweep/Tolerance. The results of a design depend on those solved before it, within the tolerance.
    */
   class DesignFamily
   {
@@ -63,45 +62,29 @@ namespace Squeal
     /// outlive it.
     DesignFamily(const std::vector<Parameters> &designs, Run &run);
 
-    /// A design's chart of branches and thresholds, with its model; they refer to each other.
+    /// The chart of a design by the model of the family.
     struct Member
     {
-      std::size_t                 design = 0;
-      std::unique_ptr<Run>        run;
-      std::unique_ptr<SweepPlan>  plan;
-      SystemMember                system;
-      std::unique_ptr<SweepModel> model;
-      SweepChart                  chart;
-      int                         n_counted = 0; ///< real modes in the band by inertia
-
-      // By all vectors of the family:
-      DenseMatrix                 Z; ///< M-orthonormal coordinates of the basis of the family, the first those of real modes
-      std::unique_ptr<ChartModel> whole;
+      SweepModel &model;
+      SweepChart  chart;
+      int         n_counted; ///< real modes in the band by inertia
     };
 
-    /// Grows the basis for a design and follows its modes over the friction coefficients of its sweep. Throws SolverError if the design is
-    /// too far from the others for one basis.
+    /// Follows the modes of a design over the friction coefficients of its sweep. Throws SolverError if the design is too far from the
+    /// others for one basis.
     Member solve(std::size_t design);
 
     Scene scene;
 
   private:
-    void                        find_whole_model(Member &member) const;
-    std::unique_ptr<ChartModel> restricted(const SystemMember &member, const DenseMatrix &Z) const;
+    std::vector<OperatingPoint> points_of(std::size_t design) const;
 
-    /// A point by all vectors of the family, which grow until it meets the tolerance.
-    ChartPoint accurate_point(const OperatingPoint &point, Member &member);
+    /// Evaluates points to the tolerance; @p training as in error_controlled_sweep().
+    void solve(const std::vector<OperatingPoint> &points, const std::vector<int> &training);
 
-    /// Adds to the basis of a member, coordinates in its Z, the principal parts of what it lacks of the modes of some points.
-    void learn(const std::vector<ChartPoint> &charts, double compression, DenseMatrix &basis, const Member &member) const;
-
-    const std::vector<Parameters>      &designs;
-    Run                                &run;
-    const double                        largest_circular_frequency; ///< end of the band [rad/s]
-    TermFamily                          terms;
-    FrictionlessModes                   middle; ///< with the system of the family
-    std::unique_ptr<ReducedModel>       model;
-    std::unique_ptr<ProjectedResiduals> residuals;
+    Run                        &run;
+    std::unique_ptr<SweepPlan>  plan;
+    std::unique_ptr<SweepModel> model;
   };
 
   /// The sweep of a design: what only adds to the results of a single run is left out.

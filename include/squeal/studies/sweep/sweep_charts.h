@@ -96,13 +96,6 @@ namespace Squeal
     /// Starts a reduced model from the modes without friction and damping.
     SweepModel(const SweepPlan &plan, const ContactRegime &regime, Run &run, FrictionlessModes frictionless);
 
-    /// From what is found already; @p reduced is a model of the system that @p frictionless has.
-    SweepModel(const SweepPlan            &plan,
-               const ContactRegime        &regime,
-               Run                        &run,
-               FrictionlessModes           frictionless,
-               std::unique_ptr<ChartModel> reduced);
-
     /// Modes of a line, known ones or new ones. All processes must call.
     std::vector<ChartPoint> evaluate(int line, const std::vector<double> &friction_coefficients);
 
@@ -147,7 +140,7 @@ namespace Squeal
     /// Begins the reduced model.
     void start();
 
-    /// What names the modes of a point, from products with the basis or, where the basis is only a part of another one, at full order.
+    /// What names the modes of a point, from products with the basis.
     std::vector<ShapeShares> shape_shares(const ChartPoint &point, const std::vector<int> &modes) const;
 
     /// Labels without a basis: numbers of the most similar modes at the first point that is labelled.
@@ -187,8 +180,7 @@ namespace Squeal
     ModeLabel   label;
   };
 
-  /// Follows the branches of a line over known friction coefficients, with their thresholds, as a step of the run. For these the basis
-  /// grows, unless it is a part of another one.
+  /// Follows the branches of a line over known friction coefficients, with their thresholds, for which the basis grows, as a step of the run.
   SweepChart follow_branches(SweepModel &model, int line, const std::vector<double> &friction_coefficients);
 
   /// Follows the branches on all lines but those of the map, with their thresholds, as steps of the run; appends to the @p charts of each line.
