@@ -12,7 +12,7 @@ namespace Squeal
       "CSV file of measured modes, to which the parameters in Designs/Variables are fitted within their ranges. Columns `state` "
       "(component: free disc, or pins with sliding contact; coupled: without friction; complex: at Operation/Friction coefficient), "
       "`label`, `frequency [Hz]`; optional `member`, `deviation [Hz]`, `damping ratio [%]`, `damping deviation [%]`. The program looks "
-      "in the folder of the parameter file, then in the current directory.");
+      "in the folder of the parameter file, then in the current directory. Empty: the measured modes of the system file.");
     declarations.add("Tolerance", tolerance, "none", "The fit ends when steps are smaller than this fraction of the ranges.",
                      {1e-12, 1e-3});
     declarations.add("Iterations", n_iterations, "none",

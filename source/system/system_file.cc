@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#include <squeal/base/enum_table.h>
+#include "system_format.h"
+
 #include <squeal/base/exceptions.h>
 #include <squeal/base/text.h>
 #include <squeal/linear_algebra/communication.h>
@@ -19,24 +20,9 @@
 
 namespace Squeal
 {
-  template <>
-  inline constexpr EnumName<TermKind> enum_table<TermKind>[] = {{TermKind::body, "body"},
-                                                                {TermKind::mount, "mount"},
-                                                                {TermKind::rotation, "rotation"},
-                                                                {TermKind::friction, "friction"},
-                                                                {TermKind::circulatory, "circulatory"},
-                                                                {TermKind::contact_damping, "contact damping"},
-                                                                {TermKind::modal_damping, "modal damping"}};
-
-  template <>
-  inline constexpr EnumName<Symmetry> enum_table<Symmetry>[] = {{Symmetry::symmetric, "symmetric"}, {Symmetry::skew, "skew"}};
-
   namespace
   {
     using Json = nlohmann::ordered_json;
-
-    constexpr const char *format         = "squeal system";
-    constexpr int         format_version = 1;
 
     /// Largest |A − Aᵀ| or |A + Aᵀ| of a claimed symmetry, relative to the largest entry.
     constexpr double symmetry_tolerance = 1e-12;
@@ -521,9 +507,11 @@ namespace Squeal
         throw FileError(text("not JSON: ", error.what()), "file " + file.string(), "correct the file at this position");
       }
     const JsonEntry root(json, file.string(), "");
-    root.check_keys({"format", "version", "description", "parameters", "terms", "groups", "positions", "displacements", "reduction"});
-    if (root["format"].as<std::string>("a text") != format || root["version"].integer() != format_version)
-      root.refuse("not a system file of this version", text("write \"format\": \"", format, "\", \"version\": ", format_version));
+    root.check_keys(
+      {"format", "version", "description", "parameters", "terms", "groups", "positions", "displacements", "measured modes", "reduction"});
+    if (root["format"].as<std::string>("a text") != system_format || root["version"].integer() != system_format_version)
+      root.refuse("not a system file of this version",
+                  text("write \"format\": \"", system_format, "\", \"version\": ", system_format_version));
 
     SystemFile system;
     system.path        = file.string();
@@ -541,107 +529,13 @@ namespace Squeal
       system.points = reader.read_points(root);
     else if (root.has("displacements"))
       root["displacements"].refuse("displacements of points that are not given", "give `positions`, too");
+    if (root.has("measured modes"))
+      system.measured_modes = (file.parent_path() / root["measured modes"].as<std::string>("a file name")).string();
     return system;
   }
 
   RowMap ShapePoints::rows_of(const int n_points, const MPI_Comm communicator)
   {
     return RowMap(3 * RowMap::even(n_points, communicator).n_local(), communicator);
-  }
-
-  /// A dense matrix in Matrix Market form.
-  static std::string matrix_market_array(const DenseMatrix &A)
-  {
-    std::ostringstream content;
-    content << "%%MatrixMarket matrix array real general\n" << A.rows() << ' ' << A.cols() << '\n';
-    for (const double entry : A.reshaped())
-      content << exact_text(entry) << '\n';
-    return content.str();
-  }
-
-  void write_system(const std::vector<Term> &terms, const ParameterValues &weights, const SystemNotes &notes, const WriteFile &write)
-  {
-    Json json = {{"format", format}, {"version", format_version}};
-    if (!notes.description.empty())
-      json["description"] = notes.description;
-    json["parameters"] = Json::object();
-    for (const FileParameter &parameter : notes.parameters)
-      {
-        Json &entry = json["parameters"][parameter.name];
-        entry       = {{"value", parameter.value}, {"lower", parameter.lower}, {"upper", parameter.upper}, {"unit", parameter.unit}};
-        if (!parameter.description.empty())
-          entry["description"] = parameter.description;
-      }
-
-    const auto write_text = [&](const std::string &name, const std::string &content) {
-      write(name, [&content](std::ostream &stream) { stream << content; });
-    };
-    std::map<const void *, std::string> names; // of files, by what is in them
-    const auto                          factor_file = [&](const LowRankFactor &factor) {
-      std::string &name = names[&factor];
-      if (name.empty())
-        {
-          name               = text("factor_", names.size(), ".mtx");
-          const auto &sparse = factor.sparse_transpose();
-          if (sparse)
-            write_text(name, matrix_market(*transpose(*sparse)));
-          else
-            {
-              const MultiVector columns    = factor.columns(0, factor.rank());
-              const RowMap      column_map = RowMap::even(factor.rank(), columns.map().communicator());
-              write_text(name, matrix_market(SparseMatrix(columns.map(), column_map, [&](const int i, SparseMatrix::Row &row) {
-                           for (int j = 0; j < columns.n_columns(); ++j)
-                             row.emplace_back(j, columns(i, j));
-                         })));
-            }
-        }
-      return name;
-    };
-    json["terms"] = Json::array();
-    for (const Term &term : terms)
-      {
-        Json entry = {{"name", term.name}, {"power", term.power}, {"coefficient", term.coefficient.text()}};
-        if (term.matrix)
-          {
-            std::string &name = names[term.matrix.get()];
-            if (name.empty())
-              {
-                name = text("matrix_", json["terms"].size() + 1, ".mtx");
-                write_text(name, matrix_market(*term.matrix, term.symmetry == Symmetry::symmetric ? MatrixMarketSymmetry::symmetric :
-                                                                                                    MatrixMarketSymmetry::general));
-              }
-            entry["matrix"]   = name;
-            entry["symmetry"] = term.symmetry == Symmetry::symmetric ? "symmetric" : "skew";
-          }
-        else
-          {
-            entry["left"]  = factor_file(*term.left);
-            entry["right"] = factor_file(*term.right);
-            if (!term.weights.empty())
-              {
-                const std::string          name = text("weights_", json["terms"].size() + 1, ".mtx");
-                const std::vector<double> &d    = weights.at(term.weights);
-                write_text(name, matrix_market_array(d.empty() ? DenseMatrix::Zero(term.left->rank(), 1) : DenseMatrix(as_column(d))));
-                entry["weights"] = name;
-              }
-          }
-        entry["kind"] = to_string(term.kind);
-        json["terms"].push_back(entry);
-      }
-    for (const DofGroup &group : notes.groups)
-      for (const auto &[first, last] : group.ranges)
-        json["groups"][group.name].push_back({first + 1, last + 1});
-    if (notes.points)
-      {
-        json["positions"]     = "positions.mtx";
-        json["displacements"] = "displacements.mtx";
-        write_text("positions.mtx", matrix_market_array(notes.points->positions));
-        write_text("displacements.mtx", matrix_market(*notes.points->displacements));
-      }
-    if (notes.reduction)
-      json["reduction"] = {{"basis", notes.reduction->basis},
-                           {"points", notes.reduction->points},
-                           {"tolerance", notes.reduction->tolerance}};
-    write_text("system.json", json.dump(2) + "\n");
   }
 } // namespace Squeal

@@ -53,7 +53,8 @@ namespace Squeal
     ParameterValues            weights; ///< of terms of low rank
     std::vector<DofGroup>      groups;
     std::optional<ShapePoints> points;
-    RowMap                     map; ///< of the dofs
+    std::string                measured_modes; ///< CSV file for a fit; empty: none
+    RowMap                     map;            ///< of the dofs
 
     const FileParameter *find(const std::string &parameter) const;
 

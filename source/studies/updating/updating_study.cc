@@ -335,10 +335,11 @@ namespace Squeal
       run.finish();
     }
 
-    MeasuredModes given_modes(const Parameters &parameters)
+    /// The modes of Updating/Measured modes, else those of a file that a system names.
+    MeasuredModes given_modes(const Parameters &parameters, const std::string &of_system = "")
     {
       const std::string  &name   = parameters.updating.measured_modes;
-      const MeasuredModes result = read_measured_modes(name.empty() ? "" : input_path(name, parameters.geometry.directory));
+      const MeasuredModes result = read_measured_modes(name.empty() ? of_system : input_path(name, parameters.geometry.directory));
       const double        end    = parameters.discretization.maximum_frequency;
       for (const MeasuredMode &mode : result.modes)
         if (mode.frequency.value > end)
@@ -402,8 +403,8 @@ namespace Squeal
 
   static void run_updating_of_system(Run &run)
   {
-    const MeasuredModes                measured = given_modes(run.parameters);
     const SystemFile                   file     = read_system(run);
+    const MeasuredModes                measured = given_modes(run.parameters, file.measured_modes);
     const std::vector<FittedParameter> parameters =
       fitted_parameters(run.parameters.designs, [&](const std::string &name) { return value_in(file, name, run.parameters); });
     for (const FittedParameter &parameter : parameters)
