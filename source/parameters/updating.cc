@@ -13,6 +13,15 @@ namespace Squeal
       "(component: free disc, or pins with sliding contact; coupled: without friction; complex: at Operation/Friction coefficient), "
       "`label`, `frequency [Hz]`; optional `member`, `deviation [Hz]`, `damping ratio [%]`, `damping deviation [%]`. The program looks "
       "in the folder of the parameter file, then in the current directory. Empty: the measured modes of the system file.");
+    declarations.add(
+      "Sensors", sensors,
+      "CSV file of sensors and measured shapes, by which modes are paired instead of labels. Columns `x [m]`, `y [m]`, `z [m]`, "
+      "`direction x`, `direction y`, `direction z`, and a column for each shape, with the label that the mode has in the "
+      "measured modes (for an imaginary part, the label followed by ` imaginary`). Looked for like the measured modes.");
+    declarations.add("Least MAC", least_overlap, "-",
+                     "A measured shape whose modal assurance criterion with all computed modes is smaller has no counterpart, which is an "
+                     "error.",
+                     {0., 1.});
     declarations.add("Tolerance", tolerance, "none", "The fit ends when steps are smaller than this fraction of the ranges.",
                      {1e-12, 1e-3});
     declarations.add("Iterations", n_iterations, "none",

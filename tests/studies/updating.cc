@@ -107,17 +107,19 @@ TEST(FitStatistics, NamesWhatTheDataDoNotDetermine)
 
 TEST(MeasuredModes, HaveTheirCounterparts)
 {
-  const Counterpart mean = counterpart_of(measured_mode(MeasuredState::coupled, "F1"), computed_modes);
+  const Counterpart mean = counterpart_of(measured_mode(MeasuredState::coupled, "F1"), {}, computed_modes);
   EXPECT_NEAR(mean.frequency, 20. / (2. * M_PI), 1e-12);
   EXPECT_NEAR(mean.frequency_rates.front(), 2. / (2. * M_PI), 1e-12);
-  EXPECT_NEAR(counterpart_of(measured_mode(MeasuredState::coupled, "F1", "lowest"), computed_modes).frequency, 10. / (2. * M_PI), 1e-12);
-  EXPECT_NEAR(counterpart_of(measured_mode(MeasuredState::coupled, "F1", "highest"), computed_modes).frequency, 30. / (2. * M_PI), 1e-12);
-  EXPECT_NEAR(counterpart_of(measured_mode(MeasuredState::coupled, "F1", "2"), computed_modes).frequency, 30. / (2. * M_PI), 1e-12);
-  EXPECT_NEAR(counterpart_of(measured_mode(MeasuredState::coupled, "A0-4"), computed_modes).frequency, 60. / (2. * M_PI), 1e-12);
-  EXPECT_NEAR(counterpart_of(measured_mode(MeasuredState::coupled, "A0-4 +"), computed_modes).frequency, 70. / (2. * M_PI), 1e-12);
+  EXPECT_NEAR(counterpart_of(measured_mode(MeasuredState::coupled, "F1", "lowest"), {}, computed_modes).frequency, 10. / (2. * M_PI),
+              1e-12);
+  EXPECT_NEAR(counterpart_of(measured_mode(MeasuredState::coupled, "F1", "highest"), {}, computed_modes).frequency, 30. / (2. * M_PI),
+              1e-12);
+  EXPECT_NEAR(counterpart_of(measured_mode(MeasuredState::coupled, "F1", "2"), {}, computed_modes).frequency, 30. / (2. * M_PI), 1e-12);
+  EXPECT_NEAR(counterpart_of(measured_mode(MeasuredState::coupled, "A0-4"), {}, computed_modes).frequency, 60. / (2. * M_PI), 1e-12);
+  EXPECT_NEAR(counterpart_of(measured_mode(MeasuredState::coupled, "A0-4 +"), {}, computed_modes).frequency, 70. / (2. * M_PI), 1e-12);
 
   // d(3/5) for λ = −3 + 4i and λ' = 1 + 2i: −(16 · 1 + 3 · 4 · 2)/125
-  const Counterpart damped = counterpart_of(measured_mode(MeasuredState::complex, "A0-4 -"), computed_modes);
+  const Counterpart damped = counterpart_of(measured_mode(MeasuredState::complex, "A0-4 -"), {}, computed_modes);
   EXPECT_NEAR(damped.damping_ratio, 0.6, 1e-12);
   const auto ratio = [](const double t) {
     const std::complex<double> lambda(-3. + t, 4. + 2. * t);
@@ -125,6 +127,6 @@ TEST(MeasuredModes, HaveTheirCounterparts)
   };
   EXPECT_NEAR(damped.damping_ratio_rates.front(), (ratio(1e-5) - ratio(-1e-5)) / 2e-5, 1e-9);
 
-  EXPECT_THROW(counterpart_of(measured_mode(MeasuredState::coupled, "F1", "3"), computed_modes), SolverError);
-  EXPECT_THROW(counterpart_of(measured_mode(MeasuredState::component, "F1"), computed_modes), SolverError);
+  EXPECT_THROW(counterpart_of(measured_mode(MeasuredState::coupled, "F1", "3"), {}, computed_modes), SolverError);
+  EXPECT_THROW(counterpart_of(measured_mode(MeasuredState::component, "F1"), {}, computed_modes), SolverError);
 }

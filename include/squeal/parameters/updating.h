@@ -12,9 +12,9 @@ namespace Squeal
   struct UpdatingParameters
   {
     std::string  measured_modes;       ///< CSV: modes with their frequencies and damping ratios
-    std::string  sensors;              ///< CSV: places and directions of sensors, and shapes there; empty: modes are named by labels
+    std::string  sensors;              ///< CSV: positions and directions of sensors, and measured shapes; empty: modes are paired by labels
     double       tolerance     = 1e-8; ///< step at which the fit ends, part of each range [-]
-    double       least_overlap = 0.5;  ///< MAC below which a shape has no partner [-]
+    double       least_overlap = 0.5;  ///< MAC below which a shape has no counterpart [-]
     unsigned int n_iterations  = 50;   ///< at most
 
     void declare(Declarations &declarations);

@@ -189,30 +189,29 @@ namespace Squeal
         }
       return result;
     }
-
-    /// Positions of the unclamped nodes, and the matrix from coupled dofs to their displacements.
-    ShapePoints points_of(const Model &model, const SparseMatrix &kernel)
-    {
-      std::vector<Node>   own;
-      std::vector<double> places;
-      for (const Node &node : model.nodes())
-        if (node.is_own && !node.is_clamped())
-          {
-            own.push_back(node);
-            places.insert(places.end(), node.position.begin(), node.position.end());
-          }
-      const RowMap       rows(3 * static_cast<int>(own.size()), model.communicator());
-      const SparseMatrix of_nodes(rows, model.free_map(), [&](const int i, SparseMatrix::Row &row) {
-        own[i / 3].for_each_dof(i % 3, [&](const int dof, const double weight) { row.emplace_back(dof, weight); });
-      });
-      ShapePoints        result{DenseMatrix(rows.n() / 3, 3), multiply(of_nodes, kernel)};
-      Eigen::Index       point = 0;
-      for (const std::vector<double> &part : dealii::Utilities::MPI::all_gather(model.communicator(), places))
-        for (std::size_t i = 0; i < part.size(); i += 3)
-          result.positions.row(point++) << part[i], part[i + 1], part[i + 2];
-      return result;
-    }
   } // namespace
+
+  ShapePoints displacements_of_nodes(const Model &model)
+  {
+    std::vector<Node>   own;
+    std::vector<double> places;
+    for (const Node &node : model.nodes())
+      if (node.is_own && !node.is_clamped())
+        {
+          own.push_back(node);
+          places.insert(places.end(), node.position.begin(), node.position.end());
+        }
+    const RowMap rows(3 * static_cast<int>(own.size()), model.communicator());
+    ShapePoints  result{DenseMatrix(rows.n() / 3, 3),
+                       std::make_shared<SparseMatrix>(rows, model.free_map(), [&](const int i, SparseMatrix::Row &row) {
+                         own[i / 3].for_each_dof(i % 3, [&](const int dof, const double weight) { row.emplace_back(dof, weight); });
+                       })};
+    Eigen::Index point = 0;
+    for (const std::vector<double> &part : dealii::Utilities::MPI::all_gather(model.communicator(), places))
+      for (std::size_t i = 0; i < part.size(); i += 3)
+        result.positions.row(point++) << part[i], part[i + 1], part[i + 2];
+    return result;
+  }
 
   FileParameter friction_parameter(const Parameters &parameters)
   {
@@ -246,9 +245,11 @@ namespace Squeal
       named.parameters.size() > 1 ? system_with_parameters(linearisation, named, parameters) : linearisation.coupled;
     const Model        &model  = *linearisation.scene->model;
     const SparseMatrix &kernel = *linearisation.coupled.kernel;
+    ShapePoints         points = displacements_of_nodes(model);
+    points.displacements       = multiply(*points.displacements, kernel);
     write_system(system.terms, system.values,
                  {named.parameters, "coupled system, displacements in m, forces in N; groups exclude the dofs eliminated by the contact",
-                  groups_of_bodies(model, kernel), points_of(model, kernel)},
+                  groups_of_bodies(model, kernel), points},
                  folder, run);
   }
 

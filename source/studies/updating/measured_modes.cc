@@ -174,7 +174,7 @@ namespace Squeal
   {
     const CsvFile file = read_csv(path, parameter_of_modes, "measured mode");
     check_columns(file);
-    MeasuredModes result{{}, true};
+    MeasuredModes result;
     for (std::size_t i = 0; i < file.rows.size(); ++i)
       result.modes.push_back(mode_of(Row(file, i)));
     const auto has_deviation = [](const MeasuredMode &mode) { return mode.frequency.deviation > 0.; };
@@ -193,12 +193,39 @@ namespace Squeal
     return result;
   }
 
-  Counterpart counterpart_of(const MeasuredMode &measured, const std::vector<ComputedMode> &modes)
+  /// The mode of the state whose shape at the sensors is most similar to that of a measured mode.
+  static std::pair<const ComputedMode *, double> most_similar(const MeasuredMode              &mode,
+                                                              const MeasuredModes             &measured,
+                                                              const std::vector<ComputedMode> &modes)
   {
-    std::vector<const ComputedMode *> found  = modes_of_label(measured, modes);
-    const auto                        refuse = [&](const std::string &what) {
+    std::pair<const ComputedMode *, double> result{nullptr, 0.};
+    const Eigen::VectorXcd                 &shape = measured.sensors.shapes.at(mode.label);
+    for (const ComputedMode &candidate : modes)
+      if (candidate.state == mode.state && candidate.at_sensors.size() > 0)
+        if (const double mac = modal_assurance_criterion(shape, candidate.at_sensors); mac > result.second)
+          result = {&candidate, mac};
+    if (!(result.second >= measured.least_mac))
+      throw SolverError(text("no computed mode is similar to the shape ", in_quotes(mode.label), ": the largest MAC is ", result.second,
+                             result.first != nullptr ? " (" + result.first->label + ")" : ""),
+                        mode.where, "check positions and directions of the sensors, remove the mode, or lower Updating/Least MAC");
+    return result;
+  }
+
+  Counterpart counterpart_of(const MeasuredMode &measured, const MeasuredModes &all, const std::vector<ComputedMode> &modes)
+  {
+    Counterpart                       result{};
+    std::vector<const ComputedMode *> found;
+    if (all.sensors.has(measured.label))
+      {
+        const auto [mode, mac] = most_similar(measured, all, modes);
+        found                  = {mode};
+        result.mac             = mac;
+      }
+    else
+      found = modes_of_label(measured, modes);
+    const auto refuse = [&](const std::string &what) {
       throw SolverError(text(what, " among the ", to_string(measured.state), " modes in the band"), measured.where,
-                                               "write one of the labels " + labels_of(measured.state, modes) + ", or raise Band/Maximum frequency");
+                        "write one of the labels " + labels_of(measured.state, modes) + ", or raise Band/Maximum frequency");
     };
     if (found.empty())
       refuse("there is no mode " + in_quotes(measured.label));
@@ -210,7 +237,7 @@ namespace Squeal
           refuse(text("member ", place + 1, " of ", in_quotes(measured.label), " does not exist: there are ", found.size()));
         found = {found[place]};
       }
-    Counterpart  result{};
+    result.label        = found.front()->label;
     const auto   n      = found.front()->derivatives.size();
     const double weight = 1. / static_cast<double>(found.size());
     result.frequency_rates.assign(n, 0.);

@@ -73,6 +73,16 @@ namespace Squeal
     return result;
   }
 
+  ComplexDenseMatrix at_sensors(const std::shared_ptr<const SparseMatrix> &rows, const MultiVector &re, const MultiVector *im)
+  {
+    if (rows == nullptr)
+      return ComplexDenseMatrix(0, re.n_columns());
+    ComplexDenseMatrix result = replicate(*rows * re).cast<std::complex<double>>();
+    if (im != nullptr)
+      result += std::complex<double>(0., 1.) * replicate(*rows * *im);
+    return result;
+  }
+
   // ----------------------------------------------------------------------- of a system file
 
   ModesAtValues modes_of_file(const SystemFile                   &file,
@@ -83,7 +93,15 @@ namespace Squeal
     if (measured.has(MeasuredState::component))
       throw ParameterError("a system file has no component modes", "parameter Updating/Measured modes",
                            "use the states coupled and complex only");
-    return [&](const std::vector<double> &values) {
+    std::shared_ptr<const SparseMatrix> sensors; // rows of their responses
+    if (!measured.sensors.shapes.empty())
+      {
+        if (!file.points)
+          throw ParameterError("the system has no points for the sensors", "file " + file.path,
+                               "add `positions` and `displacements`, or pair all modes by labels");
+        sensors = measured.sensors.rows(*file.points);
+      }
+    return [&, sensors](const std::vector<double> &values) {
       GivenSystem given{file, {}, {}, 0.};
       auto        others = run.parameters.system.values;
       for (std::size_t p = 0; p < parameters.size(); ++p)
@@ -109,11 +127,15 @@ namespace Squeal
           std::vector<BodyRates> rates(parameters.size());
           for (std::size_t p = 0; p < parameters.size(); ++p)
             rates[p].add_along(terms, system.at(given.value), {{parameters[p].name, {1.}}});
-          const SymmetricModes &real        = frictionless->real;
-          const Derivatives     derivatives = real_mode_derivatives(real.eigenvalues, *real.vectors, rates);
+          const SymmetricModes    &real        = frictionless->real;
+          const Derivatives        derivatives = real_mode_derivatives(real.eigenvalues, *real.vectors, rates);
+          const ComplexDenseMatrix responses   = at_sensors(sensors, *real.vectors);
           for (std::size_t j = 0; j < real.eigenvalues.size(); ++j)
-            result.push_back(
-              {MeasuredState::coupled, to_string(frictionless->labels[j]), {0., std::sqrt(real.eigenvalues[j])}, derivatives[j]});
+            result.push_back({MeasuredState::coupled,
+                              to_string(frictionless->labels[j]),
+                              {0., std::sqrt(real.eigenvalues[j])},
+                              derivatives[j],
+                              responses.col(static_cast<Eigen::Index>(j))});
         }
       if (measured.has(MeasuredState::complex))
         {
@@ -124,10 +146,12 @@ namespace Squeal
           std::vector<ComplexDenseMatrix> N;
           for (const FittedParameter &parameter : parameters)
             N.push_back(products.along(at, {{parameter.name, {1.}}}));
-          const auto       &lambda      = friction.modes.lambda;
-          const Derivatives derivatives = complex_mode_derivatives(lambda, N, products.by_lambda(at));
+          const auto              &lambda      = friction.modes.lambda;
+          const Derivatives        derivatives = complex_mode_derivatives(lambda, N, products.by_lambda(at));
+          const ComplexDenseMatrix responses   = at_sensors(sensors, *friction.modes.real_part, friction.modes.imaginary_part.get());
           for (std::size_t j = 0; j < lambda.size(); ++j)
-            result.push_back({MeasuredState::complex, to_string(friction.labels[j]), lambda[j], derivatives[j]});
+            result.push_back({MeasuredState::complex, to_string(friction.labels[j]), lambda[j], derivatives[j],
+                              responses.col(static_cast<Eigen::Index>(j))});
         }
       return result;
     };

@@ -6,6 +6,7 @@
 #include <squeal/sensitivity/mesh_motions.h>
 #include <squeal/studies/sensitivity/sensitivity_results.h>
 #include <squeal/studies/steps/system_family.h>
+#include <squeal/studies/steps/written_system.h>
 #include <squeal/studies/updating/updating.h>
 
 #include <deal.II/base/utilities.h>
@@ -141,6 +142,8 @@ namespace Squeal
         for (std::size_t p = 0; p < parameters.size(); ++p)
           rates.push_back(rates_of(p, values[p], design, sliding));
 
+        if (!measured.sensors.shapes.empty())
+          sensors = measured.sensors.rows(displacements_of_nodes(*scene.model));
         std::vector<ComputedMode> result;
         add_real_modes(modes, rates, design, result);
         if (measured.has(MeasuredState::complex))
@@ -284,27 +287,35 @@ namespace Squeal
             of_bodies.back().add_along(bodies.terms, bodies.values, rate.bodies);
             of_bodies.back().add(rate.terms, bodies.values);
           }
-        const auto add = [&](const MeasuredState state, const std::string &label, const double square, const auto &derivatives) {
-          result.push_back({state, label, {0., std::sqrt(square)}, derivatives});
+        const auto add = [&](const MeasuredState state, const std::string &label, const double square, const auto &derivatives,
+                             const Eigen::VectorXcd &responses) {
+          result.push_back({state, label, {0., std::sqrt(square)}, derivatives, responses});
         };
         const double omega_max = circular_frequency(design.discretization.maximum_frequency), largest = omega_max * omega_max;
         if (measured.has(MeasuredState::component))
           {
             std::map<const ComponentModes *, std::vector<std::vector<std::complex<double>>>> derivatives;
+            std::map<const ComponentModes *, ComplexDenseMatrix>                             responses;
             for (const ComponentModes *set : modes.references())
               if (set->vectors)
-                derivatives[set] = real_mode_derivatives(set->eigenvalues, *set->vectors, of_bodies);
+                {
+                  derivatives[set] = real_mode_derivatives(set->eigenvalues, *set->vectors, of_bodies);
+                  responses[set]   = at_sensors(sensors, *set->vectors);
+                }
             for (const ListedComponentMode &mode : listed_component_modes(modes, largest))
               if (const auto found = derivatives.find(mode.set); found != derivatives.end())
-                add(MeasuredState::component, to_string(mode.label), mode.set->eigenvalues[mode.number], found->second[mode.number]);
+                add(MeasuredState::component, to_string(mode.label), mode.set->eigenvalues[mode.number], found->second[mode.number],
+                    responses[mode.set].col(mode.number));
           }
         if (measured.has(MeasuredState::coupled))
           {
-            const SymmetricModes &real = modes.real;
-            const auto            derivatives =
-              real_mode_derivatives(real.eigenvalues, *modes.linearisation.coupled.kernel * *real.vectors, of_bodies);
+            const SymmetricModes    &real        = modes.real;
+            const MultiVector        shapes      = *modes.linearisation.coupled.kernel * *real.vectors;
+            const auto               derivatives = real_mode_derivatives(real.eigenvalues, shapes, of_bodies);
+            const ComplexDenseMatrix responses   = at_sensors(sensors, shapes);
             for (std::size_t j = 0; j < n_in_band(real.eigenvalues, largest); ++j)
-              add(MeasuredState::coupled, to_string(modes.labels[j]), real.eigenvalues[j], derivatives[j]);
+              add(MeasuredState::coupled, to_string(modes.labels[j]), real.eigenvalues[j], derivatives[j],
+                  responses.col(static_cast<Eigen::Index>(j)));
           }
       }
 
@@ -327,10 +338,14 @@ namespace Squeal
             if (!rate.terms.empty())
               N.back() += TermProducts(rate.terms, apart).pencil(bodies.values);
           }
-        const auto &lambda      = friction.modes.lambda;
-        const auto  derivatives = complex_mode_derivatives(lambda, N, of_contact.by_lambda(values));
+        const auto              &lambda      = friction.modes.lambda;
+        const auto               derivatives = complex_mode_derivatives(lambda, N, of_contact.by_lambda(values));
+        const SparseMatrix      &kernel      = *coupled.kernel;
+        const MultiVector        re = kernel * *friction.modes.real_part, im = kernel * *friction.modes.imaginary_part;
+        const ComplexDenseMatrix responses = at_sensors(sensors, re, &im);
         for (std::size_t j = 0; j < lambda.size(); ++j)
-          result.push_back({MeasuredState::complex, to_string(friction.labels[j]), lambda[j], derivatives[j]});
+          result.push_back({MeasuredState::complex, to_string(friction.labels[j]), lambda[j], derivatives[j],
+                            responses.col(static_cast<Eigen::Index>(j))});
       }
 
       Scene                              &scene;
@@ -341,6 +356,7 @@ namespace Squeal
       std::string                         meshed; ///< text_without_coefficients() of the current mesh
       BodyTerms                           bodies;
       std::vector<Action>                 actions;
+      std::shared_ptr<const SparseMatrix> sensors; ///< rows of their responses; null without sensors
     };
   } // namespace
 

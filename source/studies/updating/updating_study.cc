@@ -26,10 +26,16 @@ namespace Squeal
       const MeasuredMode *mode;
       bool                is_damping; ///< else a frequency
       double              start = 0., updated = 0.;
+      Counterpart         partner = {}; ///< after the fit
 
       const Measured &measured() const
       {
         return is_damping ? *mode->damping_ratio : mode->frequency;
+      }
+
+      double of(const Counterpart &computed) const
+      {
+        return is_damping ? computed.damping_ratio : computed.frequency;
       }
 
       double residual(const double computed) const
@@ -77,19 +83,19 @@ namespace Squeal
       }
 
       /// Residuals and computed numbers.
-      std::pair<Residuals, std::vector<double>> evaluate(const std::vector<double> &x)
+      std::pair<Residuals, std::vector<Counterpart>> evaluate(const std::vector<double> &x)
       {
         const std::vector<ComputedMode> modes = modes_at(values_at(x));
         const auto                      m = static_cast<Eigen::Index>(numbers.size()), n = static_cast<Eigen::Index>(parameters.size());
         Residuals                       result{Eigen::VectorXd(m), DenseMatrix(m, n)};
-        std::vector<double>             computed;
+        std::vector<Counterpart>        computed;
         for (Eigen::Index i = 0; i < m; ++i)
           {
             const FittedNumber       &number = numbers[i];
-            const Counterpart         found  = counterpart_of(*number.mode, modes);
+            const Counterpart         found  = counterpart_of(*number.mode, measured, modes);
             const std::vector<double> rates  = number.is_damping ? found.damping_ratio_rates : found.frequency_rates;
-            computed.push_back(number.is_damping ? found.damping_ratio : found.frequency);
-            result.r[i] = number.residual(computed.back());
+            computed.push_back(found);
+            result.r[i] = number.residual(number.of(found));
             for (Eigen::Index p = 0; p < n; ++p)
               result.J(i, p) = rates[p] * (parameters[p].upper - parameters[p].lower) / number.measured().deviation;
           }
@@ -118,14 +124,14 @@ namespace Squeal
         return r.norm() / std::sqrt(static_cast<double>(r.size()));
       }
 
-      const std::vector<FittedParameter>                &parameters;
-      const MeasuredModes                               &measured;
-      std::vector<FittedNumber>                          numbers;
-      const ModesAtValues                                modes_at;
-      Run                                               &run;
-      int                                                n_evaluations = 0;
-      std::map<std::vector<double>, std::vector<double>> computed_at; ///< the numbers at each point
-      std::string                                        why_failed; ///< reason at the last point without residuals; empty if there is none
+      const std::vector<FittedParameter>                     &parameters;
+      const MeasuredModes                                    &measured;
+      std::vector<FittedNumber>                               numbers;
+      const ModesAtValues                                     modes_at;
+      Run                                                    &run;
+      int                                                     n_evaluations = 0;
+      std::map<std::vector<double>, std::vector<Counterpart>> computed_at; ///< the numbers at each point
+      std::string why_failed; ///< reason at the last point without residuals; empty if there is none
     };
 
     // --------------------------------------------------------------------- results
@@ -219,7 +225,9 @@ namespace Squeal
                                 {"difference of the start", "%", difference(&Row::start), 3},
                                 {"difference after the fit", "%", difference(&Row::updated), 3},
                                 {"residual of the start", "-", [](const Row &row) { return row.residual(row.start); }, 3},
-                                {"residual after the fit", "-", [](const Row &row) { return row.residual(row.updated); }, 3}},
+                                {"residual after the fit", "-", [](const Row &row) { return row.residual(row.updated); }, 3},
+                                {"computed label", "", [](const Row &row) { return row.partner.label; }},
+                                {"MAC", "-", [](const Row &row) { return Entry(row.partner.mac); }, 3}},
                    numbers);
     }
 
@@ -307,7 +315,7 @@ namespace Squeal
         start.push_back((parameter.start - parameter.lower) / (parameter.upper - parameter.lower));
       const auto [before, computed] = problem.evaluate(start);
       for (std::size_t i = 0; i < computed.size(); ++i)
-        problem.numbers[i].start = computed[i];
+        problem.numbers[i].start = problem.numbers[i].of(computed[i]);
       const Fit fit = least_squares(
         [&, &before = before](const std::vector<double> &x) { return x == start ? std::optional(before) : problem.try_to_evaluate(x); },
         start, options.tolerance, static_cast<int>(options.n_iterations));
@@ -318,7 +326,11 @@ namespace Squeal
                                problem.why_failed.empty() ? "" : "; at some points modes could not be compared: " + problem.why_failed),
                           "Study = updating", "raise Updating/Iterations or Updating/Tolerance, or narrow the ranges of Designs/Variables");
       for (std::size_t i = 0; i < problem.numbers.size(); ++i)
-        problem.numbers[i].updated = problem.computed_at.at(fit.x)[i];
+        {
+          FittedNumber &number = problem.numbers[i];
+          number.partner       = problem.computed_at.at(fit.x)[i];
+          number.updated       = number.of(number.partner);
+        }
       run.count("evaluations", problem.n_evaluations);
       run.progress.finish(text(fit.n_iterations, " iterations, ", problem.n_evaluations, " evaluations, residuals ",
                                UpdatingProblem::root_mean_square(before.r), " to ", UpdatingProblem::root_mean_square(fit.residuals.r),
@@ -338,11 +350,17 @@ namespace Squeal
     /// The modes of Updating/Measured modes, else those of a file that a system names.
     MeasuredModes given_modes(const Parameters &parameters, const std::string &of_system = "")
     {
-      const std::string  &name   = parameters.updating.measured_modes;
-      const MeasuredModes result = read_measured_modes(name.empty() ? of_system : input_path(name, parameters.geometry.directory));
-      const double        end    = parameters.discretization.maximum_frequency;
+      const std::string &name      = parameters.updating.measured_modes;
+      const std::string  directory = parameters.geometry.directory;
+      MeasuredModes      result    = read_measured_modes(name.empty() ? of_system : input_path(name, directory));
+      if (!parameters.updating.sensors.empty())
+        result.sensors = read_sensors(input_path(parameters.updating.sensors, directory));
+      result.least_mac = parameters.updating.least_overlap;
+      const double end = parameters.discretization.maximum_frequency;
       for (const MeasuredMode &mode : result.modes)
-        if (mode.frequency.value > end)
+        if (result.sensors.has(mode.label) && !mode.member.empty())
+          throw ParameterError("the mode is paired by its shape, but it has a member", mode.where, "leave the column `member` empty");
+        else if (mode.frequency.value > end)
           throw ParameterError(
             text("the frequency of ", exact_text(mode.frequency.value), " Hz is above Band/Maximum frequency, ", exact_text(end), " Hz"),
             mode.where, "raise Band/Maximum frequency, or remove the mode");

@@ -10,6 +10,9 @@ namespace Squeal
   /// μ of a mesh as the parameter of a system file: its range is all that is swept, or its value where contact nodes or damping depend on it.
   FileParameter friction_parameter(const Parameters &parameters);
 
+  /// Positions of the nodes that are not clamped, and their displacements by the free dofs of the bodies. Collective.
+  ShapePoints displacements_of_nodes(const Model &model);
+
   /**
    * The coupled system of a mesh as a system file in a folder of the results, as a step of the run: its terms, the bodies as groups of
    * dofs, and the nodes that move as points.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <squeal/base/enum_table.h>
+#include <squeal/studies/updating/sensors.h>
 
 #include <complex>
 #include <optional>
@@ -30,7 +31,8 @@ namespace Squeal
     double value, deviation;
   };
 
-  /// A measured mode and its computed counterpart: one mode with this label, or the mean of all of them.
+  /// A measured mode. Its computed counterpart is the mode most similar to the shape with this label at the sensors; without such a shape,
+  /// one mode with this label, or the mean of all of them.
   struct MeasuredMode
   {
     MeasuredState           state;
@@ -44,9 +46,11 @@ namespace Squeal
   struct MeasuredModes
   {
     std::vector<MeasuredMode> modes;
+    Sensors                   sensors;         ///< none: all modes are paired by label
+    double                    least_mac = 0.5; ///< below this, shapes are not similar [-]
 
     /// No deviations are given: each is the same fraction of its frequency.
-    bool are_relative;
+    bool are_relative = true;
 
     /// Number of frequencies and damping ratios.
     std::size_t n_numbers() const;
@@ -66,18 +70,22 @@ namespace Squeal
   {
     MeasuredState                     state;
     std::string                       label;
-    std::complex<double>              lambda;      ///< [rad/s]
-    std::vector<std::complex<double>> derivatives; ///< dλ/dp [rad/s per unit of p]
+    std::complex<double>              lambda;          ///< [rad/s]
+    std::vector<std::complex<double>> derivatives;     ///< dλ/dp [rad/s per unit of p]
+    Eigen::VectorXcd                  at_sensors = {}; ///< response of each sensor; empty without sensors
   };
 
   /// Computed counterpart of a measured mode and its derivatives with respect to each parameter.
   struct Counterpart
   {
-    double              frequency;                            ///< [Hz]
-    double              damping_ratio;                        ///< [-]
-    std::vector<double> frequency_rates, damping_ratio_rates; ///< per unit of each parameter
+    double                frequency;                            ///< [Hz]
+    double                damping_ratio;                        ///< [-]
+    std::vector<double>   frequency_rates, damping_ratio_rates; ///< per unit of each parameter
+    std::string           label;                                ///< of the mode, or of the first of several
+    std::optional<double> mac;                                  ///< of the shapes at the sensors [-]
   };
 
-  /// Finds the counterpart of a measured mode. Throws SolverError if no mode of the state has the label, or if the member does not exist.
-  Counterpart counterpart_of(const MeasuredMode &measured, const std::vector<ComputedMode> &modes);
+  /// Finds the counterpart of one of the measured modes. Throws SolverError if no mode of the state has the label or a similar shape, or if
+  /// the member does not exist.
+  Counterpart counterpart_of(const MeasuredMode &mode, const MeasuredModes &measured, const std::vector<ComputedMode> &modes);
 } // namespace Squeal

@@ -52,6 +52,11 @@ namespace Squeal
                                                                           const std::vector<ComplexDenseMatrix>   &N,
                                                                           const ComplexDenseMatrix                &D);
 
+  /// Responses of the sensors to mode shapes, n_s × k; no rows without sensors. Collective.
+  ///
+  /// @param rows Sensors::rows(); null without sensors
+  ComplexDenseMatrix at_sensors(const std::shared_ptr<const SparseMatrix> &rows, const MultiVector &re, const MultiVector *im = nullptr);
+
   /// Modes of all measured states and their derivatives, at given values of the fitted parameters. Collective.
   using ModesAtValues = std::function<std::vector<ComputedMode>(const std::vector<double> &values)>;
 
