@@ -7,7 +7,10 @@ import csv
 import math
 import unittest
 
+import numpy as np
+
 from program import ProgramTest, read_table
+from squeal.vtu_file import VtuFile
 import test_systems  # its classes of tests stay there
 
 BENDING = 3000.  # [Hz]
@@ -85,6 +88,41 @@ class OfScene(ProgramTest):
                            "Disc material/Rayleigh beta=1e-7", "Operation/Friction coefficient=0.28")
         self.assert_found(results, values)
         self.assertEqual(sum(row["quantity"] == "damping ratio" for row in read_table(results / "fit.csv")), len(rows))
+
+    def test_shapes_at_sensors(self):
+        """Modes without names: those of fourteen sensors find their counterparts, other sensors do not."""
+        value = 2800.
+        truth = self.run_scene("truth", f"Pin material/Density={value}", "Output/Real mode shapes=true", "Output/Mode shapes=all")
+        random = np.random.default_rng(1)
+        columns, rows = {}, []
+        for state, kind, parts in (("coupled", "real", ("displacement",)), ("complex", "complex", ("displacement_real", "displacement_imag"))):
+            table = [row for row in read_table(truth / f"{kind}_modes.csv") if float(row["frequency [Hz]"]) < BENDING]
+            for number, row in enumerate(table, start=1):
+                path, = [path for path in (truth / "modes").glob(f"{kind}_{number:03d}_*.vtu") if not path.stem.endswith("_contact")]
+                fields = VtuFile(path)
+                if not columns:
+                    chosen = random.choice(len(fields.points), 14, replace=False)
+                    directions = random.standard_normal((len(chosen), 3))
+                    for axis in range(3):
+                        columns[f"{'xyz'[axis]} [m]"] = np.array(fields.points)[chosen, axis]
+                        columns[f"direction {'xyz'[axis]}"] = directions[:, axis]
+                for part, ending in zip(parts, ("", " imaginary")):
+                    columns[f"{state} {number}{ending}"] = -3. * np.sum(fields.field(part)[chosen] * directions, axis=1)
+                rows.append((state, f"{state} {number}", row["frequency [Hz]"]))
+        self.write("modes.csv", csv_text(rows))
+        sensors = csv_text(zip(*columns.values()), columns)
+        self.write("sensors.csv", sensors)
+        results = self.fit("Pin material/Density = 2500 to 3500", "Updating/Sensors=sensors.csv", "Updating/Least MAC=0.6")
+        self.assert_found(results, {"Pin material/Density": value})
+        self.assertGreater(min(float(row["MAC [-]"]) for row in read_table(results / "fit.csv")), 0.999)
+        fit = ["Study=updating", "Updating/Measured modes=modes.csv", "Updating/Sensors=sensors.csv", "Designs/Variables=Pin material/Density = 2500 to 3500"]
+        wrong = {**columns, "coupled 3": random.standard_normal(14)}
+        for content, words in ((csv_text(zip(*wrong.values()), wrong), ["coupled 3", "MAC", "Updating/Least MAC"]),
+                               (sensors.replace("z [m]", "z"), ["`z [m]`", "line 1"]),
+                               (csv_text([*zip(*columns.values()), [1.] * 3 + [0.] * 3 + [1.] * (len(columns) - 6)], columns), ["direction", "line 16"]),
+                               (sensors.replace("complex 2,", "complex 2 real,"), ["complex 2 imaginary"])):
+            self.write("sensors.csv", content)
+            self.assert_refused(words, *fit)
 
     def test_parameters_that_act_alike(self):
         modes = [mode for mode, _ in self.measure(("component",)) if mode[1][0] in "ARC"]
