@@ -198,7 +198,8 @@ TEST(Declarations, SayWhatEveryKindAccepts)
                                                   "Designs/File",
                                                   "Robustness/Distributions",
                                                   "Robustness/Correlations",
-                                                  "Updating/Measured modes"}));
+                                                  "Updating/Measured modes",
+                                                  "Updating/Sensors"}));
 }
 
 TEST(ParameterFiles, WhatIsPrintedReadsBackTheSame)

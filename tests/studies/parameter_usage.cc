@@ -218,7 +218,7 @@ TEST(ParameterUsage, OfEveryStudy)
     {updating(measured),
      {"Updating/", "Designs/"},
      {{"Output/", "Complex modes/Solver", "Complex modes/Shift", "Complex modes/Tolerance", "Complex modes/Iteration", "Designs/Plan",
-       "Designs/File", "Designs/Number", "Designs/Seed", "Designs/Processes"},
+       "Designs/File", "Designs/Number", "Designs/Seed", "Designs/Processes", "Updating/Least MAC"},
       no_sliding,
       undamped}}};
   std::set<std::string> conditional;

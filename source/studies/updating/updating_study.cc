@@ -446,6 +446,7 @@ namespace Squeal
     Study study{"updating", run_updating_study, {"Updating/", "Designs/Variables"}};
     study.rules = {
       {"Output/", [](const Parameters &) { return "the study writes no mode shapes"; }},
+      {"Updating/Least MAC", [](const Parameters &p) { return unless(!p.updating.sensors.empty(), "there are no Updating/Sensors"); }},
       {"Complex modes/Solver", [](const Parameters &) { return "left and right modes come from the residual iteration"; }},
       {"Complex modes/Iteration tolerance", [](const Parameters &) { return "derivatives always use the smallest tolerance"; }},
       {"Complex modes/Maximum basis", [](const Parameters &) -> Reason { return nullptr; }},
