@@ -26,7 +26,7 @@ namespace Squeal
     {
       std::vector<std::string>                                           pins; ///< volumes of pins that may have individual numbers
       std::function<Parameters(const DesignValues &)>                    design;
-      std::function<Parameters(const SamplePlan &, int sample)>          sample;
+      std::function<Parameters(const SamplePlan &, int sample)>          sample;  ///< throws ParameterError for illegal values
       std::function<double(const Parameters &, const std::string &name)> nominal; ///< nominal value of a parameter
       std::function<SampledSystems(const SamplePlan &)>                  systems;
     };
@@ -210,6 +210,13 @@ namespace Squeal
           if (!number.is_relative && nominal_in(lowest, number) != nominal_in(highest, number))
             throw ParameterError(in_quotes(number.parameter) + " varies from design to design, but its distribution is absolute",
                                  number.where, "give the distribution in % of the value in the design");
+        // Before anything is computed: samples at the ends of the ranges
+        for (const DesignValues &corner : {lowest, highest})
+          {
+            const SamplePlan samples = samples_of({corner}, inner);
+            for (int s = 0; s < samples.n(); ++s)
+              space.sample(samples, s);
+          }
       }
 
       /// Builds the model and evaluates the initial designs.
@@ -413,7 +420,11 @@ namespace Squeal
     };
     search_robustly({{},
                      design,
-                     [&](const SamplePlan &plan, const int s) { return system_with_sample(parameters, plan, s); },
+                     [&](const SamplePlan &plan, const int s) {
+                       Parameters result = system_with_sample(parameters, plan, s);
+                       file.values(result.system.values);
+                       return result;
+                     },
                      [&](const Parameters &p, const std::string &name) { return value_in(file, name, p); },
                      [&](const SamplePlan &plan) { return sampled_file(file, plan, run); }},
                     run);
