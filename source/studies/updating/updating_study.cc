@@ -454,8 +454,11 @@ namespace Squeal
       {"Complex modes/Tolerance", [](const Parameters &) { return "of the solver Krylov"; }}};
     study.check = [](const Parameters &p) {
       given_modes(p);
-      parameters_of_scene(p);
+      const std::vector<FittedParameter> parameters = parameters_of_scene(p);
       check_ranges(p, design_variables(p.designs));
+      for (const FittedParameter &parameter : parameters)
+        for (const double end : {parameter.lower, parameter.upper})
+          without_fit(with_design(p, {parameter.name}, {exact_text(end)})).check();
     };
     study.run_of_system = run_updating_of_system;
     return study;
