@@ -11,7 +11,7 @@
 Of all modes, the buttons for the time step through them by frequency [Hz], warped by the real part. Of one mode they play
 --periods of Re(phi e^(lambda t)), so that a growing mode grows; the largest displacement of all is drawn as --size of the disc's radius.
 MODE is a row of complex_modes.csv, counted from 1, or a label; of several modes with that label the one that grows most.
-Disc and pins have the colours of the amplitude; the title says mode, frequency, damping ratio and verdict. Views are iso, top, side
+Disc and pins have the colours of the amplitude; the title says mode, frequency, effective damping ratio and verdict. Views are iso, top, side
 and below; faces: the upper pins seen from the disc, which is left out, with the normal reactions on their contact faces; and
 energy: the same faces with what they add to the divergence rate of a growing mode.
 
@@ -37,10 +37,10 @@ def rows_of(results):
 
 
 def title_of(row):
-    """"A0-4 +,  2353 Hz,  damping ratio -1.36 %,  unstable"."""
+    """"A0-4 +,  2353 Hz,  effective damping ratio -1.36 %,  unstable"."""
     verdict = row.get("verdict") or ("unstable" if row["unstable [-]"] == "1" else "not unstable")
     ratio = float(row["effective damping ratio -2R/omega [%]"])
-    return f"{row['label']},  {float(row['frequency [Hz]']):.1f} Hz,  damping ratio {ratio:.3g} %,  {verdict}"
+    return f"{row['label']},  {float(row['frequency [Hz]']):.1f} Hz,  effective damping ratio {ratio:.3g} %,  {verdict}"
 
 
 def files_of(results):

@@ -74,7 +74,8 @@ Decides whether a disc rubbed by friction pins squeals.
     options.revision = revision;
     options.output   = line.output.value_or("results/" + std::filesystem::path(line.parameter_file).stem().string());
     options.dry_run  = line.dry_run;
-    options.again    = {(std::filesystem::path(".") / line.parameter_file).string()}; // a name that begins with `-` is no option there
+    options.again    = {
+         (std::filesystem::path(".") / line.parameter_file).string()}; // so that a name that begins with `-` is not taken for an option
     for (const std::string &text : line.overrides)
       options.again.push_back("--set=" + text);
     options.designs = line.designs;
@@ -85,15 +86,16 @@ Decides whether a disc rubbed by friction pins squeals.
     run_study(run);
   }
 
-  /// Closed standard streams become /dev/null: files and pipes opened later would take their numbers, and what is printed.
+  /// Redirects closed standard streams to /dev/null: otherwise files and pipes opened later would get their descriptors, and the printed
+  /// output.
   void open_closed_streams()
   {
     for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
-      if (::fcntl(stream, F_GETFD) < 0 && ::open("/dev/null", O_RDWR) != stream) // it takes the lowest free number
+      if (::fcntl(stream, F_GETFD) < 0 && ::open("/dev/null", O_RDWR) != stream) // open() returns the lowest free descriptor
         return;
   }
 
-  /// The message of a failed run; rethrows what is being handled.
+  /// Message of a failed run; rethrows the current exception.
   std::string failure_message()
   {
     constexpr const char *defect = "\n  change: this is a defect of the program; please report it";
@@ -114,13 +116,13 @@ Decides whether a disc rubbed by friction pins squeals.
     catch (const std::bad_alloc &)
       {
         return "the memory is exhausted\n  where:  this machine, or the limit of this process\n"
-               "  change: take larger elements or fewer layers, a lower frequency, or more processes on more machines";
+               "  change: use larger elements or fewer layers, a lower frequency, or more processes on more machines";
       }
     catch (const std::system_error &error)
       {
-        return std::string("the system refuses something: ") + error.what() +
+        return std::string("a system call failed: ") + error.what() +
                "\n  where:  this machine, or the limits of this process on threads (ulimit -u) and memory (ulimit -v)\n"
-               "  change: take fewer threads, OMP_NUM_THREADS=1 or Linear algebra/Threads = 1, or raise the limit";
+               "  change: use fewer threads, OMP_NUM_THREADS=1 or Linear algebra/Threads = 1, or raise the limit";
       }
     catch (const std::exception &error)
       {
@@ -133,11 +135,10 @@ Decides whether a disc rubbed by friction pins squeals.
     std::cerr << std::flush << "\nerror: " << message << std::endl;
   }
 
-  /// Prints the one message of a failed run; returns the exit status.
+  /// Prints the message of a failed run; returns the exit status.
   int report(const std::string &message, const bool is_root)
   {
-    // Most errors are met by all processes alike, and one of them speaks. The others wait before they take the
-    // rest down with them, in case they failed alone.
+    // Most errors occur on all processes, and the root prints them. The others wait before they abort the job, in case they failed alone
     if (!is_root)
       std::this_thread::sleep_for(std::chrono::seconds(3));
     print_error(message);
@@ -152,10 +153,10 @@ int main(int argc, char **argv)
   open_closed_streams();
   Squeal::return_freed_blocks();
   Squeal::prepare_mpi_environment();
-  // A limit on the size of files is an error of the write that meets it.
+  // Ignore SIGXFSZ so that write() fails with EFBIG
   std::signal(SIGXFSZ, SIG_IGN);
 
-  // Without a current folder, libraries abort when they start.
+  // Libraries abort at start without a current folder
   std::error_code                              no_folder;
   [[maybe_unused]] const std::filesystem::path here = std::filesystem::current_path(no_folder);
   if (no_folder)
@@ -166,17 +167,17 @@ int main(int argc, char **argv)
       return 1;
     }
 
-  // The libraries that deal.II starts would take our options for theirs, and PETSc the signals.
+  // Libraries parse argv; PETSc installs signal handlers
   char   without_handler[]   = "-no_signal_handler";
   char  *library_arguments[] = {argv[0], without_handler, nullptr};
   char **library_argv        = library_arguments;
   int    library_argc        = 2;
-  // deal.II must not start threads of its own beside the processes.
+  // deal.II must not start its own threads in addition to the processes
   dealii::Utilities::MPI::MPI_InitFinalize mpi(library_argc, library_argv, 1);
   const bool                               is_root = dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
   std::ostream                             silence(nullptr);
   std::ostream                            &screen = is_root ? std::cout : silence;
-  // mpirun shows every process a terminal, whether there is one behind it or not.
+  // mpirun presents a terminal to every process, even without one
   const bool        live    = isatty(STDOUT_FILENO) != 0 && dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) == 1;
   const std::string command = Squeal::shell_command({argv, argv + argc});
   try

@@ -2,7 +2,7 @@
 
 #pragma once
 
-// What many files include and what takes long to read. Every file still includes what it uses.
+// Headers that many files include and that take long to compile. Every file still includes what it uses.
 
 #include <deal.II/base/point.h>
 

@@ -5,9 +5,8 @@
 namespace Squeal
 {
   /**
-   * Revision of the sources of which the program was built, as Git describes it:
-   * `-dirty` if files were changed, `unknown` without Git. Every build looks
-   * anew; only the program itself depends on it.
+   * Revision of the sources from `git describe`, with `-dirty` for changed files, or `unknown` without Git. Updated by every build; only
+   * the main program depends on it.
    */
   extern const char *const revision;
 } // namespace Squeal

@@ -104,7 +104,7 @@ class System:
     def _check_points(self):
         if self.positions is None:
             if self.displacements is not None:
-                raise Error("displacements of points that are not given", f"{self.where}, displacements", "give positions, too")
+                raise Error("the positions of the displacements are not given", f"{self.where}, displacements", "also give positions")
             return
         self.positions = np.asarray(self.positions, dtype=float)
         if self.positions.ndim != 2 or self.positions.shape[1] != 3 or not np.isfinite(self.positions).all():

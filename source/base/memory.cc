@@ -21,7 +21,7 @@ namespace Squeal
   {
     constexpr double unlimited = std::numeric_limits<double>::infinity(), kilobyte = 1024.;
 
-    /// Numbers behind the words with which lines begin.
+    /// Numbers after the first word of each line.
     std::map<std::string, double> numbers_in(const fs::path &file)
     {
       std::map<std::string, double> numbers;
@@ -34,7 +34,7 @@ namespace Squeal
       return numbers;
     }
 
-    /// What the control group of one folder leaves [byte]. Its limit may be `max`; in a container inner folders may not be there.
+    /// Memory left in one control group [byte]. Its limit may be `max`; in a container inner folders may be missing.
     double left_by_group(const fs::path &folder)
     {
       double limit, usage;
@@ -51,7 +51,7 @@ namespace Squeal
     const auto memory = numbers_in(root / "proc/meminfo");
     double     result = memory.count("MemAvailable:") > 0 ? memory.at("MemAvailable:") * kilobyte : unlimited;
 
-    // The group of this process and all about it
+    // The group of this process and all its parent groups
     const std::string prefix = "0::/";
     std::ifstream     groups(root / "proc/self/cgroup");
     for (std::string line; std::getline(groups, line);)
@@ -71,7 +71,7 @@ namespace Squeal
     MPI_Comm_split_type(communicator, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine);
     MPI_Comm_rank(machine, &rank);
     MPI_Comm_free(&machine);
-    double result = rank == 0 ? available_memory() : 0.; // one process of each machine tells
+    double result = rank == 0 ? available_memory() : 0.; // one process of each machine contributes
     MPI_Allreduce(MPI_IN_PLACE, &result, 1, MPI_DOUBLE, MPI_SUM, communicator);
     return result;
   }
@@ -100,7 +100,7 @@ namespace Squeal
   bool reset_peak_memory()
   {
     return_freed_memory();
-    // 5: the peak of the resident memory becomes what is resident now, proc(5)
+    // 5: resets the peak to the current resident memory, see proc(5)
     std::ofstream stream("/proc/self/clear_refs");
     stream << 5 << std::flush;
     return static_cast<bool>(stream);

@@ -23,11 +23,11 @@ namespace Squeal
   {
     if (wanted > 0)
       return wanted;
-    // The first of a list, which is for nested loops
+    // First number of a list, which is meant for nested loops
     if (const char *text = std::getenv("OMP_NUM_THREADS"); text != nullptr)
       if (const long number = std::strtol(text, nullptr, 10); number > 0)
         return static_cast<unsigned int>(std::min(number, 1024l));
-    // Processes that are bound to cores of their own share none
+    // Processes bound to their own cores share none
     const unsigned int share = std::thread::hardware_concurrency() / std::max(1u, n_processes);
     return std::max(1u, std::min(n_usable_cores(), share));
   }
@@ -35,7 +35,7 @@ namespace Squeal
   void set_task_threads(const unsigned int n)
   {
     n_threads = std::max(1u, n);
-    // TBB starts no more threads than deal.II allows
+    // TBB does not start more threads than deal.II allows
     dealii::MultithreadInfo::set_thread_limit(n_threads);
   }
 

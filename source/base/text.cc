@@ -14,17 +14,17 @@ namespace Squeal
 {
   namespace
   {
-    /// Characters of a longer text that a message shows.
+    /// Number of characters shown of a longer text.
     constexpr std::size_t largest_length = 80;
 
-    /// Characters that mean themselves to every shell, those of Python's shlex.quote; bytes of other alphabets are quoted.
+    /// Characters without special meaning in any shell, as in Python's shlex.quote; other bytes are quoted.
     constexpr const char *plain_characters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789@%+=:,./_-";
   } // namespace
 
   std::string exact_text(const double value)
   {
     std::array<char, 32> text;
-    // Adding zero takes the sign of a negative one
+    // Adding zero removes the sign of negative zero
     const auto end = std::to_chars(text.data(), text.data() + text.size(), value + 0.).ptr;
     return {text.data(), end};
   }
@@ -62,7 +62,7 @@ namespace Squeal
   std::string legible(const std::string &text)
   {
     std::size_t length = std::min(text.size(), largest_length);
-    // Not in the middle of a character of several bytes
+    // Not within a multi-byte character
     while (length < text.size() && length > 0 && (static_cast<unsigned char>(text[length]) & 0xC0) == 0x80)
       --length;
     std::string result = text.substr(0, length);
@@ -82,7 +82,7 @@ namespace Squeal
     for (const std::string &word : words)
       {
         const bool is_plain = !word.empty() && word.find_first_not_of(plain_characters) == std::string::npos;
-        // Between single quotes everything means itself, but for their end
+        // Everything is literal between single quotes, except the quote itself
         result += (result.empty() ? "" : " ") + (is_plain ? word : "'" + boost::replace_all_copy(word, "'", R"('\'')") + "'");
       }
     return result;

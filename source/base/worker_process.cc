@@ -21,10 +21,10 @@ namespace Squeal
 
   namespace
   {
-    /// Variable with which users choose the number of threads, of this program and of libraries.
+    /// Environment variable for the number of threads of this program and of libraries.
     constexpr const char *threads_variable = "OMP_NUM_THREADS";
 
-    /// The environment without what tells a process of the MPI job that it belongs to: the other one is none of them.
+    /// Environment without the variables of the MPI job: the worker must not join it.
     process::environment environment_of_worker(const unsigned int n_threads)
     {
       process::environment result = boost::this_process::environment();

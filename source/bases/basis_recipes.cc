@@ -11,7 +11,7 @@ namespace Squeal
     using In     = BasisIngredients;
     using Source = BasisSource;
 
-    /// To friction of low rank, or to all nonsymmetric terms of the stiffness where some are not.
+    /// Response to low-rank friction, or to all nonsymmetric stiffness terms if some are not of low rank.
     MultiVector response(const In &in, const Side side)
     {
       std::vector<Term> nonsymmetric;
@@ -24,7 +24,7 @@ namespace Squeal
       return friction_response(*in.coupled, *in.inverse, *in.set(Source::real), side);
     }
 
-    // ----------------------------------------------------------- sets at hand
+    // ----------------------------------------------------------- given sets
 
     const BasisPart disc_free    = {"Phi_f^D", {Source::disc_free}, Source::disc_free, true};
     const BasisPart disc_sliding = {"Phi_s^D", {Source::disc_sliding}, Source::disc_sliding, true};

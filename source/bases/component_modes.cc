@@ -13,10 +13,10 @@ namespace Squeal
 {
   namespace
   {
-    /// Smallest participation of component modes after which a mode is named [-].
+    /// Smallest participation that gives a label to a mode [-].
     constexpr double smallest_participation = 0.1;
 
-    /// Of the row at a place of this process.
+    /// Entry in a local row of this process.
     double entry(const SparseMatrix &A, const int place, const int column)
     {
       SparseMatrix::Row row;
@@ -28,7 +28,7 @@ namespace Squeal
 
   std::vector<double> nodal_masses(const Model &model, const SparseMatrix &mass)
   {
-    // Of the x displacements: M e_x, and the diagonal
+    // From the x displacements: M e_x, and the diagonal
     MultiVector     e_x(model.free_map(), 1);
     Eigen::VectorXd diagonal = Eigen::VectorXd::Zero(e_x.n_local_rows());
     for (const Node &node : model.nodes())
@@ -124,7 +124,7 @@ namespace Squeal
   {
     const int n_modes = static_cast<int>(shares.size());
 
-    // A label is given to no more modes than there are component modes of it
+    // A label is given to at most as many modes as there are component modes with it
     std::vector<ModeLabel> names;
     for (const ComponentModes *reference : references)
       names.insert(names.end(), reference->labels.begin(), reference->labels.end());

@@ -22,7 +22,7 @@ namespace Squeal
     {
       Nodes                   disc;
       Eigen::VectorXd         cosines, sines;
-      DenseMatrix             radial; ///< powers of the radius, which is scaled to [-1, 1], at the nodes
+      DenseMatrix             radial; ///< powers of the radius, scaled to [-1, 1], at the nodes
       std::vector<Projection> harmonics;
 
       DiscHarmonics(const Model &model, const std::vector<double> &nodal_masses)
@@ -57,8 +57,8 @@ namespace Squeal
         return fields;
       }
 
-      /// Sign changes of the radial profile of harmonic n: of its cosine and sine amplitudes in narrow rings, along their common direction
-      /// in the cosine-sine plane, as the nodal line pattern may be turned.
+      /// Sign changes of the radial profile of harmonic n: of its cosine and sine amplitudes in narrow rings, along their dominant common
+      /// direction in the cosine-sine plane, because the nodal line pattern may be rotated.
       int nodal_circles(const Eigen::VectorXd &coefficients, const int n) const
       {
         // Profile a(r) cos nθ + b(r) sin nθ
@@ -72,7 +72,7 @@ namespace Squeal
         const double          angle     = 0.5 * std::atan2(2. * a.dot(b), a.squaredNorm() - b.squaredNorm());
         const Eigen::VectorXd amplitude = std::cos(angle) * a + std::sin(angle) * b;
 
-        // Changes between values that are clearly different from zero
+        // Sign changes between values clearly different from zero
         constexpr double clear   = 0.1;
         const double     largest = max_norm(amplitude);
         int              changes = 0;
@@ -86,7 +86,7 @@ namespace Squeal
         return changes;
       }
 
-      /// How a field travels in harmonic n > 0; nothing where it has none of it.
+      /// Travelling waves of a field in harmonic n > 0; nothing without this harmonic.
       std::optional<WaveShares> wave_shares(const Eigen::VectorXd &real_part, const Eigen::VectorXd &imaginary_part, const int n) const
       {
         constexpr std::complex<double> i(0., 1.);
@@ -115,7 +115,7 @@ namespace Squeal
         for (const Projection &harmonic : disc.harmonics)
           coefficients.push_back(harmonic.coefficients(fields));
 
-        // Harmonic of the largest energy, the three directions together
+        // Harmonic with the largest energy over all three directions
         DenseMatrix energies(3, largest_harmonic + 1);
         for (int n = 0; n <= largest_harmonic; ++n)
           energies.col(n) = coefficients[n].colwise().squaredNorm();

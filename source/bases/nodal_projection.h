@@ -13,10 +13,11 @@
 
 namespace Squeal
 {
-  /// Norm of what projection leaves of a function r^k e^{inθ}, over its norm, up to which the others span it: well above rounding errors.
+  /// Relative norm of the component of r^k e^{inθ} outside the span of the others, below which it is dropped: well above rounding errors
+  /// [-].
   constexpr double smallest_rest = 1e-8;
 
-  /// The same sums over the processes on all of them, to the last bit.
+  /// Sums over all processes, identical on all of them to the last bit.
   inline DenseMatrix summed(const MPI_Comm communicator, DenseMatrix parts)
   {
     sum_over_processes(communicator, parts.data(), parts.size());
@@ -24,7 +25,7 @@ namespace Squeal
     return parts;
   }
 
-  /// Least-squares projection of nodal fields on a few functions in the mass-weighted inner product, a part of the nodes on each process.
+  /// Least-squares projection of nodal fields on a few functions in the mass-weighted inner product; nodes are distributed.
   class Projection
   {
   public:
@@ -38,7 +39,7 @@ namespace Squeal
       , Q(roots.asDiagonal() * functions)
       , R(DenseMatrix::Identity(functions.cols(), functions.cols()))
     {
-      // Gram-Schmidt, twice; functions that others span (r^k on a single radius) are dropped
+      // Gram-Schmidt, twice; linearly dependent functions (r^k on a single radius) are dropped
       for (Eigen::Index j = 0; j < Q.cols(); ++j)
         {
           const double before = norm(j);
@@ -60,13 +61,13 @@ namespace Squeal
         }
     }
 
-    /// Orthonormal coefficients of fields, n_functions × k; the sum of their squares is the energy of the projection.
+    /// Coefficients of fields in the orthonormal functions, n_functions × k; the sum of their squares is the energy of the projection.
     DenseMatrix coefficients(const DenseMatrix &fields) const
     {
       return summed(communicator, Q.transpose() * (roots.asDiagonal() * fields));
     }
 
-    /// Factors of the functions from orthonormal coefficients.
+    /// Coefficients in the original functions from those in the orthonormal functions.
     Eigen::VectorXd factors(const Eigen::VectorXd &orthonormal_coefficients) const
     {
       return R.triangularView<Eigen::Upper>().solve(orthonormal_coefficients);
@@ -80,7 +81,7 @@ namespace Squeal
 
     MPI_Comm        communicator;
     Eigen::VectorXd roots; ///< of the weights
-    DenseMatrix     Q, R;  ///< functions times roots = Q R; dropped ones are zero in Q and have ones on the diagonal of R
+    DenseMatrix     Q, R;  ///< functions times roots = Q R; dropped functions are zero in Q and have ones on the diagonal of R
   };
 
   /// 1, x, x², ... as columns.
@@ -92,11 +93,11 @@ namespace Squeal
     return result;
   }
 
-  /// Nodes of one component whose rows this process has. Clamped ones, which nobody has, are at rest.
+  /// Nodes of one component with rows on this process. Clamped nodes have no rows and are at rest.
   struct Nodes
   {
     MPI_Comm                        communicator;
-    std::vector<std::array<int, 3>> rows;      ///< places of the displacements
+    std::vector<std::array<int, 3>> rows;      ///< local rows of the displacements
     Eigen::MatrixX3d                positions; ///< [m]
     Eigen::VectorXd                 masses;    ///< [kg]
 

@@ -12,7 +12,7 @@ namespace Squeal
 {
   namespace
   {
-    /// The axis of a pin, through the centre of its contact nodes along their mean normal.
+    /// Axis of a pin: through the centre of its contact nodes along their mean normal.
     struct PinAxis
     {
       Eigen::Vector3d centre = Eigen::Vector3d::Zero(), direction = Eigen::Vector3d::Zero();
@@ -37,7 +37,7 @@ namespace Squeal
       return axes;
     }
 
-    /// Adds the energies of bending, torsion and stretching of each mode, 3 × k: of its projections on polynomials of the height.
+    /// Adds the bending, torsional and longitudinal energy of each mode, 3 × k, from its projections on polynomials of the height.
     void add_energies(const Nodes &pin, const PinAxis &axis, const MultiVector &modes, DenseMatrix &energies)
     {
       constexpr int          n_height_functions = 4;
@@ -95,7 +95,7 @@ namespace Squeal
     for (const auto &[pin, axis] : axes)
       add_energies(Nodes(model, nodal_masses, pin), axis, modes, energies);
 
-    // Numbers within each family, by the number of modes that every pin has of it
+    // Numbers within each family: each pin has one mode with a given number
     constexpr std::array<ModeFamily, 3> families = {{ModeFamily::flexural, ModeFamily::torsional, ModeFamily::longitudinal}};
     std::vector<ModeLabel>              labels;
     std::array<int, 3>                  count{};

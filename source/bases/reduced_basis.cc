@@ -16,7 +16,7 @@ namespace Squeal
   {
     /// Largest max |T_rᵀ M_c T_r − I|.
     constexpr double largest_orthonormality_defect = 1e-10;
-    /// M-norm of a rigid-body motion outside of given modes below which they contain it.
+    /// M-norm of the component of a rigid-body motion outside given modes, below which they contain it.
     constexpr double contained = 1e-6;
 
     std::string where(const BasisRecipe &recipe)
@@ -24,7 +24,7 @@ namespace Squeal
       return std::string("reduced basis `") + recipe.name + "`";
     }
 
-    /// @p pointer, or an error that names what it should point to.
+    /// @p pointer, or an error that names the missing object.
     template <typename Type>
     const Type &required(const Type *pointer, const BasisRecipe &recipe, const std::string &what)
     {
@@ -35,7 +35,7 @@ namespace Squeal
       return *pointer;
     }
 
-    /// T_r0: the parts side by side.
+    /// T_r0: the parts joined.
     MultiVector join_parts(const BasisRecipe &recipe, const BasisIngredients &in, BasisCounts &counts)
     {
       std::vector<MultiVector> sets;
@@ -46,7 +46,7 @@ namespace Squeal
           sets.push_back(part->compute ? part->compute(in) : required(in.set(*part->set), recipe, part->symbol));
           if (part->set)
             counts.sets[*part->set] = sets.back().n_columns();
-          // Motions of a free disc that its modes lack
+          // Rigid-body motions of a free disc that are missing in its modes
           const MultiVector *N =
             part->set == BasisSource::disc_free && in.static_modes != nullptr ? in.static_modes->response.rigid_body_modes() : nullptr;
           if (N == nullptr)
@@ -78,7 +78,7 @@ namespace Squeal
       return largest_of_processes(X.communicator(), max_norm(X.local()));
     }
 
-    /// T_r0 T_cr in coupled coordinates; the columns of T_r0 get scaled.
+    /// T_r0 T_cr in coupled coordinates; scales the columns of T_r0.
     MultiVector connect(MultiVector            &T_r0,
                         const BasisRecipe      &recipe,
                         const BasisIngredients &in,
@@ -95,7 +95,7 @@ namespace Squeal
       connection.rank = std::count_if(values.begin(), values.end(), [&](const double value) { return value / largest / tolerance > 1.; });
       if (connection.rank == n_r0)
         throw SolverError("no combination of its " + std::to_string(n_r0) + " vectors keeps the contact closed", where(recipe),
-                          "take more component modes");
+                          "use more component modes");
       connection.smallest_kept   = connection.rank > 0 ? values[connection.rank - 1] / largest : 0.;
       connection.largest_dropped = connection.rank < static_cast<int>(values.size()) ? values[connection.rank] / largest : 0.;
 
@@ -131,7 +131,7 @@ namespace Squeal
     const int       n    = M.n_rows();
     if (size.n_r > n && recipe.is_connected())
       throw SolverError("the basis has " + std::to_string(size.n_r) + " vectors, the coupled system only " + std::to_string(n) + " dofs",
-                        where(recipe), "take fewer component modes, or a finer mesh");
+                        where(recipe), "use fewer component modes, or a finer mesh");
 
     ReducedBasis basis{nullptr, size.n_r0, size.n_r, 0, options.tolerance, 1., 0., {}};
 

@@ -17,13 +17,13 @@ namespace Squeal
 {
   namespace
   {
-    /// Normal motion of contact nodes over the motion of the disc, up to which it is a rounding error of sliding.
+    /// Normal motion of contact nodes relative to the motion of the disc, below which it is a rounding error of sliding [-].
     constexpr double no_normal_motion = 1e-8;
 
-    /// ω_max / s: the shift lies far below the elastic modes, so that each refinement gains several digits.
+    /// ω_max / s: the shift is far below the elastic modes, so that each refinement gains several digits.
     constexpr double band_per_shift = 5000.;
 
-    /// Refinement ends when it no longer halves the largest ‖K u − f‖ / ‖f‖, which must then be below this.
+    /// Refinement ends if it no longer halves the largest ‖K u − f‖ / ‖f‖, which must then be below this limit [-].
     constexpr double largest_residual = 1e-9;
 
     /// Ritz vectors, M-orthonormal, and Ritz values of K and M on the columns of X, ascending.
@@ -31,13 +31,13 @@ namespace Squeal
     {
       const RealPairs   axes = symmetric_eigenpairs(gram(X, *system.mass * X));
       const MultiVector Y    = X * DenseMatrix(axes.vectors * as_column(axes.values).cwiseSqrt().cwiseInverse().asDiagonal());
-      // Every process must cut the same motions off.
+      // All processes must drop the same motions
       const RealPairs ritz = agreed(X.communicator(), symmetric_eigenpairs(gram(Y, *system.stiffness * Y)));
       return {Y * ritz.vectors, ritz.values};
     }
 
-    /// The inverse of K magnifies a motion at ω_1 by (ω/ω_1)² over a mode at ω, and rounding errors with it: from ω_1 < s on that of K + s²
-    /// M does so less.
+    /// Shift for K + s² M if the lowest ω_1 < s: K⁻¹ amplifies a motion at ω_1, and its rounding errors, by (ω/ω_1)² relative to a mode at
+    /// ω.
     double shift_for(const std::vector<double> &eigenvalues, const double largest_circular_frequency)
     {
       const double s = largest_circular_frequency / band_per_stabilizing_shift;
@@ -63,8 +63,8 @@ namespace Squeal
 
   MultiVector rigid_disc_motions(const Model &model, const CoupledSystem &system)
   {
-    // Coupled coordinates: rows of T_c with a single one select; transposing them picks the disc's own values, because only
-    // dofs of pins are eliminated, and adds what the eliminated dofs (at rest here) contribute: nothing.
+    // In coupled coordinates, rows of T_c with a single one select dofs. The transpose therefore picks the disc's displacements, because
+    // only dofs of pins are eliminated, and the eliminated ones are at rest here
     return transpose_times(*system.kernel, rigid_motions(model, 0));
   }
 
@@ -160,7 +160,7 @@ namespace Squeal
           {
             if (!(std::min(largest, smallest) < largest_residual))
               throw SolverError("static responses with inertia relief do not converge", what,
-                                "use a mount that either holds the disc or leaves it free, nothing in between");
+                                "use a mount that either holds the disc firmly or leaves it free");
             return u;
           }
         smallest = largest;

@@ -12,7 +12,7 @@ namespace Squeal
 {
   namespace
   {
-    /// X with the rows of the other component at zero, times @p factor.
+    /// X times @p factor with the rows of the other component set to zero.
     MultiVector restricted(const Model &model, const Component component, const MultiVector &X, const double factor)
     {
       MultiVector result(X.map(), X.n_columns());
@@ -81,7 +81,7 @@ namespace Squeal
     const bool disc = component == Component::disc;
     const auto T    = component_kernel(model, interface, component, ContactBoundary::sliding);
 
-    // Motions that neither the mounts nor the rigid faces resist
+    // Motions without resistance by mounts or rigid faces
     std::optional<MultiVector> motions;
     if (const MultiVector *N = response.rigid_body_modes(); disc && N != nullptr)
       if (const auto sliding = contact_motions(*contact.normal, *N).sliding)

@@ -21,13 +21,13 @@ namespace Squeal
 
   namespace
   {
-    /// Direction cosine of a normal up to which it is a rounding error of the coordinates [-].
+    /// Direction cosine of a normal below which it is a rounding error of the coordinates [-].
     constexpr double not_inclined = 1e-12;
 
-    /// Sliding velocity, compared with the largest one, up to which its direction is that of rounding errors [-].
+    /// Sliding velocity relative to the largest one, below which its direction is undefined by rounding errors [-].
     constexpr double smallest_lever = 1e-8;
 
-    /// A face with its nodes, to be sent.
+    /// A face with its nodes, for communication.
     struct SentFace
     {
       Shape             shape;
@@ -41,8 +41,8 @@ namespace Squeal
       }
     };
 
-    /// A contact surface as every process has it: nodes in the order of their numbers, each with the area and the area-weighted normal of the
-    /// faces that meet there.
+    /// A contact surface, the same on every process: nodes in the order of their numbers, each with the area and the area-weighted normal
+    /// of the adjacent faces.
     struct ContactSurface
     {
       std::vector<Node>            nodes;
@@ -110,7 +110,7 @@ namespace Squeal
       return text("(", p[0], ", ", p[1], ", ", p[2], ") m");
     }
 
-    /// n, t, b of a contact node with its lever; @p longest is the largest lever [m].
+    /// Sets n, t, b and the lever of a contact node; @p longest is the largest lever [m].
     void set_frame(ContactNode &node, Eigen::Vector3d normal, const double longest, const SlidingVelocity &velocity)
     {
       normal *= 1. / normal.norm();
@@ -121,13 +121,13 @@ namespace Squeal
 
       const std::string where = "parameter Operation/Sliding direction, contact node at " + place(node.position);
       if (!(node.lever > smallest_lever * longest && std::isfinite(node.lever)))
-        throw MeshError("nothing slides at a contact node: the velocity of the disc is zero or undefined there", where,
-                        "move the bodies away from there, which may be the disc's axis, or change the velocity");
+        throw MeshError("the sliding velocity of the disc is zero or undefined at a contact node", where,
+                        "move the bodies away from this point, which may be on the disc's axis, or change the velocity");
       const Eigen::Vector3d along   = velocity(node.position) / node.lever;
       const Eigen::Vector3d sliding = along - along.dot(node.normal) * node.normal;
       if (!(sliding.norm() > 1e-6))
         throw MeshError("the velocity of the disc is normal to the contact face", where,
-                        "change the velocity, or let contact faces lie along it");
+                        "change the velocity, or make the contact faces parallel to it");
       node.sliding = (1. / sliding.norm()) * sliding;
       node.radial  = node.normal.cross(node.sliding);
     }
@@ -145,12 +145,12 @@ namespace Squeal
                             "keep pin_clamp and the contact surfaces apart, with at least one layer of elements between them");
     }
 
-    /// For every node of the pins the one of the disc within the tolerance; nothing where a node of either has no partner of its own.
+    /// Disc node within the tolerance of each pin node; nothing if a node of either side has no unique partner.
     std::optional<std::vector<std::size_t>> partners(const ContactSurface &disc, const ContactSurface &pins, const double tolerance)
     {
       if (disc.nodes.size() != pins.nodes.size())
         return {};
-      // Sorted by x: a partner is looked for among the neighbours only
+      // Sorted by x to limit the search to neighbours
       std::vector<std::pair<double, std::size_t>> sorted;
       for (std::size_t d = 0; d < disc.nodes.size(); ++d)
         sorted.emplace_back(disc.position(d)[0], d);
@@ -179,7 +179,7 @@ namespace Squeal
       return result;
     }
 
-    /// Contact nodes of both kinds, without their frames' t and b; n is not yet of unit length.
+    /// Contact nodes of both types, without t and b of their frames; n is not normalised yet.
     ContactInterface pairs(const ContactSurface &disc, const ContactSurface &pins, const std::vector<std::size_t> &of_disc)
     {
       ContactInterface result(pins.nodes.size());
@@ -197,7 +197,7 @@ namespace Squeal
       return result;
     }
 
-    /// Part of the contact face of a body that must at least lie on the disc [-].
+    /// Smallest part of the contact face of a body that must be opposite the disc [-].
     constexpr double least_of_body = 0.2;
 
     void check_overlap(const Model &model, const ContactSurface &pins, const ContactInterface &found)
@@ -290,7 +290,7 @@ namespace Squeal
           if (!known.insert(node.pin_node.number).second)
             throw MeshError("a node of " + pair.pin + " is in contact twice",
                             "parameter Contact/Pairs, contact node at " + place(node.position),
-                            "let every face of a body rub one surface of the disc; give parts of a surface one name");
+                            "put every face of a body into one pair only");
         result.interface.insert(result.interface.end(), found.interface.begin(), found.interface.end());
         result.notes.insert(result.notes.end(), found.notes.begin(), found.notes.end());
       }

@@ -14,7 +14,7 @@ namespace Squeal
   {
     using Matrix = std::shared_ptr<const SparseMatrix>;
 
-    /// Damping of the contact along b and t by the factors P_bᵀ and P_tᵀ, on coupled dofs or others.
+    /// Contact damping along b and t with the factors P_bᵀ and P_tᵀ, on coupled dofs or others.
     std::vector<Term> contact_damping_terms(const std::shared_ptr<const LowRankFactor> &radial,
                                             const std::shared_ptr<const LowRankFactor> &tangential)
     {
@@ -24,7 +24,7 @@ namespace Squeal
       return {term(SystemParameter::radial_damping, radial), term(SystemParameter::sliding_damping, tangential)};
     }
 
-    /// Of the form −μ A V; friction of a system file may have a matrix.
+    /// True for the form −μ A V; friction of a system file may have a sparse matrix instead.
     bool is_friction(const Term &term)
     {
       return term.kind == TermKind::friction && !term.matrix;
@@ -44,7 +44,7 @@ namespace Squeal
   ParameterValues CoupledSystem::at(const double value, const ParameterValues &others) const
   {
     ParameterValues result = others;
-    result.insert(values.begin(), values.end()); // those that others leave open
+    result.insert(values.begin(), values.end()); // remaining free parameters
     result[varied] = {value};
     return result;
   }
@@ -181,7 +181,7 @@ namespace Squeal
                                       const MultiVector                       &imaginary_part)
   {
     const std::complex<double> i(0., 1.);
-    const ParameterValues      values    = system.at(-1.); // −μ A V is A V there
+    const ParameterValues      values    = system.at(-1.); // −μ A V equals A V at μ = −1
     ComplexDenseMatrix         reactions = ComplexDenseMatrix::Zero(system.n_contact(), lambda.size());
     for (const Term &term : system.terms)
       if (is_friction(term))

@@ -12,7 +12,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Whether a term is the friction that UpdatedInverse updates its factor by.
+    /// True for friction terms by which UpdatedInverse updates its factor.
     bool is_low_rank_friction(const Term &term, const std::string &varied, const ParameterValues &values)
     {
       if (term.kind != TermKind::friction || term.matrix || !term.weights.empty() || varied != SystemParameter::friction)
@@ -25,7 +25,7 @@ namespace Squeal
       return at(0.) == 0. && at(2.) == 2. * at(1.);
     }
 
-    /// L diag(d) Rᵀ as terms with a matrix.
+    /// L diag(d) Rᵀ as sparse terms.
     std::vector<Term> multiplied_out(const Term &term, const ParameterValues &values)
     {
       Term plain          = term;
@@ -38,7 +38,7 @@ namespace Squeal
       return result.matrix ? split_by_symmetry(result) : std::vector<Term>();
     }
 
-    /// √ of the diagonal of K + ω² M, rounded to a power of two, and inverted: for the rows of this process.
+    /// 1 / √ of the diagonal of K + ω² M, rounded to a power of two, for the rows of this process.
     std::vector<double> dof_scales(const SparseMatrix &K, const SparseMatrix &M, const double omega)
     {
       std::vector<double> result(K.rows().n_local());
@@ -61,7 +61,7 @@ namespace Squeal
       return result;
     }
 
-    /// Mass and stiffness of the symmetric terms without friction, or none if either has no such term.
+    /// Sets mass and stiffness from the symmetric frictionless terms; none if either has no such term.
     void set_symmetric_parts(CoupledSystem &system)
     {
       const auto has_part = [&](const int power) {
@@ -106,7 +106,7 @@ namespace Squeal
     for (const auto &[matrix, name] : {std::make_pair(&M, "mass"), {&K, "stiffness"}})
       if (!*matrix)
         throw ParameterError(std::string("the ") + name + " has no terms at the values of the parameters", "file " + file.path,
-                             "give terms of power 0 and 2 that do not vanish there");
+                             "give terms of power 0 and 2 that are nonzero there");
     const std::vector<double> d = dof_scales(*K, *M, largest_circular_frequency);
     const auto                D =
       std::make_shared<SparseMatrix>(map, map, [&](const int i, SparseMatrix::Row &row) { row.emplace_back(map.number(i), d[i]); });
@@ -155,7 +155,7 @@ namespace Squeal
     if (is_definite(0.))
       return 0.;
     const double shift = part_of_band * largest_circular_frequency;
-    // Rigid-body motions have eigenvalues that are rounding errors; those below them would grow
+    // Eigenvalues of rigid-body motions are rounding errors; more negative ones would grow
     return is_definite(std::min(shift * shift, system.hidden_square)) && is_definite(shift * shift) ? std::optional(shift) : std::nullopt;
   }
 } // namespace Squeal

@@ -12,10 +12,12 @@ namespace Squeal
 {
   namespace
   {
-    /// Cosine of the angle between travel and axis up to which backplates are guided along the axis: 45 degrees and rounding.
+    /// Cosine of the angle between travel and axis above which backplates are guided along the axis: 45 degrees, with a margin for
+    /// rounding.
     constexpr double along_axis = 0.7;
 
-    /// Cosine of the angle between the normal of a contact node and the travel of its body, less than which the travel closes no gap.
+    /// Smallest cosine of the angle between the normal of a contact node and the travel of its body: below, the travel does not close a
+    /// gap.
     constexpr double facing = 0.01;
 
     std::vector<Travel> mean_directions(const Model &model, const ContactInterface &interface)
@@ -25,7 +27,7 @@ namespace Squeal
         result[node.pin].direction -= node.area * node.normal;
       for (Travel &travel : result)
         {
-          // Where normals cancel to the last bit, zero remains, which no node faces
+          // Where normals cancel exactly the direction is zero, which no node faces
           if (const double size = travel.direction.norm(); size > 0.)
             travel.direction /= size;
           if (std::abs(travel.direction[2]) > along_axis)
@@ -37,7 +39,7 @@ namespace Squeal
       return result;
     }
 
-    /// Contact nodes that do not face the travel of their body.
+    /// Contact nodes that face away from the travel of their body.
     std::vector<const ContactNode *> facing_away(const std::vector<Travel> &travels, const ContactInterface &interface)
     {
       std::vector<const ContactNode *> result;
@@ -58,12 +60,12 @@ namespace Squeal
         const auto         n_away  = std::count_if(away.begin(), away.end(), [&](const ContactNode *node) { return is_of(*node); });
         const auto         n_nodes = std::count_if(interface.begin(), interface.end(), is_of);
         const auto        &p       = away.front()->position;
-        throw MeshError(text("the contact faces of one body look in opposite directions: it has no direction in which a load presses it, "
+        throw MeshError(text("the contact faces of one body look in opposite directions: it has no direction of loading, "
                              "since ",
                              n_away, " of its ", n_nodes, " contact nodes do not face the mean direction, the first at (", p[0], ", ", p[1],
                              ", ", p[2], ") m"),
                         "volume " + model.component_names()[pin],
-                        "divide the body into one for each face; or set Operation/Radial dissipation = none, Operation/Friction slope = 0 "
+                        "divide the body, one part for each face; or set Operation/Radial dissipation = none, Operation/Friction slope = 0 "
                         "and Steady sliding/Contact state = equal load, which need no load");
       }
     return result;
@@ -105,10 +107,10 @@ namespace Squeal
   {
     const std::vector<Travel> directions = travels(model, interface);
     const std::vector<int>    plates     = backplate_numbers(directions, false);
-    // Nodes of mortar elements have areas of any size
+    // Areas of mortar nodes vary
     const bool are_pairs = std::all_of(interface.begin(), interface.end(), [](const ContactNode &node) { return node.is_pair(); });
     const auto unit      = [are_pairs](const ContactNode &node) { return are_pairs ? 1. : node.area; };
-    std::map<int, double> forces; // along the travel, of unit reactions
+    std::map<int, double> forces; // along the travel, for unit reactions
     for (const ContactNode &node : interface)
       forces[plates[node.pin]] += unit(node) * directions[node.pin].force(node, operation.friction_coefficient);
     std::vector<double> reactions;
@@ -117,8 +119,8 @@ namespace Squeal
         const double force = forces[plates[node.pin]];
         if (!(force < 0.))
           throw ParameterError(
-            text("friction on inclined contact faces carries the load at a friction coefficient of ", operation.friction_coefficient,
-                 ": equal reactions of the contact nodes cannot balance it"),
+            text("friction on inclined contact faces balances the load at a friction coefficient of ", operation.friction_coefficient,
+                 ": no equal reactions of the contact nodes can be determined"),
             "parameter Operation/Friction coefficient, volume " + model.component_names()[node.pin],
             "lower the friction coefficient, or set Operation/Radial dissipation = none and Operation/Friction slope = 0");
         reactions.push_back(operation.load_per_side / force * unit(node));

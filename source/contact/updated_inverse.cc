@@ -12,7 +12,7 @@ namespace Squeal
 {
   namespace
   {
-    /// S = K_c + s C_c + s² M_c of the symmetric sparse terms.
+    /// S = K_c + s C_c + s² M_c from the symmetric sparse terms.
     std::shared_ptr<const SparseMatrix> frictionless_pencil(const CoupledSystem &system, const double shift)
     {
       std::vector<Term> terms;

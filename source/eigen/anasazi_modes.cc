@@ -13,7 +13,7 @@
 
 namespace Anasazi
 {
-  /// What Anasazi does with vectors, done with those of this program; names and meanings are Anasazi's.
+  /// Anasazi's vector operations for MultiVector, with Anasazi's names.
   template <>
   class MultiVecTraits<double, Squeal::MultiVector>
   {
@@ -27,7 +27,7 @@ namespace Anasazi
       return {B.values(), B.numRows(), B.numCols(), Eigen::OuterStride<>(B.stride())};
     }
 
-    /// A view that lives on the heap.
+    /// A heap-allocated view.
     static RCP<MV> view(const MV &X, const int first, const int n)
     {
       return Teuchos::rcp(new MV(Squeal::view(X, first, n)));
@@ -82,7 +82,7 @@ namespace Anasazi
     }
     static void MvAddMv(const double alpha, const MV &X, const double beta, const MV &Y, MV &Z)
     {
-      // A factor of zero takes what is not a number away.
+      // A factor of zero must remove NaN
       if (beta == 0.)
         Z.local() = alpha * X.local();
       else if (alpha == 0.)
@@ -150,7 +150,7 @@ namespace Squeal
     using Problem = Anasazi::BasicEigenproblem<double, MultiVector, LinearOperator>;
     using Teuchos::rcp;
 
-    // The basis and one more block must be linearly independent.
+    // The basis and one more block must be linearly independent
     const int n          = A.n_free();
     const int block_size = std::max(1, std::min(request.block_size, n / 4));
 
@@ -163,10 +163,9 @@ namespace Squeal
     problem->setHermitian(true);
     problem->setNEV(request.n_wanted);
     if (!problem->setProblem())
-      throw SolverError("Anasazi refused the eigenvalue problem", request.what, "try ARPACK as solver of the real modes");
+      throw SolverError("Anasazi rejected the eigenvalue problem", request.what, "try ARPACK as solver of the real modes");
 
-    // Room for convergence without a restart: the memory is small beside the
-    // time that a restart would lose.
+    // Enough memory for convergence without a restart, which would cost more time than the memory is worth
     const int n_blocks =
       std::min(std::max(3, (5 * request.n_wanted / 2 + block_size - 1) / block_size + 10 * (1 + request.attempt)), n / block_size - 1);
 
@@ -175,12 +174,11 @@ namespace Squeal
     parameters.set("Which", "LM");
     parameters.set("Block Size", block_size);
     parameters.set("Num Blocks", n_blocks);
-    // Anasazi 13.2 writes past the end of its workspace when it restarts a
-    // Hermitian problem whose projected matrix, symmetric but for rounding, has
-    // a complex pair at the boundary, as multiple eigenvalues cause. What has
-    // not converged is left to another start against the modes found.
+    // No restarts: Anasazi 13.2 writes beyond its workspace when it restarts a Hermitian problem whose projected matrix, symmetric up to
+    // rounding, has a complex pair at the boundary, as caused by multiple eigenvalues. Modes that have not converged are found by another
+    // start, deflated by those found
     parameters.set("Maximum Restarts", 0);
-    // Blocks between two looks at convergence, each a dense Schur form of all blocks so far.
+    // Number of blocks between two convergence checks, each a dense Schur form of all blocks so far
     parameters.set("Step Size", std::max(4, n_blocks / 16));
     parameters.set("Convergence Tolerance", request.tolerance);
     parameters.set("Relative Convergence Tolerance", true);
@@ -188,7 +186,7 @@ namespace Squeal
     try
       {
         Anasazi::BlockKrylovSchurSolMgr<double, MultiVector, LinearOperator> solver(problem, parameters);
-        // How many converged is seen below.
+        // The number of converged modes is checked below
         solver.solve();
       }
     catch (const std::exception &error)

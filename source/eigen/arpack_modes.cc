@@ -27,7 +27,7 @@ namespace Squeal
     const int     comm    = MPI_Comm_c2f(map.communicator());
     const int     n_local = map.n_local();
 
-    // ARPACK refuses processes without rows: those get one whose entries stay zero.
+    // ARPACK requires at least one row per process: add one with zero entries
     const int n   = std::max(1, n_local);
     const int nev = request.n_wanted;
     const int ncv = std::min(map.n(), std::max(2 * nev + 20, nev + 40));
@@ -70,14 +70,14 @@ namespace Squeal
               throw_arpack("pdsaupd (unknown request)", ido, request.what);
           }
       }
-    // 1: not all converged within the restarts; those that did are returned.
+    // 1: not all have converged within the restarts; those that have are returned
     if (info < 0 || info > 1)
       throw_arpack("pdsaupd", info, request.what);
     if (iparam[4] == 0)
       return {};
 
     const int           want_vectors = 1;
-    const double        sigma        = 0.; // only moves the eigenvalues, which are not used
+    const double        sigma        = 0.; // only shifts the eigenvalues, which are not used
     std::vector<int>    select(ncv);
     std::vector<double> values(nev);
     pdseupd_c(comm, want_vectors, "A", select.data(), values.data(), v.data(), n, sigma, "G", n, "LM", nev, request.tolerance, resid.data(),

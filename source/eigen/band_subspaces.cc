@@ -14,29 +14,29 @@ namespace Squeal
 {
   namespace
   {
-    /// Part of all modes beyond which a problem of those of the band costs as much as one of all.
+    /// Fraction of modes in the band above which separating them does not pay off [-].
     constexpr double largest_part = 0.6;
-    /// Ratio of the squares of the frequencies on either side of the gap from which the steps are few.
+    /// Ratio of the squared frequencies on either side of the gap above which convergence is fast [-].
     constexpr double narrowest_gap = 1.2;
-    /// Norm, in coordinates of unit modes, of what the last step should leave, and of what it may leave where rounding allows no more.
-    /// Friction carries what is left in high modes into residuals of low ones.
+    /// Target for the residual after the last step, in the norm of unit modes, and limit accepted if rounding errors prevent more. Friction
+    /// transfers residuals of high modes to low ones.
     constexpr double error_wanted = 1e-13, error_allowed = 1e-12;
     constexpr int    most_steps = 24;
-    /// A step that is not shorter than this part of the one before may consist of rounding errors.
+    /// A step that is longer than this fraction of the previous one may consist of rounding errors [-].
     constexpr double contraction = 0.7;
-    /// Length over that of the first step from which steps are given up.
+    /// Length relative to the first step at which the iteration is abandoned [-].
     constexpr double hopeless_growth = 10.;
-    /// Steps that the next one may combine.
+    /// Number of previous steps that are combined.
     constexpr std::size_t most_remembered = 3;
-    /// Least eigenvalue of a matrix with ones on its diagonal that rounding errors cannot have made positive.
+    /// Smallest eigenvalue of a matrix with unit diagonal that is positive beyond rounding errors [-].
     constexpr double least_definite = 1e-6;
-    /// Bound on ‖Z^m‖ that leaves rounding errors of the powers their room, and number of squarings.
+    /// Bound on ‖Z^m‖, with a margin for rounding errors, and number of squarings.
     constexpr double proof          = 0.9;
     constexpr int    most_squarings = 8;
-    /// Part of the band's end by which modes of lower frequencies, rigid-body motions among them, are scaled.
+    /// Fraction of the band's end by which modes of lower frequencies, including rigid-body motions, are scaled [-].
     constexpr double smallest_part = 1e-2;
 
-    /// Number of modes of the reference before the widest gap at or beyond the end of the band; 0 if there is none.
+    /// Number of reference modes before the widest gap at or above the end of the band; 0 if there is none.
     Eigen::Index modes_of_band(const std::vector<double> &squares, const double limit)
     {
       const auto   n      = static_cast<Eigen::Index>(squares.size());
@@ -52,13 +52,13 @@ namespace Squeal
       return result;
     }
 
-    /// X of residual(X) = 0 by steps X −= divided(residual(X)), from X = 0; whether they converge. Each step also takes the combination of
-    /// the last few that would have left the least (D. G. Anderson, Journal of the ACM 12 (1965) 547–560).
+    /// Solves residual(X) = 0 for X by steps X −= divided(residual(X)), from X = 0; returns convergence. Each step is combined with the
+    /// last few to minimise the residual (D. G. Anderson, Journal of the ACM 12 (1965) 547–560).
     template <typename Residual, typename Divided>
     bool solve_step_by_step(DenseMatrix &X, const Residual &residual, const Divided &divided)
     {
-      std::deque<DenseMatrix> steps, changes;       // differences of successive steps, and what X changed by less that of the step
-      DenseMatrix             last_step, last_X, G; // G: of the differences
+      std::deque<DenseMatrix> steps, changes;       // differences of successive steps, and of X without the step itself
+      DenseMatrix             last_step, last_X, G; // G: Gram matrix of the differences
       const auto              inner  = [](const DenseMatrix &A, const DenseMatrix &B) { return A.cwiseProduct(B).sum(); };
       double                  before = 0., first = 0.;
       for (int i = 0; i < most_steps; ++i)
@@ -67,12 +67,12 @@ namespace Squeal
           const double norm = step.norm();
           if (i == 0)
             first = norm;
-          // Steps have stopped shrinking: rounding errors allow no more
+          // Steps no longer decrease because of rounding errors
           if (i > 0 && !(norm < contraction * before) && norm <= error_allowed)
             return true;
           if (!(norm <= hopeless_growth * first))
             return false;
-          // The next one would be as much smaller again
+          // Extrapolated: the next step is below the target
           if (norm <= error_wanted || (i > 0 && norm < before && norm * norm <= error_wanted * (before - norm)))
             {
               X -= step;
@@ -94,7 +94,7 @@ namespace Squeal
             {
               const auto      n = static_cast<Eigen::Index>(steps.size());
               Eigen::VectorXd b(n);
-              // Of the differences kept from before, and of the new one
+              // Gram matrix of the remembered differences and the new one
               G = DenseMatrix(G.bottomRightCorner(std::min(n - 1, G.rows()), std::min(n - 1, G.rows())));
               G.conservativeResize(n, n);
               for (Eigen::Index p = 0; p < n; ++p)
@@ -120,20 +120,20 @@ namespace Squeal
       return std::min(std::sqrt(sizes.colwise().sum().maxCoeff() * sizes.rowwise().sum().maxCoeff()), Z.norm());
     }
 
-    /// Whether P (T − limit) + (T − limit)ᵀ P is positive definite for P = diag(T): then Re κ > limit for all eigenvalues κ of T.
+    /// True if P (T − limit) + (T − limit)ᵀ P is positive definite for P = diag(T): then Re κ > limit for all eigenvalues κ of T.
     bool all_beyond_in_norm(const DenseMatrix &T, const double limit)
     {
       const Eigen::VectorXd d = T.diagonal();
       if (!(d.minCoeff() > limit))
         return false;
-      // ½ P⁻¹ (...) P⁻¹: friction couples a mode in proportion to the square of its frequency
+      // ½ P⁻¹ (...) P⁻¹, because friction couples a mode in proportion to the square of its frequency
       const DenseMatrix scaled = T * d.cwiseInverse().asDiagonal();
       DenseMatrix       S      = 0.5 * (scaled + scaled.transpose());
       S.diagonal() -= Eigen::VectorXd(limit * d.cwiseInverse().array() + least_definite);
       return S.llt().info() == Eigen::Success;
     }
 
-    /// Whether Re κ > limit for all eigenvalues κ of T, as far as that or powers of the Cayley transform show.
+    /// True if Re κ > limit is proved for all eigenvalues κ of T, by the norm or by powers of the Cayley transform.
     bool all_beyond(const DenseMatrix &T, const double limit, const double scale)
     {
       if (all_beyond_in_norm(T, limit))
@@ -153,8 +153,8 @@ namespace Squeal
       return false;
     }
 
-    /// A block [0, Σ; −Σ_i⁻¹ B, −Σ_i⁻¹ D Σ_j] of the companion form in coordinates (x, λ x / σ); without Σ where rows and columns are of
-    /// different modes. Products cost half of those of a dense block.
+    /// A block [0, Σ; −Σ_i⁻¹ B, −Σ_i⁻¹ D Σ_j] of the companion form in coordinates (x, λ x / σ); without Σ between different modes.
+    /// Products cost half as much as with a dense block.
     class CompanionBlock
     {
     public:
@@ -209,7 +209,7 @@ namespace Squeal
       return A;
     }
 
-    /// Blocks of a matrix in modal coordinates, those of the band first.
+    /// Blocks of a matrix in modal coordinates, modes of the band first.
     template <typename Block>
     struct Blocks
     {
@@ -219,15 +219,15 @@ namespace Squeal
       Block       rest;      ///< B_22
     };
 
-    /// What separates the band: R = [I; X], Lᵀ = [I − Y X, Y] and S, in modal coordinates.
+    /// Separation of the band: R = [I; X], Lᵀ = [I − Y X, Y] and S, in modal coordinates.
     struct Separation
     {
       DenseMatrix X, Y, first, small; ///< first = I − Y X
     };
 
     /**
-     * @param divided_right, divided_left the inverse of the reference's operators on residuals of X and Y
-     * @param is_beyond whether T has nothing of the band
+     * @param divided_right, divided_left inverse operators of the reference for residuals of X and Y
+     * @param is_beyond true if T has no eigenvalue in the band
      */
     template <typename Block, typename Right, typename Left, typename Proof>
     std::optional<Separation> separated(const Blocks<Block> &B,
@@ -254,7 +254,7 @@ namespace Squeal
       return result;
     }
 
-    /// X of ω_i J X_ij − ω_j X_ij J = R_ij, 2 × 2 blocks ij; and, with negative sums, of ω_j X_ij J − ω_i J X_ij = R_ij.
+    /// Solves ω_i J X_ij − ω_j X_ij J = R_ij for 2 × 2 blocks ij; with negative sums, ω_j X_ij J − ω_i J X_ij = R_ij.
     DenseMatrix divided_pairs(const DenseMatrix &R, const DenseMatrix &differences, const DenseMatrix &sums)
     {
       const Eigen::Index p = differences.rows(), q = differences.cols();
@@ -318,7 +318,7 @@ namespace Squeal
     if (!apart)
       return {};
 
-    // From coordinates (x, λ x / σ) of the band and of the rest to [φ; λ φ]
+    // From coordinates (x, λ x / σ) of both parts to [φ; λ φ]
     const DenseMatrix &X = apart->X, &Y = apart->Y, &first = apart->first;
     BandSubspaces      result{DenseMatrix::Zero(2 * n, 2 * k), DenseMatrix(2 * n, 2 * k), apart->small};
     result.right.topLeftCorner(k, k).setIdentity();

@@ -13,15 +13,15 @@ namespace Squeal
 {
   namespace
   {
-    /// Parts of a vector below this fraction of the whole are rounding errors.
+    /// Components of a vector below this fraction of it are rounding errors.
     constexpr double negligible = 1e-15;
-    /// Unit vectors of which projecting them again leaves less than this were rounding errors.
+    /// A unit vector whose norm falls below this in a second projection consists of rounding errors.
     constexpr double meaningless = 1e-3;
 
-    /// Columns of which the others leave more than this share are far from dependent.
+    /// Columns are clearly independent if more than this fraction of them remains after projection.
     constexpr double independent = 1e-2;
 
-    /// Parts of stacked coordinates, each of r rows, side by side.
+    /// Parts of stacked coordinates, r rows each, side by side.
     DenseMatrix parts_of(const DenseMatrix &states, const int degree)
     {
       const Eigen::Index r = states.rows() / degree, k = states.cols();
@@ -31,7 +31,7 @@ namespace Squeal
       return parts;
     }
 
-    /// Parts side by side, stacked, each with rows of zeros appended up to @p r_new.
+    /// Stacks parts, each with zero rows appended up to @p r_new.
     DenseMatrix stacked(const DenseMatrix &parts, const int degree, const int r_new)
     {
       const Eigen::Index k      = parts.cols() / degree;
@@ -41,8 +41,8 @@ namespace Squeal
       return states;
     }
 
-    /// X Π = Q R by modified Gram–Schmidt with column pivoting; columns left with no more than @p smallest, one for each, are dropped. Q
-    /// replaces the first columns of X; returns R Πᵀ, k × b.
+    /// X Π = Q R by modified Gram–Schmidt with column pivoting; columns with a remainder of at most @p smallest, one value for each, are
+    /// dropped. Q replaces the first columns of X; returns R Πᵀ, k × b.
     DenseMatrix pivoted_qr(MultiVector &X, std::vector<double> smallest)
     {
       const int        b = X.n_columns();
@@ -96,7 +96,7 @@ namespace Squeal
       return result;
     }
 
-    /// The same for a small matrix, by Householder reflections (X is replaced by Q, n × k).
+    /// pivoted_qr() of a small matrix by Householder reflections (X is replaced by Q, n × k).
     DenseMatrix pivoted_qr(DenseMatrix &X, const double smallest)
     {
       const DenseMatrix::Index b = X.cols();
@@ -114,7 +114,7 @@ namespace Squeal
       return R * qr.colsPermutation().transpose();
     }
 
-    /// Smallest pivot of R Πᵀ by pivoted_qr() / norm of its column.
+    /// Smallest ratio of a pivot of R Πᵀ from pivoted_qr() to the norm of its column.
     double smallest_share(const DenseMatrix &R)
     {
       double result = 1.;
@@ -127,7 +127,7 @@ namespace Squeal
       return result;
     }
 
-    /// A above B.
+    /// A stacked on B.
     DenseMatrix above(const DenseMatrix &A, const DenseMatrix &B)
     {
       DenseMatrix result(A.rows() + B.rows(), A.cols());
@@ -165,7 +165,7 @@ namespace Squeal
     DenseMatrix coefficients = DenseMatrix::Zero(n_vectors, X.n_columns());
     if (n_vectors > 0)
       {
-        // The second round removes what rounding errors left of the first
+        // The second pass removes rounding errors of the first
         const DenseMatrix most = gram(basis(), X);
         multiply_add(-1., basis(), most, 1., X);
         const DenseMatrix rest = gram(basis(), X);
@@ -176,7 +176,7 @@ namespace Squeal
     std::for_each(smallest.begin(), smallest.end(), [](double &x) { x *= negligible; });
     DenseMatrix R = pivoted_qr(X, smallest);
 
-    // Where the columns were almost dependent, normalising what was left of them magnified its rounding errors: once more
+    // Normalising the remainder of nearly dependent columns amplifies its rounding errors: project once more
     double share = smallest_share(R);
     agree(map.communicator(), &share, 1);
     for (int round = 0; round < 2 && R.rows() > 0 && share < independent; ++round)
@@ -345,9 +345,8 @@ namespace Squeal
     double              condition = 0., separation = 0.;
     std::vector<double> work(std::max(n, 1));
     lapack_int          integer_work = 0;
-    // A positive result means that two values too close to be exchanged stay
-    // where they are: the Schur form is valid all the same. LAPACKE's driver
-    // without "_work" hands over no integer work space here, and crashes.
+    // A positive result means that two values too close to be exchanged keep their order; the Schur form is still valid. LAPACKE's driver
+    // without "_work" passes no integer workspace here and crashes
     LAPACKE_dtrsen_work(LAPACK_COL_MAJOR, 'N', 'V', selected.data(), n, T.data(), n, Z.data(), n, real.data(), imaginary.data(), &q,
                         &condition, &separation, work.data(), n, &integer_work, 1);
     if (q > 0 && q < n && T(q, q - 1) != 0.)

@@ -16,16 +16,16 @@ namespace Squeal
   {
     using Complex = std::complex<double>;
 
-    /// Corrections larger than this fraction of |λ| mean that ψᵀQ'(λ)φ vanishes: the value is defective.
+    /// Corrections above this fraction of |λ| mean that ψᵀQ'(λ)φ vanishes: the eigenvalue is defective.
     constexpr double largest_correction = 1e-6;
-    /// ‖M − I‖_F that may be rounding errors of modal coordinates; the values are corrected with M as it is.
+    /// ‖M − I‖_F attributed to rounding errors of modal coordinates; eigenvalues are corrected with M itself.
     constexpr double unit_mass = 1e-11;
-    /// Part of λ that is imaginary, below which nothing takes it for oscillating.
+    /// |Im λ| / |λ| below which λ is certainly real [-].
     constexpr double surely_real = 1e-13;
-    /// |Im λ| / |λ| up to which λ is real: rounding in corrected eigenvalues stays below, oscillating modes far above.
+    /// |Im λ| / |λ| up to which λ counts as real: above rounding errors of corrected eigenvalues, far below oscillating modes [-].
     constexpr double real_dense = 1e-12;
 
-    /// The root of a real or complex square with Im λ ≥ 0.
+    /// Square root of a real or complex number with Im λ ≥ 0.
     Complex upper_root(const Complex square)
     {
       if (square.imag() == 0.)
@@ -34,7 +34,7 @@ namespace Squeal
       return root.imag() < 0. ? -root : root;
     }
 
-    /// One step λ -= ψᵀQ(λ)φ / ψᵀQ'(λ)φ for each triple.
+    /// One correction λ -= ψᵀQ(λ)φ / ψᵀQ'(λ)φ for each triple.
     void correct(DenseQuadraticModes &modes, const DenseMatrix &M, const DenseMatrix *C, const DenseMatrix &K)
     {
       const ComplexDenseMatrix m = multiply(M, modes.right), k = multiply(K, modes.right);
@@ -50,7 +50,7 @@ namespace Squeal
         }
     }
 
-    /// The numbers of wanted eigenvalues in their order; real ones become those of @p modes.
+    /// Indices of the requested eigenvalues in their order; stores real ones in @p modes.
     std::vector<int> sorted_values(const int                          n,
                                    const std::function<Complex(int)> &value,
                                    const bool                         linear,
@@ -81,7 +81,7 @@ namespace Squeal
       return wanted;
     }
 
-    /// Modes as dense_quadratic_modes() describes them; with @p squares those of dense_modes_of_band().
+    /// Modes as in dense_quadratic_modes(); with @p squares as in dense_modes_of_band().
     std::optional<DenseQuadraticModes> found_modes(const DenseMatrix         &mass,
                                                    const DenseMatrix         *damping,
                                                    const DenseMatrix         &stiffness,
@@ -128,7 +128,7 @@ namespace Squeal
           companion.bottomRightCorner(r, r) = C / -unit;
         }
       const auto lambda_of = [&](const Complex &of_companion) { return unit * (linear ? upper_root(of_companion) : of_companion); };
-      // Vectors of hardly more than what is sorted out below
+      // Select few vectors beyond those kept below
       const DenseEigenpairs pairs = eigenpairs(companion, [&](const Complex &of_companion) {
         const Complex lambda = lambda_of(of_companion);
         return std::abs(lambda.imag()) <= largest_circular_frequency &&
@@ -144,7 +144,7 @@ namespace Squeal
       modes.right = modes.left = ComplexDenseMatrix(r, k);
       if (k == 0)
         return modes;
-      // yᴴ A = λ yᴴ, but ψᵀ without conjugate.
+      // yᴴ A = λ yᴴ, but ψᵀ is not conjugated
       std::vector<int> columns;
       for (const int j : wanted)
         columns.push_back(static_cast<int>(std::lower_bound(pairs.numbers.begin(), pairs.numbers.end(), j) - pairs.numbers.begin()));
@@ -176,7 +176,7 @@ namespace Squeal
     for (Eigen::Index j = 0; j < X.cols(); ++j)
       if (const double largest = X.col(j).cwiseAbs().maxCoeff(); largest > 0.)
         {
-          // Of equal ones the first
+          // The first among equal ones
           const auto    x = X.col(j);
           const Complex pivot =
             *std::find_if(x.begin(), x.end(), [largest](const Complex &y) { return std::abs(y) >= (1. - 1e-8) * largest; });

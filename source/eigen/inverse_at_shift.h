@@ -11,7 +11,7 @@
 
 namespace Squeal
 {
-  /// S and its eigenvalues: the only place where λ becomes θ and ν. In units of the radius ρ: θ = ρ θ̂ with λ = s + θ for degree two, θ =
+  /// S and its eigenvalues: the only conversion between λ, θ and ν. In units of the radius ρ: θ = ρ θ̂ with λ = s + θ for degree two, θ =
   /// ρ² θ̂ with λ² = s² + θ for degree one; ν̂ = 1 / θ̂.
   class InverseAtShift
   {
@@ -24,8 +24,8 @@ namespace Squeal
       , zero_square(options.zero_modulus > 0. ? options.zero_modulus * options.zero_modulus :
                                                 std::pow(zero_frequency * options.largest_circular_frequency, 2))
     {
-      // The discs |λ - s| ≤ radius and |λ² - s²| ≤ radius² hold every wanted λ. Of degree one the last to be reached is the
-      // corner with the largest Im λ, of degree two it is -ρ.
+      // The discs |λ - s| ≤ radius and |λ² - s²| ≤ radius² contain every requested λ. The farthest one is the corner with the largest Im λ
+      // for degree one, -ρ for degree two
       const std::complex<double> corner(-options.largest_damping * options.largest_circular_frequency, options.largest_circular_frequency);
       largest_modulus = std::abs(corner);
       radius          = degree == 2 ? largest_modulus + s : std::sqrt(std::abs(corner * corner - s * s));
@@ -56,7 +56,7 @@ namespace Squeal
       n_solves += b;
     }
 
-    /// λ of ν; of the two for degree one, the one with Im λ ≥ 0, and Re λ ≥ 0 if it is real.
+    /// λ for ν; for degree one the λ with Im λ ≥ 0, and Re λ ≥ 0 if it is real.
     std::complex<double> value(const std::complex<double> nu) const
     {
       const double               tiny  = std::numeric_limits<double>::min();
@@ -64,7 +64,7 @@ namespace Squeal
       if (degree == 2)
         return s + radius * theta;
       const std::complex<double> square = s * s + radius * radius * theta;
-      // A negative square must not depend on the sign of a zero.
+      // The result for a negative square must not depend on the sign of a zero
       const std::complex<double> root =
         square.imag() == 0. && square.real() < 0. ? std::complex<double>(0., std::sqrt(-square.real())) : std::sqrt(square);
       return root.imag() < 0. ? -root : root;
@@ -77,15 +77,14 @@ namespace Squeal
 
     /**
      * Estimate of ‖Q(λ)φ‖/‖Kφ‖ for φ = upper part of S x and ‖S x - ν x‖ = ε.
-     * With S x = ν x + [r_0; r_1], Q(λ)φ = θ (C + 2 s M) r_0 + θ² M r_0 + ρ θ M r_1
-     * (degree two) or θ M r_0 (degree one): no stiffness enters. Compared
-     * with |λ²| |ν| ‖M u‖ for uniform masses; the residuals proper decide.
+     * With S x = ν x + [r_0; r_1], Q(λ)φ = θ (C + 2 s M) r_0 + θ² M r_0 + ρ θ M r_1 (degree two) or θ M r_0 (degree one), without the
+     * stiffness. Relative to |λ²| |ν| ‖M u‖ for uniform masses; the true residuals decide.
      */
     double residual_estimate(const std::complex<double> nu, const double epsilon) const
     {
       const double theta  = 1. / std::max(std::abs(nu), std::numeric_limits<double>::min());
       const double square = std::norm(value(nu)), lambda = std::sqrt(square) / radius;
-      // The error of λ² must leave a zero a zero
+      // The error of λ² must keep a zero below the threshold
       if (square < zero_square)
         return std::max(1., theta * radius * radius * zero_margin / zero_square) * epsilon * theta;
       if (degree == 1)
@@ -93,23 +92,23 @@ namespace Squeal
       return epsilon * theta * theta / (lambda * lambda) * (1. + theta + 2. * s / radius) * std::hypot(1., theta);
     }
 
-    /// Tolerances of 10⁻⁹ leave 10⁻² of what counts as zero.
+    /// Tolerances of 10⁻⁹ reach 10⁻² of the zero threshold.
     static constexpr double zero_margin = 1e-7;
 
     const QuadraticPencil &pencil;
     const LinearOperator  &inverse;
     double                 s, radius;
-    double                 largest_modulus; ///< ρ: of the wanted λ
+    double                 largest_modulus; ///< ρ of the requested λ [rad/s]
     int                    degree;
-    double                 zero_square; ///< |λ|² up to this is zero
+    double                 zero_square; ///< |λ|² up to this counts as zero
     mutable int            n_solves = 0;
   };
 
-  /// Some steps of minimal residuals with Q(s)⁻¹ for the modes that miss the tolerance: a mode far below the others keeps rounding errors
-  /// of high frequency, and one with strong dampers keeps motions of these, small in φ but large in Kφ or Cφ, where Q(s)⁻¹ nearly inverts
-  /// Q(λ) but for a factor. What does not lower the residual is not taken.
+  /// Corrects modes that miss the tolerance by steps of minimal residuals with Q(s)⁻¹. Modes far below the others contain rounding errors
+  /// of high frequency, and modes with strong dampers contain high-frequency motions, small in φ but large in Kφ or Cφ, for which Q(s)⁻¹
+  /// nearly inverts Q(λ) up to a factor. Steps that do not lower the residual are rejected.
   void correct(const QuadraticPencil &pencil, const LinearOperator &inverse, QuadraticModes &modes, double tolerance);
 
-  /// Largest ratio of a residual to what is accepted: the tolerance or, where that is more, rounding errors of Kφ and λCφ.
+  /// Largest ratio of a residual to its limit: the tolerance or, if larger, rounding errors of Kφ and λCφ.
   double excess(const QuadraticPencil &pencil, const QuadraticModes &modes, const QuadraticModesOptions &options);
 } // namespace Squeal

@@ -12,14 +12,14 @@ namespace Squeal
 {
   namespace
   {
-    /// Parts of a vector below this fraction of the whole are rounding errors.
+    /// Components of a vector below this fraction of it are rounding errors.
     constexpr double rounding_of_whole = 1e-15;
-    /// Unit vectors of which projecting them again leaves less than this were rounding errors.
+    /// A unit vector whose norm falls below this in a second projection consists of rounding errors.
     constexpr double rounding_of_unit = 1e-3;
 
     /**
-     * W = Q R by Gram–Schmidt in the inner product of M, with B = M W carried along; columns of which no more than the fraction
-     * @p smallest is left are dropped. Q and M Q replace the first columns of W and B; returns R, k × b.
+     * W = Q R by Gram–Schmidt in the inner product of M, updating B = M W; columns with a remainder of at most the fraction @p smallest are
+     * dropped. Q and M Q replace the first columns of W and B; returns R, k × b.
      */
     DenseMatrix mass_qr(MultiVector &W, MultiVector &B, const double smallest)
     {
@@ -59,7 +59,7 @@ namespace Squeal
     class BlockLanczos
     {
     public:
-      /// @p start is used up. Columns of it that depend on others are left out.
+      /// Overwrites @p start. Linearly dependent columns of it are dropped.
       BlockLanczos(const ShiftInvert &A, MultiVector start, const int n_reserved)
         : A(A)
         , basis(std::make_unique<MultiVector>(A.map(), std::max(n_reserved, 1), false))
@@ -68,7 +68,7 @@ namespace Squeal
         append(start);
       }
 
-      /// Q becomes part of V.
+      /// Appends Q to V.
       void expand()
       {
         const int   first = m, width = b;
@@ -106,7 +106,7 @@ namespace Squeal
         return result;
       }
 
-      /// A x / ν of the first @p n Ritz vectors: one more step of inverse iteration than x, at no cost.
+      /// A x / ν for the first @p n Ritz vectors: an additional step of inverse iteration at no cost.
       MultiVector ritz_vectors(const RitzPairs &ritz, const int n) const
       {
         const DenseMatrix Y = ritz.vectors.leftCols(n);
@@ -115,8 +115,8 @@ namespace Squeal
         return view(*basis, 0, m + b) * coordinates;
       }
 
-      int m = 0; ///< vectors of V
-      int b = 0; ///< vectors of Q; none is left where V spans an invariant subspace
+      int m = 0; ///< number of vectors in V
+      int b = 0; ///< number of vectors in Q; 0 if V spans an invariant subspace
 
     private:
       struct Coefficients
@@ -124,13 +124,13 @@ namespace Squeal
         DenseMatrix H, R;
       };
 
-      /// Makes W = V H + Q R the new active block Q; W is used up.
+      /// Makes W = V H + Q R the new active block Q; overwrites W.
       Coefficients append(MultiVector &W)
       {
         const MultiVector V = view(*basis, 0, m);
         MultiVector       B = A.mass * W;
         DenseMatrix       H = DenseMatrix::Zero(m, W.n_columns()), all = DenseMatrix::Identity(W.n_columns(), W.n_columns());
-        // Normalising between the rounds makes "twice is enough" hold for each direction, however little the first one left.
+        // Normalising between the passes makes "twice is enough" valid for each direction, however small its remainder
         for (const double smallest : {rounding_of_whole, rounding_of_unit})
           {
             MultiVector rest = view(W, 0, static_cast<int>(all.rows())), its_image = view(B, 0, static_cast<int>(all.rows()));
@@ -146,7 +146,7 @@ namespace Squeal
         b = static_cast<int>(all.rows());
         if (m + b > basis->n_columns())
           throw SolverError("the basis of Lanczos vectors is full", "symmetric eigenproblem",
-                            "this is a mistake in the program: please report it");
+                            "this is an error in the program: please report it");
         if (b > 0)
           {
             MultiVector place = view(*basis, m, b);
@@ -162,7 +162,7 @@ namespace Squeal
       DenseMatrix                  T, R;
     };
 
-    /// How many Ritz values have converged, counted from the largest up to the first that has not.
+    /// Number of converged Ritz values, from the largest up to the first that has not converged.
     int n_converged(const BlockLanczos::RitzPairs &ritz, const double tolerance)
     {
       int n = 0;
@@ -178,13 +178,13 @@ namespace Squeal
     const int n = A.n_free(), width = std::max(1, std::min(request.block_size, n / 4));
     const int largest = std::min(n - width, 4 * request.n_wanted + (20 + 10 * request.attempt) * width);
 
-    // One application takes from the start what belongs to high frequencies
+    // One application removes high frequencies from the start vectors
     MultiVector random = random_vectors(A.map(), width, request.seed), start(A.map(), width, false);
     A.apply(random, start);
-    // Room that is not written to takes no memory, while more room later would be a copy beside the former one
+    // Reserve enough: unused space takes no physical memory, while growing later would need a copy
     BlockLanczos process(A, std::move(start), largest + 2 * width);
 
-    // Some two vectors for each mode are what it takes in the end
+    // About two vectors per mode are needed in the end
     BlockLanczos::RitzPairs ritz;
     int                     n_found = 0;
     for (int size = std::min(largest, 3 * request.n_wanted / 2 + 2 * width); n_found < request.n_wanted;)

@@ -19,22 +19,22 @@ namespace Squeal
   {
     using Complex = std::complex<double>;
 
-    /// |Im λ| / |λ| up to which λ is real: a double real λ splits into a pair by the root of rounding errors.
+    /// |Im λ| / |λ| up to which λ is real: rounding splits a double real λ into a pair by the square root of rounding errors [-].
     constexpr double nearly_real = 1e-7;
-    /// Values beyond the radius that have to converge, so that none inside can still be on its way.
+    /// Number of values outside the radius that must converge, to be sure that all inside have converged.
     constexpr int n_beyond = 2;
-    /// Block steps of fresh directions, with the values found deflated, before these are taken as complete.
+    /// Block steps from random directions, with the found values deflated, before these count as complete.
     constexpr int n_proving_steps = 8;
-    /// The same if fewer modes were found than expected.
+    /// Number of these steps if fewer modes were found than expected.
     constexpr int n_searching_steps = 16;
 
-    /// How far the Ritz values have converged.
+    /// Convergence of the Ritz values.
     struct Convergence
     {
       int    n_inside    = 0; ///< Ritz values inside the radius
       int    n_converged = 0; ///< of these, converged
       double worst       = 0.;
-      bool   complete    = false; ///< all of them, and some beyond
+      bool   complete    = false; ///< all of them, and some outside, have converged
     };
 
     Convergence convergence(const InverseAtShift &transformation, const RitzPairs &ritz, const double tolerance, const bool exhausted)
@@ -62,15 +62,15 @@ namespace Squeal
       return state;
     }
 
-    /// The λ = x + iy of the result, before their vectors are known.
+    /// A λ = x + iy in the result, before its vectors are computed.
     struct Candidate
     {
       Complex value;
-      int     position;  ///< of the real part among the eigenvectors of the projected matrix
+      int     position;  ///< column of the real part among the eigenvectors of the projected matrix
       double  conjugate; ///< sign of the imaginary part; 0 for a real vector
     };
 
-    /// Multiplies each φ by the factor that makes ‖φ‖₂ = 1 and its entry of largest modulus real and positive.
+    /// Scales each φ to ‖φ‖₂ = 1 with its entry of largest modulus real and positive.
     void normalize(MultiVector &real, MultiVector &imaginary)
     {
       fix_phase(real, imaginary);
@@ -100,7 +100,7 @@ namespace Squeal
           if (!transformation.inside(nu) || std::abs(lambda) > transformation.largest_modulus)
             continue;
           const bool is_real = !(std::abs(lambda.imag()) / std::abs(lambda) > nearly_real);
-          // Real λ below a part of the band's end creep: they count with the zeros.
+          // Real λ below a fraction of the band's end are creep motions: they count as zeros
           if (!(std::norm(lambda) > transformation.zero_square) ||
               (is_real && !(std::abs(lambda) / options.largest_circular_frequency > zero_frequency)))
             modes.n_zero_values += transformation.degree == 1 ? 2 : 1;
@@ -112,8 +112,7 @@ namespace Squeal
             }
           else if (lambda.imag() > 0. && lambda.imag() <= options.largest_circular_frequency && lambda.real() >= -options.largest_decay)
             {
-              // The members of a conjugate pair ν share two columns; of degree
-              // one both have a λ with Im λ > 0, of degree two only one.
+              // The members of a conjugate pair ν share two columns; for degree one both have a λ with Im λ > 0, for degree two only one
               candidates.push_back({lambda, ritz.positions[i], !pair ? 0. : nu.imag() > 0. ? 1. : -1.});
             }
         }
@@ -130,7 +129,7 @@ namespace Squeal
       modes.imaginary_part = k > 0 ? std::make_shared<MultiVector>(pencil.mass->map(), k) : nullptr;
       if (k > 0)
         {
-          // Some modes at a time: beside the basis there is not always room for all of them twice
+          // A few modes at a time: memory may not suffice for all of them twice
           constexpr int modes_together = 16;
           for (int first = 0; first < k; first += modes_together)
             {
@@ -194,7 +193,7 @@ namespace Squeal
         refuse("The operators have different sizes", "hand over the factors of the same pencil");
     }
 
-    /// The iteration: grows the Krylov space, restarts it, and says when it suffices.
+    /// The iteration: extends the Krylov space, restarts it, and checks convergence.
     class Search
     {
     public:
@@ -206,7 +205,7 @@ namespace Squeal
         , tolerance(0.3 * options.tolerance)
       {}
 
-      /// Expands the space to @p n_basis states.
+      /// Extends the space to @p n_basis states.
       void grow(const int n_basis)
       {
         while (krylov.dimension < n_basis && !exhausted)
@@ -223,7 +222,7 @@ namespace Squeal
           }
       }
 
-      /// Looks at the Ritz values.
+      /// Checks the Ritz values.
       void assess()
       {
         worst_before     = state.worst;
@@ -238,13 +237,13 @@ namespace Squeal
                          std::to_string(krylov.dimension) + " vectors, " + std::to_string(transformation.n_solves) + " solves");
       }
 
-      /// Size at which to look next; restarts if it does not fit.
+      /// Size at the next check; restarts if it does not fit.
       int next_size()
       {
         int n_more = n_until_next_look();
         if (krylov.dimension + n_more > largest_basis())
           {
-            // Half of the room beyond the wanted vectors keeps what is on its way.
+            // Half of the space beyond the requested vectors keeps values that are converging
             const int n_kept = std::min(krylov.dimension, state.n_inside + (largest_basis() - state.n_inside) / 3);
             if (++n_restarts > options.max_restarts)
               throw_unconverged(state, state.worst, "no convergence after " + std::to_string(options.max_restarts) + " restarts", options);
@@ -254,8 +253,9 @@ namespace Squeal
         return krylov.dimension + n_more;
       }
 
-      /// Vectors until the next look. All values converge within a few steps, each of which costs more than a look. The worst one tells how
-      /// many it needs if it goes on to fall as since the last look; three quarters of these, for it falls faster in the end.
+      /// Number of vectors until the next check. All values converge within a few steps, each of which costs more than a check:
+      /// extrapolates the decrease of the worst one since the last check; three quarters of the result, because it becomes faster at the
+      /// end.
       int n_until_next_look() const
       {
         const int n_missing = state.n_inside - state.n_converged, least = transformation.degree * std::max(krylov.block_size, 1);
@@ -267,11 +267,9 @@ namespace Squeal
       }
 
       /**
-       * Looks for eigenvalues inside the radius that the block had no
-       * component of, such as members of a cluster beyond the block size: a
-       * short process from fresh directions, with everything inside deflated.
-       * If it finds any, fresh directions join the search and the result is
-       * false.
+       * Searches for eigenvalues inside the radius without a component in the block, such as members of a cluster larger than the block: a
+       * short process from random directions, with everything inside deflated. If it finds any, random directions join the search and the
+       * result is false.
        */
       bool proven()
       {
@@ -290,7 +288,7 @@ namespace Squeal
         if (count <= state.n_inside)
           return true;
         if (options.report)
-          options.report("fresh directions show " + std::to_string(count - state.n_inside) + " eigenvalues or more that were missing");
+          options.report("random directions show " + std::to_string(count - state.n_inside) + " or more missing eigenvalues");
         n_wanted += static_cast<int>(count) - state.n_inside;
         inject(n_fresh);
         return false;
@@ -310,14 +308,14 @@ namespace Squeal
       InverseAtShift               transformation;
       int                          n_wanted; ///< states needed at least
       CompactKrylov                krylov;
-      double                       tolerance; ///< on the estimate of the residual
+      double                       tolerance; ///< for the estimated residual
       RitzPairs                    ritz;
       Convergence                  state;
       bool                         exhausted  = false; ///< the basis spans all states
       int                          n_restarts = 0, n_basis_largest = 0;
 
     private:
-      /// Sums of the close vectors, if any, and of all others so much that the block has a component of every mode.
+      /// Sums of the close vectors, if any, and of all others, so that the block has a component in every mode.
       MultiVector first_block()
       {
         constexpr double share_of_others = 1e-3;
@@ -336,7 +334,7 @@ namespace Squeal
         return [this](const MultiVector &states, MultiVector &image) { transformation.apply(states, image); };
       }
 
-      /// Different ones at every call.
+      /// Different vectors at every call.
       MultiVector fresh_vectors(const int n)
       {
         return random_vectors(transformation.pencil.mass->map(), n, options.seed + 7919 * n_injections++);
@@ -348,7 +346,7 @@ namespace Squeal
       }
 
       int    n_injections   = 0;
-      int    dimension_seen = 0, dimension_before = 0; ///< at the last look and the one before
+      int    dimension_seen = 0, dimension_before = 0; ///< at the last check and at the previous one
       double worst_before = 0.;
     };
   } // namespace
@@ -381,7 +379,7 @@ namespace Squeal
                 modes.n_basis    = search.n_basis_largest;
                 return modes;
               }
-            // The estimate assumed uniform masses: ask for as much more as it was wrong.
+            // The estimate assumes uniform masses: tighten it by its error
             search.tolerance *= 0.3 / excessive;
             if (search.exhausted || search.tolerance < std::numeric_limits<double>::epsilon())
               throw_unconverged(search.state, excessive * options.tolerance, "rounding errors do not allow a smaller residual", options);

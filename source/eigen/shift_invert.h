@@ -34,7 +34,7 @@ namespace Squeal
       return mass.map();
     }
 
-    /// Y = (I - ΦΦᵀM) (K + s M)⁻¹ B where B = M X is at hand.
+    /// Y = (I - ΦΦᵀM) (K + s M)⁻¹ B if B = M X is known.
     void apply_to_image(const MultiVector &B, MultiVector &Y) const
     {
       inverse.apply(B, Y);
@@ -61,21 +61,21 @@ namespace Squeal
     const MultiVector    *deflated;
   };
 
-  /// What is asked of a Krylov solver.
+  /// Requirements for a Krylov solver.
   struct KrylovRequest
   {
     int          n_wanted;
     double       tolerance; ///< relative residual of the inverted problem
     int          block_size;
     unsigned int seed;
-    int          attempt; ///< number of earlier starts: later ones search a larger space
+    int          attempt; ///< number of previous starts: later ones search a larger space
     std::string  what;
   };
 
   /// Approximate eigenvectors of the largest eigenvalues by Anasazi: up to n_wanted, nothing if none converged.
   std::optional<MultiVector> anasazi_vectors(const ShiftInvert &A, const KrylovRequest &request);
 
-  /// The same by a block Lanczos process; those that have converged, up to the largest that has not.
+  /// The same by block Lanczos; only converged vectors, up to the largest value that has not converged.
   std::optional<MultiVector> lanczos_vectors(const ShiftInvert &A, const KrylovRequest &request);
 
   /// The same by ARPACK.

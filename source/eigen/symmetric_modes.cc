@@ -19,12 +19,12 @@ namespace Squeal
 {
   namespace
   {
-    /// Rows of a matrix that nothing couples with others; they stay on their processes.
+    /// Rows of a matrix that are not coupled with others; they stay on their processes.
     struct UncoupledPart
     {
       RowMap                                  map;
-      std::vector<int>                        places;  ///< of its rows among those of this process
-      std::shared_ptr<const std::vector<int>> numbers; ///< of all rows of the matrix, each in its part
+      std::vector<int>                        places;  ///< local indices of its rows
+      std::shared_ptr<const std::vector<int>> numbers; ///< for all rows of the matrix, number within its part
     };
 
     /// For each row the smallest row number of its part, the same on every process.
@@ -35,7 +35,7 @@ namespace Squeal
       SparseMatrix::Row row;
       while (true)
         {
-          // Parts so far, joined by the rows here
+          // Parts joined so far by the local rows
           std::vector<int>                   rank(label.size(), 0), parent(label.size());
           boost::disjoint_sets<int *, int *> sets(rank.data(), parent.data());
           for (int i = 0; i < A.n_rows(); ++i)
@@ -60,14 +60,14 @@ namespace Squeal
         }
     }
 
-    /// The connected parts of the graph of a square symmetric matrix, in the order of their first rows.
+    /// Connected components of the graph of a square symmetric matrix, in the order of their first rows.
     std::vector<UncoupledPart> uncoupled_parts(const SparseMatrix &A)
     {
       const std::vector<int>       labels  = part_labels(A);
       const auto                   numbers = std::make_shared<std::vector<int>>();
       std::map<int, UncoupledPart> parts;
       std::map<int, int>           sizes;
-      // Rows keep their order, in which processes have them one after the other
+      // Rows keep their order, and with it contiguous ranges per process
       for (const int label : labels)
         {
           parts[label];
@@ -91,7 +91,7 @@ namespace Squeal
       });
     }
 
-    /// The modes of all uncoupled parts in one order, as vectors of the rows of all of them.
+    /// Modes of all uncoupled parts, sorted, as vectors of all rows.
     SymmetricModes merged(const std::vector<UncoupledPart> &uncoupled, const std::vector<SymmetricModes> &parts, const RowMap &rows)
     {
       SymmetricModes all;
@@ -125,7 +125,7 @@ namespace Squeal
       return all;
     }
 
-    /// Eigenvalues closer than this part of them are not told apart by counting [-].
+    /// Relative distance of eigenvalues below which counting does not separate them [-].
     constexpr double cluster_width = 1e-3;
   } // namespace
 
@@ -135,7 +135,7 @@ namespace Squeal
                                  const SymmetricModesOptions &options)
   {
     if (!(largest_eigenvalue > 0.))
-      throw SolverError("modes were asked for up to " + std::to_string(largest_eigenvalue) + " rad²/s²", options.what,
+      throw SolverError("the requested end of the band is " + std::to_string(largest_eigenvalue) + " rad²/s²", options.what,
                         "give a positive end of the band");
     if (!options.by_parts)
       return SymmetricSolver(K, M, largest_eigenvalue, options).modes();
@@ -161,7 +161,7 @@ namespace Squeal
 
   ModeCount count_below(const SparseMatrix &K, const SparseMatrix &M, double limit, const std::string &what)
   {
-    // A pivot vanishes where the limit is an eigenvalue: step over it.
+    // A pivot vanishes if the limit is an eigenvalue: increase it slightly
     for (int attempt = 0; attempt < 4; ++attempt)
       {
         int       n_null  = 0;
@@ -181,7 +181,7 @@ namespace Squeal
                        const double        highest,
                        const std::string  &what)
   {
-    // A bracket: fewer modes lie below its lower end, enough below its upper one
+    // Bracket: too few modes below the lower end, enough below the upper one
     ModeCount lower = {0, 0.}, upper = count_below(K, M, std::min(first, highest), what);
     while (upper.n_modes < n_modes)
       {
@@ -193,7 +193,7 @@ namespace Squeal
         upper = count_below(K, M, std::min(2. * upper.limit, highest), what);
       }
 
-    // Modes are spread about evenly, so that a straight line leads into the gap; half a mode off either end at least
+    // Modes are distributed about evenly: regula falsi, at least half a mode from either end
     while (upper.n_modes > n_modes && upper.limit - lower.limit > cluster_width * upper.limit)
       {
         const double    share                      = (n_modes + 0.5 - lower.n_modes) / (upper.n_modes - lower.n_modes);

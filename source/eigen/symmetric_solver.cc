@@ -19,18 +19,18 @@ namespace Squeal
 {
   namespace
   {
-    /// Residual of a rigid-body mode, beside the largest eigenvalue wanted, that is accepted.
+    /// Largest accepted residual of a rigid-body mode, relative to the largest requested eigenvalue [-].
     constexpr double largest_rigid_residual = 1e-8;
 
-    /// Lowest eigenvalue over the end of the band, below which K⁻¹ magnifies its mode so much that those of the others lose digits.
+    /// Lowest eigenvalue relative to the end of the band, below which K⁻¹ amplifies its mode so much that others lose digits [-].
     constexpr double almost_rigid = 1e-6;
 
-    /// s over the end of the band where a body can move rigidly, or almost.
+    /// s relative to the end of the band if a body has rigid-body or nearly rigid motions [-].
     constexpr double shift_of_free_bodies = 0.01;
 
     constexpr int most_refinements = 3;
 
-    /// Starts that may find nothing new, the last of them with the other solver.
+    /// Starts without new modes before giving up; the last one uses the other solver.
     constexpr int most_fruitless_starts = 4;
 
   } // namespace
@@ -57,7 +57,7 @@ namespace Squeal
         dense_pairs = symmetric_eigenpairs(stiffness, mass);
         return;
       }
-    // Massless dofs: M x = ν (K + s M) x with ν = 1 / (ω² + s), of which the zeros are left out
+    // For massless dofs: M x = ν (K + s M) x with ν = 1 / (ω² + s), omitting ν = 0
     const double     s       = count.limit;
     const RealPairs  inverse = symmetric_eigenpairs(mass, stiffness + s * mass); // ascending
     constexpr double zero    = 1e-12;
@@ -94,7 +94,7 @@ namespace Squeal
         Residuals result = refine(pairs);
         if (!(result.excess <= 1.) && options.solver != RealSolver::lanczos && !is_dense())
           {
-            // Of copies of an eigenvalue libraries may leave a mixture with others, which refinement does not part
+            // For copies of an eigenvalue, libraries may return mixtures with others, which refinement does not separate
             options.solver = RealSolver::lanczos;
             pairs          = find_all();
             result         = refine(pairs);
@@ -119,8 +119,7 @@ namespace Squeal
         }
       catch (const SolverError &)
         {
-          // The body can move rigidly, so it seems: a shift helps. If the
-          // reason was another one, the next attempt says so.
+          // K is probably singular because of rigid-body motions: a shift helps. For another reason, the next attempt reports it
         }
     if (shift == 0.)
       shift = shift_of_free_bodies * count.limit;
@@ -135,8 +134,7 @@ namespace Squeal
 
     RitzPairs pairs;
     int       n_found = 0, n_fruitless = 0;
-    // Members of multiple eigenvalues may be missing at first; every start
-    // finds at least one more, in general all.
+    // Members of multiple eigenvalues may be missing at first; every start finds at least one more, usually all
     for (unsigned int attempt = 0; n_found < count.n_modes; ++attempt)
       {
         const std::optional<MultiVector> fresh = krylov(count.n_modes - n_found, attempt, n_fruitless, pairs.vectors);
@@ -159,7 +157,7 @@ namespace Squeal
     const int         n_all = std::upper_bound(all.values.begin(), all.values.end(), count.limit) - all.values.begin();
     if (n_all > static_cast<int>(pairs.values.size()))
       {
-        // Vectors above the limit must not be deflated: they may be far from modes.
+        // Vectors above the limit must not be deflated: they may be far from modes
         pairs.values.assign(all.values.begin(), all.values.begin() + n_all);
         pairs.vectors.emplace(view(*all.vectors, 0, n_all));
       }
@@ -191,7 +189,7 @@ namespace Squeal
     request.seed       = options.seed + 7919 * attempt;
     request.attempt    = n_fruitless;
     request.what       = options.what;
-    // Where the chosen solver finds no more, another one may
+    // If the chosen solver finds no more modes, another one may
     const RealSolver other = options.solver == RealSolver::anasazi ? RealSolver::arpack : RealSolver::anasazi;
     switch (n_fruitless < most_fruitless_starts - 1 ? options.solver : other)
       {
@@ -239,7 +237,7 @@ namespace Squeal
         const double rounding = 10. * std::numeric_limits<double>::epsilon() * norm_K * norm_V[j] / scale;
         residuals.values.push_back(norm_R[j] / scale);
         const double excess = residuals.values[j] / std::max({options.tolerance, rounding, rigid ? largest_rigid_residual : 0.});
-        // Written so that NaN is the worst.
+        // NaN must count as the worst
         if (!(excess <= residuals.excess))
           {
             residuals.excess = excess;
@@ -251,7 +249,7 @@ namespace Squeal
 
   SymmetricSolver::Residuals SymmetricSolver::refine(RitzPairs &pairs)
   {
-    // LAPACK's errors are those of the largest eigenvalue of all, by which zero must not be decided
+    // Errors of LAPACK are relative to the largest of all eigenvalues, which must not decide which are zero
     if (is_dense())
       pairs = rayleigh_ritz(*pairs.vectors);
     Residuals result = residuals(pairs);
@@ -281,7 +279,7 @@ namespace Squeal
       {
         std::ostringstream message;
         message << "mode " << result.worst + 1 << " of " << count.n_modes << " has a relative residual of " << result.values[result.worst]
-                << ", " << result.excess << " times what is accepted";
+                << ", " << result.excess << " times the limit";
         fail(message.str());
       }
 

@@ -15,17 +15,17 @@ namespace Squeal
   /// Systems up to this size are solved densely.
   constexpr int largest_dense_system = 300;
 
-  /// Solves one symmetric eigenproblem, step by step: counts when it is made, then finds, refines and accepts modes.
+  /// Solves one symmetric eigenproblem stepwise: counts on construction, then finds, refines and accepts modes.
   class SymmetricSolver
   {
   public:
-    /// K, M, and what the options point to must outlive it.
+    /// K, M, and objects in the options must outlive the solver.
     SymmetricSolver(const SparseMatrix &K, const SparseMatrix &M, double limit, const SymmetricModesOptions &options);
 
-    /// Whether all modes, not those of the band alone, are found, by a dense eigenvalue problem.
+    /// True if all modes, not only those of the band, are computed by a dense eigenproblem.
     bool is_dense() const;
 
-    /// The dense eigenvalue problem of a process that is alone, ahead of modes(); others may be solved on other threads meanwhile.
+    /// Solves the dense eigenproblem on a single process in advance of modes(); may run concurrently with others.
     void solve_densely();
 
     SymmetricModes modes();
@@ -38,32 +38,32 @@ namespace Squeal
       std::optional<MultiVector> vectors;
     };
 
-    /// Residuals of Ritz pairs, and how they compare with what is accepted.
+    /// Residuals of Ritz pairs relative to their limits.
     struct Residuals
     {
-      std::vector<double> values;      ///< as SymmetricModes defines them
-      double              excess = 0.; ///< largest ratio of a residual to what is accepted
-      int                 worst  = 0;  ///< the mode where it occurs
+      std::vector<double> values;      ///< as in SymmetricModes
+      double              excess = 0.; ///< largest ratio of a residual to its limit
+      int                 worst  = 0;  ///< index of this mode
     };
 
     RitzPairs rayleigh_ritz(const MultiVector &V) const;
 
-    /// A space that contains approximations of all wanted modes.
+    /// A space with approximations of all requested modes.
     RitzPairs find_all();
 
     RitzPairs                  dense();
     std::optional<MultiVector> krylov(int n_wanted, unsigned int attempt, int n_fruitless, const std::optional<MultiVector> &deflated);
 
-    /// Puts fresh vectors to the pairs where modes in the band come with them; how many are in the band then.
+    /// Adds new vectors to the pairs if they contain modes in the band; returns the number in the band.
     int merge(const MultiVector &fresh, RitzPairs &pairs) const;
 
-    /// Where a mode lies on the limit to rounding, count and search may see it on different sides: counts again a little higher. Whether it
-    /// did.
+    /// Counts again at a slightly higher limit if a mode coincides with the limit up to rounding, because count and search may disagree on
+    /// it. Returns true if the limit was raised.
     bool lift_limit();
 
     const LinearOperator &inverse();
 
-    /// Inverse iteration, block-wise, until the residuals are accepted.
+    /// Block inverse iteration until the residuals are accepted.
     Residuals refine(RitzPairs &pairs);
 
     Residuals      residuals(const RitzPairs &pairs) const;
@@ -75,7 +75,7 @@ namespace Squeal
 
     const SparseMatrix            &K, &M;
     SymmetricModesOptions          options;
-    double                         shift; ///< s in K + s M, of the factor that is made here [rad²/s²]
+    double                         shift; ///< s in K + s M, factorised here [rad²/s²]
     ModeCount                      count;
     const double                   hidden_square; ///< eigenvalues up to this are zero: rounding errors of K
     bool                           lifted = false;

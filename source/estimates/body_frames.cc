@@ -19,7 +19,7 @@ namespace Squeal
       return found == frames.end() ? nullptr : &*found;
     }
 
-    /// From an interval to another one.
+    /// Maps x from one interval to another.
     double moved(const double x, const double a, const double b, const double new_a, const double new_b)
     {
       return b > a ? new_a + (x - a) / (b - a) * (new_b - new_a) : new_a;

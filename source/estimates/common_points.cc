@@ -30,48 +30,48 @@ namespace Squeal
     {
       const Cell *cell;
       Point<3>    reference; ///< coordinates in the cell
-      double      distance;  ///< zero inside; infinite where this process has no cell of the body [m]
+      double      distance;  ///< zero inside; infinite if this process has no cell of the body [m]
     };
 
-    /// Where a point is looked for.
+    /// Extent of the search for a point.
     enum class PointSearch
     {
-      inside, ///< in cells whose box by their nodes holds it
-      nearest ///< in the nearest cells, and beside them
+      inside, ///< in cells whose bounding box contains it
+      nearest ///< in the nearest cells, clipped to them
     };
 
-    /// Finds points in the cells of this process, those of one body at a time: the faces of disc and pins coincide, so that a place alone
-    /// does not say in which body it is.
+    /// Finds points in the cells of this process, separately for each body: because the faces of disc and pins coincide, a position does
+    /// not determine the body.
     class PointLocation
     {
     public:
       /// @param model must outlive it
       explicit PointLocation(const Model &model);
 
-      /// Number of a body in the mesh; throws MeshError naming those that there are.
+      /// Index of a body in the mesh; throws MeshError listing the bodies.
       unsigned int body(const std::string &name) const;
 
-      /// The cell of a body that holds a point; with PointSearch::nearest, of a point beside the body, as between two outlines by polygons,
-      /// the nearest point among those of the nearest cells with reference coordinates cut to the cell.
+      /// Cell of a body that contains a point; with PointSearch::nearest, for a point outside the body, for example between two polygonal
+      /// outlines, the closest point in the nearest cells, with reference coordinates clipped to the cell.
       PointInCell find(unsigned int body, const Point<3> &point, PointSearch search) const;
 
     private:
       using Leaf = std::pair<BoundingBox<3>, const Cell *>;
 
-      /// Cells in which find() looks.
+      /// Cells to be searched by find().
       std::vector<Leaf> candidates(unsigned int body, const Point<3> &point, PointSearch search) const;
 
       const Model             &model;
       std::vector<RTree<Leaf>> trees; ///< of each body
     };
 
-    /// Cells beside a point that are tried, after all those whose boxes hold it.
+    /// Number of nearby cells that are tried after those whose boxes contain the point.
     constexpr unsigned int n_beside = 16;
 
-    /// How far reference coordinates of a point inside may be beyond the cell by rounding.
+    /// Tolerance of reference coordinates for points inside a cell, for rounding errors [-].
     constexpr double beyond_by_rounding = 1e-10;
 
-    /// A point of the reference cell near a given one, which it is if that is inside.
+    /// Clips a point to the reference cell.
     Point<3> cut_to(const Shape shape, Point<3> x)
     {
       if (shape == Shape::pyramid)
@@ -153,7 +153,7 @@ namespace Squeal
             return {&cell, inside, 0.};
           if (search == PointSearch::inside)
             continue;
-          if (!reference) // the cell is far away: its nearest node
+          if (!reference) // the cell is far away: use its nearest node
             inside = reference_nodes(cell.shape, model.degree())[std::min_element(nodes.begin(), nodes.end(), is_nearer) - nodes.begin()];
           const auto &functions = ShapeFunctions::of(cell.shape, model.degree());
           Point<3>    place;
@@ -165,7 +165,7 @@ namespace Squeal
       return nearest;
     }
 
-    /// Where every row of E is: body, number of the point there, direction.
+    /// Body, index of the point and direction of a row of E.
     struct Row
     {
       unsigned int body, point, direction;
@@ -196,7 +196,7 @@ namespace Squeal
       return rows;
     }
 
-    /// Unit vector along a component of the displacement of a point.
+    /// Unit vector along a displacement component at a point.
     Tensor<1, 3> unit_vector(const Point<3> &point, const unsigned int direction, const Directions directions)
     {
       Tensor<1, 3> result;
@@ -243,7 +243,7 @@ namespace Squeal
             }
           here.push_back(of_cell);
         }
-    // In the order of the cells, however they are distributed
+    // In the order of the cells, independent of their distribution
     std::vector<CellPoints> all;
     for (const auto &part : Utilities::MPI::all_gather(model.communicator(), here))
       all.insert(all.end(), part.begin(), part.end());
@@ -259,7 +259,7 @@ namespace Squeal
 
   namespace
   {
-    /// Entries of a row of E, which the process that has the cell of its point sends to the one that has the row.
+    /// Entries of a row of E, sent from the process with the cell of its point to the process with the row.
     struct RowEntries
     {
       int               number;
@@ -272,7 +272,7 @@ namespace Squeal
       }
     };
 
-    /// Points in the cells of this process, and which process has each of them in a cell, or nearest to one: of several the first.
+    /// Points in the cells of this process, and for each point the first process that has it in, or closest to, a cell.
     std::pair<std::vector<PointInCell>, std::vector<int>> located(const CommonPoints              &points,
                                                                   const std::vector<unsigned int> &bodies,
                                                                   const PointLocation             &location,
@@ -322,7 +322,7 @@ namespace Squeal
     const RowMap           map          = RowMap::even(rows.size(), communicator);
     const auto [found, processes]       = located(points, numbers, location, communicator);
 
-    // Rows whose points are in cells of this process
+    // Rows with points in cells of this process
     std::map<unsigned int, std::vector<RowEntries>> sent;
     const int                                       me = map.rank();
     for (std::size_t number = 0; number < rows.size(); ++number)

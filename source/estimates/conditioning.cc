@@ -19,10 +19,10 @@ namespace Squeal
   namespace
   {
     constexpr int n_lanczos_steps = 15;
-    /// Of a Lanczos vector beside the one before: the space is exhausted.
+    /// Norm of a Lanczos vector relative to the previous one, below which the space is exhausted [-].
     constexpr double negligible_beta = 1e-14;
 
-    /// λ closer than this part of them are one multiple eigenvalue.
+    /// Relative distance of λ below which they form one multiple eigenvalue [-].
     constexpr double width_of_clusters = 1e-7;
 
     using Operator = std::function<MultiVector(const MultiVector &)>;
@@ -92,7 +92,7 @@ namespace Squeal
     double condition_of_mass(const SparseMatrix &M)
     {
       const auto [smallest, largest] = equilibrated_extremes(M, root_of_diagonal(M));
-      return largest / std::max(smallest, std::numeric_limits<double>::epsilon() * largest); // massless dofs
+      return largest / std::max(smallest, std::numeric_limits<double>::epsilon() * largest); // floor for massless dofs
     }
 
     double condition_of_stiffness(const SparseMatrix &K, const UpdatedInverse &inverse)
@@ -129,8 +129,8 @@ namespace Squeal
       return result;
     }
 
-    /// Of a multiple eigenvalue any basis of its space is found, which says nothing about how this space lies to others: T, for which TᴴGT
-    /// = I in each cluster.
+    /// T with TᴴGT = I in each cluster: an eigensolver returns an arbitrary basis for a multiple eigenvalue, whose conditioning has no
+    /// meaning.
     ComplexDenseMatrix orthonormal_within_clusters(const std::vector<std::complex<double>> &lambda, const ComplexDenseMatrix &G)
     {
       const int          k = static_cast<int>(lambda.size());
@@ -153,12 +153,12 @@ namespace Squeal
       return T;
     }
 
-    /// κ of each λ, from the energies of the states and of their conjugates, and the condition number of these.
+    /// κ of each λ from the energies of the states and their conjugates, and the condition number of these energies.
     std::pair<std::vector<double>, double> conditions(const std::vector<std::complex<double>> &lambda,
                                                       const DenseMatrix                       &stiffness,
                                                       const DenseMatrix                       &mass)
     {
-      // [Re X, Im X]ᵀ A [Re X, −Im X] makes Xᴴ A X̄
+      // [Re X, Im X]ᵀ A [Re X, −Im X] gives Xᴴ A X̄
       const Eigen::Index k         = stiffness.rows() / 2;
       const auto         with_conj = [k](DenseMatrix products) {
         const ComplexDenseMatrix direct = hermitian_products(products);
@@ -180,7 +180,7 @@ namespace Squeal
       basis.bottomRightCorner(k, k) = T.conjugate();
       G                             = ComplexDenseMatrix(basis.adjoint() * G * basis);
 
-      // The real form of a Hermitian matrix: each eigenvalue twice
+      // Real form of a Hermitian matrix, with every eigenvalue twice
       DenseMatrix real(4 * k, 4 * k);
       real << G.real(), -G.imag(), G.imag(), G.real();
       const RealPairs     axes = symmetric_eigenpairs(real);

@@ -16,7 +16,7 @@ namespace Squeal
 {
   namespace
   {
-    /// A⁻ᵀ by the factors of A.
+    /// A⁻ᵀ from the factors of A.
     struct TransposedInverse : LinearOperator
     {
       explicit TransposedInverse(const Factorization &factor)
@@ -50,7 +50,7 @@ namespace Squeal
       return result;
     }
 
-    /// Columns of @p modes in the order of @p lambda, each taken once.
+    /// Columns of @p modes in the order of @p lambda, each used once.
     QuadraticModes in_order_of(const std::vector<std::complex<double>> &lambda, const QuadraticModes &modes)
     {
       if (modes.values.size() != lambda.size())
@@ -97,7 +97,7 @@ namespace Squeal
       return result;
     }
 
-    /// Ψ ← Ψ D⁻ᵀ, so that the products D of left and right vectors become the identity.
+    /// Ψ ← Ψ D⁻ᵀ makes the products D of left and right vectors the identity.
     void make_dual(ComplexModes &modes, const ComplexDenseMatrix &D)
     {
       const ComplexDenseMatrix X  = D.inverse().transpose();
@@ -109,7 +109,7 @@ namespace Squeal
     }
   } // namespace
 
-  /// Factors of Q(s). Throws SolverError naming @p source if Q is singular at another shift, too: then it is for all λ.
+  /// Factors of Q(s). Throws SolverError naming @p source if Q is also singular at another shift, and thus for all λ.
   static std::unique_ptr<Factorization> factors_at(const SecondOrderSystem &matrices, const double shift, const std::string &source)
   {
     constexpr double other  = 1.3;
@@ -127,7 +127,7 @@ namespace Squeal
         catch (const SolverError &)
           {
             throw SolverError(
-              "det Q(lambda) vanishes for all lambda: some motion or combination of equations has neither mass, damping nor stiffness",
+              "det Q(lambda) vanishes for all lambda: a motion, or a combination of equations, has neither mass nor damping nor stiffness",
               source, "remove dependent rows and columns from all matrices, such as redundant constraints");
           }
         throw;

@@ -68,7 +68,7 @@ namespace Squeal
           if (k != j && pairs[k].partner >= 0)
             {
               const double distance = omega - fine.lambda[k].imag();
-              if (std::abs(distance - (other(j).imag() - other(k).imag())) >= std::abs(distance)) // they may meet
+              if (std::abs(distance - (other(j).imag() - other(k).imag())) >= std::abs(distance)) // they may coalesce
                 error.divergence = std::max({error.divergence, divergence_error(k), is_neutral ? 0.5 * std::abs(distance) / omega : 0.});
             }
         error.verdict = verdict(fine.lambda[j], error.divergence, solver_error);
@@ -78,10 +78,10 @@ namespace Squeal
 
   namespace
   {
-    /// Differences of values up to this part of them are rounding errors [-].
+    /// Relative differences of values up to this are rounding errors [-].
     constexpr double rounding = 1e-13;
 
-    /// Limit of the two finest values with order p.
+    /// Limit from the two finest values with order p.
     double limit(const std::vector<double> &widths, const std::vector<double> &values, const double p)
     {
       const std::size_t n     = values.size();
@@ -89,13 +89,13 @@ namespace Squeal
       return values[n - 1] + (values[n - 1] - values[n - 2]) * ratio / (1. - ratio);
     }
 
-    /// Order of three values; nothing if there is none in the range.
+    /// Order from three values; nothing if there is none in the range.
     std::optional<double> observed_order(const double *h, const double *v, const OrderRange &plausible)
     {
       const double quotient = (v[0] - v[1]) / (v[1] - v[2]);
       if (!(quotient > 0.))
         return {};
-      // Ascends with p
+      // Increases with p
       const auto f = [&](const double p) { return std::log((std::pow(h[0] / h[1], p) - 1.) / (1. - std::pow(h[2] / h[1], p)) / quotient); };
       const double f_at_smallest = f(plausible.smallest), f_at_largest = f(plausible.largest);
       if (!(f_at_smallest <= 0. && f_at_largest >= 0.))

@@ -12,7 +12,7 @@ namespace Squeal
   {
     using Complex = std::complex<double>;
 
-    /// Estimates of ill-conditioned eigenvalues are not claimed.
+    /// Condition number above which estimates are not claimed [-].
     constexpr double largest_condition = 1e3;
 
     /// ψ_jᵀ A φ_j for every column, no conjugate.
@@ -33,7 +33,7 @@ namespace Squeal
     Complex smaller_root(const Complex a, const Complex b, const Complex e)
     {
       const Complex root = std::sqrt(b * b + 4. * a * e);
-      // 2 e / (b ± root) with the larger denominator does not cancel.
+      // 2 e / (b ± root) with the larger denominator avoids cancellation
       const Complex denominator = std::abs(b + root) > std::abs(b - root) ? b + root : b - root;
       return std::abs(denominator) > 0. ? 2. * e / denominator : 0.;
     }
@@ -91,7 +91,7 @@ namespace Squeal
         double uncertainty = std::abs(result.corrections[i]);
         for (int j = 0; j < k; ++j)
           {
-            // Two neutral modes may meet where their errors differ by more than what separates them
+            // Two neutral modes may coalesce if their errors differ by more than their distance
             const double shift = error_safety * std::abs(result.corrections[i] - result.corrections[j]);
             if (shift >= std::abs(modes.lambda[i] - modes.lambda[j]) && shift > negligible_divergence * std::abs(modes.lambda[i]))
               apart = false;

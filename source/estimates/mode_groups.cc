@@ -13,7 +13,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Share of the energy from which on a mode is the disc's [-].
+    /// Minimum energy share of a disc mode [-].
     constexpr double half = 0.5;
 
     /// uᴴ A u and its part from the selected rows, for each column of a complex u.
@@ -96,10 +96,10 @@ namespace Squeal
 
   namespace
   {
-    /// Squared norm of a direction over the largest, up to which it is a rounding error: squares leave 1e-16.
+    /// Squared norm of a direction relative to the largest, up to which it is a rounding error: squares are accurate to 1e-16 [-].
     constexpr double negligible_square = 1e-12;
 
-    /// W with Wᴴ G W = 1 for a Hermitian positive semidefinite G, without the directions that are rounding errors.
+    /// W with Wᴴ G W = 1 for a Hermitian positive semidefinite G, without directions that are rounding errors.
     ComplexDenseMatrix whitening(const ComplexDenseMatrix &G)
     {
       const Eigen::SelfAdjointEigenSolver<ComplexDenseMatrix> pairs(G);

@@ -17,16 +17,16 @@ namespace Squeal
   {
     using Complex = std::complex<double>;
 
-    /// Part of the energy of a mode that connects it with others, unless they are this much smaller than the largest [-].
+    /// Fraction of the energy of a mode that connects it with others, and fraction of the largest share below which a share is ignored [-].
     constexpr double connecting = 0.75, side = 0.25;
 
-    /// Least part of a mode in the span of others that makes them partners [-].
+    /// Smallest fraction of a mode in the span of others that gives it a counterpart [-].
     constexpr double least_represented = 0.5;
 
-    /// Directions of modes that are the same but for rounding, relative to the largest [-].
+    /// Relative size of directions that are dependent up to rounding [-].
     constexpr double dependent = 1e-10;
 
-    /// Products of all modes of two meshes, those of each mesh normalised.
+    /// Products of all modes of two meshes, modes normalised.
     struct Products
     {
       ComplexDenseMatrix coarse, fine; ///< Gram matrices
@@ -46,10 +46,10 @@ namespace Squeal
       return result;
     }
 
-    /// |c|² of the combinations of modes with Gram matrix G that come closest to others, of which C are the products with them.
+    /// |c|² of the combinations of modes with Gram matrix G that are closest to others; C: products of the modes with these.
     DenseMatrix shares(const ComplexDenseMatrix &G, const ComplexDenseMatrix &C)
     {
-      if (C.size() == 0) // Eigen refers to the first entry
+      if (C.size() == 0) // Eigen would access the first entry
         return DenseMatrix(C.rows(), C.cols());
       Eigen::CompleteOrthogonalDecomposition<ComplexDenseMatrix> factors;
       factors.setThreshold(dependent);
@@ -58,10 +58,10 @@ namespace Squeal
     }
 
     /**
-     * Of each mode, the modes of the other mesh with the largest shares that together make up its connecting part: none where they do not
+     * For each mode, the modes of the other mesh with the largest shares that make up its connecting fraction; none if they do not
      * represent it at all. Modes of the other mesh × modes.
      *
-     * @param G of the other modes
+     * @param G Gram matrix of the other modes
      * @param C products of the other modes with these, all normalised
      */
     Eigen::MatrixX<bool> connections(const ComplexDenseMatrix &G, const ComplexDenseMatrix &C)
@@ -89,7 +89,7 @@ namespace Squeal
       return result;
     }
 
-    /// Modes of both meshes that are connected with each other.
+    /// Connected modes of both meshes.
     struct Group
     {
       std::vector<int> coarse, fine;
@@ -99,7 +99,7 @@ namespace Squeal
     {
       const Eigen::MatrixX<bool> of_coarse = connections(products.fine, products.mixed),
                                  of_fine   = connections(products.coarse, products.mixed.adjoint());
-      // Pairs of modes, each of which is connected with the other one alone, stay so whatever else is connected with them
+      // Pairs of modes that are connected only with each other are kept, whatever else is connected with them
       const int                          n_fine = products.mixed.rows(), n_coarse = products.mixed.cols();
       const Eigen::VectorX<Eigen::Index> n_of_coarse = of_coarse.colwise().count(), n_of_fine = of_fine.colwise().count();
       const auto                         is_pair = [&](const int i, const int j) {
@@ -128,11 +128,11 @@ namespace Squeal
       return groups;
     }
 
-    /// Drops the modes of a group that those of the other mesh represent badly.
+    /// Drops the modes of a group that are badly represented by those of the other mesh.
     Group represented(const Group &group, const Products &products)
     {
       const auto kept = [](const std::vector<int> &modes, const std::vector<int> &others, const ComplexDenseMatrix &others_gram,
-                           const ComplexDenseMatrix &mixed) { // of others with modes
+                           const ComplexDenseMatrix &mixed) { // products of others with modes
         std::vector<int> result;
         for (const int i : modes)
           {
@@ -147,7 +147,7 @@ namespace Squeal
               kept(group.fine, group.coarse, products.coarse, products.mixed.adjoint())};
     }
 
-    /// Partners in a group, coarse and fine: the least sum of squared distances of λ, shifted by what they differ in on average.
+    /// Pairs in a group, coarse and fine, that minimise the sum of squared distances of λ after shifting by the mean difference.
     std::vector<std::pair<int, int>> partners(const Group                &group,
                                               const std::vector<Complex> &coarse,
                                               const std::vector<Complex> &fine,
@@ -177,7 +177,7 @@ namespace Squeal
       return result;
     }
 
-    /// Replaces what this process has found by what process 0 has.
+    /// Replaces the result of this process by that of process 0.
     void agree_on_pairs(const MPI_Comm communicator, std::vector<PairedMode> &modes)
     {
       DenseMatrix numbers(3, modes.size());

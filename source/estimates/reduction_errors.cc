@@ -19,9 +19,9 @@ namespace Squeal
   {
     using Complex = std::complex<double>;
 
-    /// Weight of MAC-M of single modes beside the share in the span of their cluster.
+    /// Weight of individual MAC-M relative to the share in the span of the cluster [-].
     constexpr double member_weight = 0.1;
-    /// |λ̂ − λ| / |λ| beyond which a reduced mode is a counterpart only if there is no other.
+    /// |λ̂ − λ| / |λ| above which a reduced mode is a counterpart only if there is no other [-].
     constexpr double far = 0.3;
 
     /// |ω̂ − ω| / ω
@@ -36,7 +36,7 @@ namespace Squeal
       return std::abs(modal_quantities(lambda_1).divergence_rate - modal_quantities(lambda_2).divergence_rate);
     }
 
-    /// Takes a mode into the maxima of a group.
+    /// Includes a mode in the maxima of a group.
     void add(const ModeError &error, GroupError &group)
     {
       using E = ErrorMeasures;
@@ -65,7 +65,7 @@ namespace Squeal
     return result;
   }
 
-  /// Everything but the kinds of pairing in the error of a mode from that of its counterpart, and of the closest in shape.
+  /// Sets all errors that do not depend on the pairing, from the counterpart and from the mode closest in shape.
   static void set_differences(const Complex              exact,
                               const ReducedModes        &chosen,
                               const EigenvalueEstimates &estimates,
@@ -106,9 +106,9 @@ namespace Squeal
       return {};
     if (n_reduced < k)
       throw SolverError("the reduced model has " + std::to_string(n_reduced) + " oscillating modes, the reference " + std::to_string(k),
-                        "errors of a reduced model", "take a larger basis, and all of its modes");
+                        "errors of a reduced model", "use a larger basis and all of its modes");
 
-    // Inner products in the mass of the reference modes, of the reduced ones, and of both
+    // Inner products in the mass matrix among reference modes, among reduced modes, and between them
     const MultiVector        X  = join({reference.real_part.get(), reference.imaginary_part.get()});
     const MultiVector        MX = *system.mass * X;
     const ComplexDenseMatrix A  = hermitian_products(gram(X, MX));
@@ -122,7 +122,7 @@ namespace Squeal
        k, [&](const int i, const int j) { return std::abs(lambda[i] - lambda[j]) <= cluster_tolerance * std::abs(lambda[i]); });
     const auto members = members_of(cluster);
 
-    // Counterparts: the span of the cluster decides which reduced modes belong to it, MAC-M of single modes to which member
+    // Counterparts: the span of the cluster selects the reduced modes, MAC-M of single modes assigns them to members
     std::vector<Eigen::RowVectorXd> shares(k); // by the first member
     for (const std::vector<int> &all : members)
       shares[all.front()] = shares_in_span(A(all, all), C(all, Eigen::all), B);
@@ -141,7 +141,7 @@ namespace Squeal
             closest[i] = j;
       }
     for (std::vector<int> *choice : {&match, &closest})
-      agree(X.communicator(), choice->data(), k); // ties may go either way
+      agree(X.communicator(), choice->data(), k); // ties are decided by rounding
     const ReducedModes        chosen    = selected(modes, match);
     const EigenvalueEstimates estimates = estimate_eigenvalues(chosen, residual_vectors(system, inverse, model, chosen).products());
 

@@ -15,12 +15,12 @@ namespace Squeal
 {
   namespace
   {
-    /// Directions whose M-norm is below this part of the largest are taken for rounding errors.
+    /// Directions with M-norms below this fraction of the largest are rounding errors [-].
     constexpr double dependence_tolerance = 1e-8;
-    /// Principal axes of the residuals below this part of the largest are left to the next step.
+    /// Principal axes of the residuals below this fraction of the largest are postponed to the next step [-].
     constexpr double compression_tolerance = 0.02;
 
-    /// Principal axes in the M-norm of the columns of X outside of the basis, the small ones left out.
+    /// Large principal axes in the M-norm of the components of X outside the basis.
     MultiVector compress(const SparseMatrix &M, const ReducedModel &model, MultiVector X)
     {
       remove_basis(M, model, X);
@@ -31,7 +31,7 @@ namespace Squeal
       return X * axes.rightCols(k - first);
     }
 
-    /// Modes of one kind at one friction coefficient with their estimates.
+    /// Modes of one type at one friction coefficient with their estimates.
     struct AssessedModes
     {
       AssessedModes(const CoupledSystem &system, const UpdatedInverse &inverse, const ReducedModel &model, ReducedModes found)
@@ -45,10 +45,10 @@ namespace Squeal
       EigenvalueEstimates estimates;
     };
 
-    /// Everything inside the radius of the band at one friction coefficient: oscillating modes, then real eigenvalues, if any.
+    /// All eigenvalues within the radius of the band at one friction coefficient: oscillating modes, then real eigenvalues, if any.
     using State = std::vector<AssessedModes>;
 
-    /// Largest estimated error, NaN if there is one.
+    /// Largest estimated error; NaN if any is NaN.
     double worst_error(const State &state)
     {
       std::vector<double> errors;
@@ -57,7 +57,7 @@ namespace Squeal
       return max_norm(as_column(errors));
     }
 
-    /// Residuals of the modes that miss the tolerance.
+    /// Residuals of the modes above the tolerance.
     std::vector<MultiVector> inaccurate_directions(const State &state, const double tolerance)
     {
       std::vector<MultiVector> parts;
@@ -73,7 +73,7 @@ namespace Squeal
       return parts;
     }
 
-    /// Oscillating modes that the band lists.
+    /// Oscillating modes in the band.
     ReducedModes modes_in_band(const ReducedModel &model, const double mu, const Band &band)
     {
       const ReducedModes modes = reduced_modes(model, mu, band.end);
@@ -86,7 +86,7 @@ namespace Squeal
       return inside.size() == modes.lambda.size() ? modes : selected(modes, inside);
     }
 
-    /// The state of the largest error among all friction coefficients.
+    /// State with the largest error among all friction coefficients.
     State worst_state(const CoupledSystem       &system,
                       const UpdatedInverse      &inverse,
                       const ReducedModel        &model,
@@ -120,7 +120,7 @@ namespace Squeal
                               const MultiVector    &real_modes,
                               const bool            friction)
   {
-    // The response to friction from the reactions to damping, μ A V_C, is of second order
+    // The friction response to the reactions from damping, μ A V_C, is of second order
     const int   k = real_modes.n_columns();
     MultiVector vectors(real_modes.map(), k * (1 + (friction ? 2 : 0) + (system.has_damping() ? 1 : 0)), false);
     int         column = 0;
@@ -147,7 +147,7 @@ namespace Squeal
     int         column = 0;
     for (const int j : chosen)
       {
-        // Coefficients in an M-orthonormal basis: their norm is the mode's M-norm.
+        // Coefficients in an M-orthonormal basis: their norm is the M-norm of the mode
         const double right = modes.right.col(j).norm(), left = modes.left.col(j).norm();
         X.col(column++) = residuals.right_displacements.col(j) / right;
         X.col(column++) = residuals.right_displacements.col(k + j) / right;
@@ -178,7 +178,7 @@ namespace Squeal
                                  Progress                       &progress)
   {
     if (friction_coefficients.empty())
-      throw SolverError("there is no friction coefficient at which the basis could grow", "residual iteration", "give one at least");
+      throw SolverError("the list of friction coefficients is empty", "residual iteration", "give at least one");
     const bool friction = std::any_of(friction_coefficients.begin(), friction_coefficients.end(), [](const double mu) { return mu != 0.; });
     ReducedModel model  = starting_model(system, inverse, real_modes, friction);
 
@@ -193,8 +193,8 @@ namespace Squeal
 
         const auto fresh = new_vectors(system, model, inaccurate_directions(state, options.tolerance));
         if (!fresh || step == options.maximum_steps || model.size() + fresh->n_columns() > options.maximum_basis)
-          throw SolverError(text("the residual iteration ends with an estimated error of lambda of ", worst, " where ", options.tolerance,
-                                 " was asked for (", model.size(), " vectors, ", step, " growths)"),
+          throw SolverError(text("the residual iteration ended with an estimated error of lambda of ", worst, " instead of ",
+                                 options.tolerance, " (", model.size(), " vectors, ", step, " extensions)"),
                             "complex modes",
                             "raise Complex modes/Maximum basis or Complex modes/Iteration tolerance, or choose the Krylov solver");
         model.extend(*fresh);
@@ -213,7 +213,7 @@ namespace Squeal
     for (const double l : grown.modes.real_values)
       if (options.band.lists(l))
         modes.real_values.push_back(l);
-    modes.summary = text(grown.model.size(), " vectors, estimated error ", grown.worst_error, ", ", grown.n_growths, " growths");
+    modes.summary = text(grown.model.size(), " vectors, estimated error ", grown.worst_error, ", ", grown.n_growths, " extensions");
     return modes;
   }
 } // namespace Squeal

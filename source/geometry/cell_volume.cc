@@ -10,7 +10,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Gradients of shape functions at the points of quadrature(), then at the nodes but for the apex of a pyramid.
+    /// Gradients of shape functions at the points of quadrature(), then at the nodes except the apex of a pyramid.
     struct Gradients
     {
       std::vector<QuadraturePoint>                   rule;
@@ -64,7 +64,7 @@ namespace Squeal
 
   double worst_determinant(const Mesh &mesh, const Mesh::Cell &cell)
   {
-    constexpr double rounding     = 1e-6; // a block of an O-grid has a flat corner on the circle, which is harmless
+    constexpr double rounding     = 1e-6; // a block of an O-grid has a flat corner on the circle, which is acceptable
     const auto &[rule, at_points] = gradients(cell.shape, mesh.degree);
     double least = std::numeric_limits<double>::infinity(), largest = 0.;
     for (std::size_t q = 0; q < at_points.size(); ++q)

@@ -14,7 +14,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Refuses nodes of edges so far off their middles that the edge turns back or bulges beyond a half circle.
+    /// Rejects mid-edge nodes so far from the middle that the edge folds back or bulges beyond a half circle.
     void check_middles(const Mesh &mesh)
     {
       constexpr double           farthest = 0.5; // of the edge's length
@@ -35,17 +35,18 @@ namespace Squeal
             }
         }
       if (first)
-        throw MeshError(text(off.size(), off.size() == 1 ? " second-order node lies" : " second-order nodes lie",
-                             " off the middle of the edge by more than half of its length; one of them is at (", mesh.points[*off.begin()],
+        throw MeshError(text(off.size(), off.size() == 1 ? " second-order node is" : " second-order nodes are",
+                             " farther from the middle of the edge than half its length; one of them is at (", mesh.points[*off.begin()],
                              ") m"),
                         describe_cell(mesh, *first),
                         "move second-order nodes to the middles of their edges, or use smaller elements where a surface curves");
     }
 
-    /// Refuses edges and quadrilaterals whose middle nodes are not those of their neighbours, or are corners elsewhere: they would move apart.
+    /// Rejects edges and quadrilaterals with middle nodes that differ from those of their neighbours, or are corners elsewhere: they would
+    /// separate.
     void check_shared_middles(const Mesh &mesh)
     {
-      std::map<std::array<unsigned int, 4>, unsigned int> middles; // by corners in ascending order, of edges each twice
+      std::map<std::array<unsigned int, 4>, unsigned int> middles; // by corners in ascending order; those of edges twice
       std::vector<bool>                                   is_corner(mesh.points.size(), false);
       std::set<std::size_t>                               unmatched; // elements
       for (const Mesh::Cell &cell : mesh.cells)
@@ -71,7 +72,7 @@ namespace Squeal
         throw MeshError(text(unmatched.size(), " of ", mesh.cells.size(),
                              " elements share corners with neighbours, but not the second-order nodes between these"),
                         describe_cell(mesh, *unmatched.begin()),
-                        "merge the second-order nodes as well as the corners, and mesh neighbours with elements of one size");
+                        "merge the second-order nodes as well as the corners, and mesh neighbours with matching elements");
     }
   } // namespace
 

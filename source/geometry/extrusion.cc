@@ -10,7 +10,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Surfaces that every extruded mesh has; those of the plan's curves follow.
+    /// Surfaces of every extruded mesh; those of the plan's curves follow.
     enum ExtrudedSurface : unsigned int
     {
       disc_contact,
@@ -20,7 +20,7 @@ namespace Squeal
       first_curve
     };
 
-    /// Points at the height (1 - t) lower + t upper through the disc: on straight lines unless faces turn over on the way.
+    /// Points at the height (1 - t) lower + t upper through the disc: on straight lines unless faces would invert.
     std::vector<Plan::Point> points_between(const Plan                     &plan,
                                             const std::vector<Plan::Point> &lower,
                                             const std::vector<Plan::Point> &upper,
@@ -39,11 +39,11 @@ namespace Squeal
       return points;
     }
 
-    /// A stack of layers of cells over some faces of the plan, with nodes of its own.
+    /// A stack of layers of cells over some faces of the plan, with its own nodes.
     class Stack
     {
     public:
-      /// The points go from those of the lower end to those of the upper end, see points_between(); ends of layers from 0 to 1.
+      /// Interpolates the points between the lower and the upper end, see points_between(); layer boundaries are in 0 ... 1.
       Stack(const Plan                     &plan,
             const std::vector<Plan::Point> &lower,
             const std::vector<Plan::Point> &upper,
@@ -120,7 +120,7 @@ namespace Squeal
     for (std::size_t c = 0; c < plan.curves.size(); ++c)
       disc.name_side(plan.curves[c].edges, first_curve + c);
 
-    // Pins: thinner layers towards the end where they are held
+    // Pins: thinner layers towards the clamped end
     const std::vector<double> upwards = graded_intervals(parameters.pin_layers, parameters.pin_grading);
     std::vector<double>       downwards;
     for (auto end = upwards.rbegin(); end != upwards.rend(); ++end)

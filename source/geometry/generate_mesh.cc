@@ -37,13 +37,13 @@ namespace Squeal
 
     constexpr const char *built_in_geometry = "disc_pins.geo";
 
-    /// Whether Gmsh's Include takes a path, which ends at quotes in its lexer.
+    /// True if Gmsh's Include accepts a path: its lexer ends a path at quotes.
     bool can_be_included(const std::string &path)
     {
       return path.find_first_of("\"'\\%$~#\n") == std::string::npos;
     }
 
-    /// A .geo that sets the parameters before the geometry, which keeps values that exist.
+    /// A .geo that sets the parameters before it includes the geometry, which keeps existing values.
     std::string driver(const GeometryParameters &parameters)
     {
       std::string script;
@@ -55,7 +55,7 @@ namespace Squeal
       return script;
     }
 
-    /// Where the script gives a parameter of the section another value, and the section has its default: the section counts.
+    /// Notes variables of the script whose values are overridden by defaults of the section.
     void note_overridden_variables(const GeometryParameters &parameters, const std::string &where, Mesh &mesh)
     {
       const auto values = parameters.script_variables(), defaults = GeometryParameters().script_variables();
@@ -69,7 +69,7 @@ namespace Squeal
                                  " as in the script; set the parameter, or give the variable another name");
     }
 
-    // Statements of Gmsh by which a script reaches beyond the mesh
+    // Gmsh statements with effects beyond the mesh
     const std::vector<std::string> shell_statements = {
       "SystemCall", "NonBlockingSystemCall", "OnelabRun", "CreateDir", "Save", "Print", "Printf", "Plugin"};
 
@@ -78,7 +78,7 @@ namespace Squeal
       if (!is_script(geometry))
         return {geometry, "", {}};
       MesherInput input{geometry, driver(parameters), {}};
-      // Gmsh loses the last line of a file without a line break at its end, unless the file is included
+      // Gmsh ignores the last line of a file without a final line break, unless the file is included
       if (can_be_included(geometry))
         {
           input.script += "Include \"" + geometry + "\";\n";
@@ -94,7 +94,7 @@ namespace Squeal
       return input;
     }
 
-    /// Runs Gmsh on the geometry, which may only read unless the parameters allow it more; the program's own geometries are trusted.
+    /// Runs Gmsh on the geometry, confined unless the parameters allow more; supplied geometries are trusted.
     GmshMesh run_gmsh(const GeometryParameters &parameters, const std::string &geometry)
     {
       const bool         is_trusted = parameters.allow_shell_commands || is_supplied(geometry);
@@ -110,10 +110,10 @@ namespace Squeal
         }
     }
 
-    /// The same on every process of the communicator: one runs Gmsh, and all get its mesh or its error.
+    /// Runs Gmsh on one process of the communicator; all receive its mesh or its error.
     GmshMesh run_gmsh_once(const GeometryParameters &parameters, const std::string &geometry, MPI_Comm communicator)
     {
-      std::pair<std::string, GmshMesh> outcome; // what went wrong; the mesh
+      std::pair<std::string, GmshMesh> outcome; // error message; the mesh
       std::exception_ptr               error;
       if (dealii::Utilities::MPI::this_mpi_process(communicator) == 0)
         try
@@ -136,14 +136,14 @@ namespace Squeal
 
     // ---------------------------------------------------------- unit of length
 
-    /// Exponent of the power of ten that is 1 for a disc of some decimetres. The plan that comes with the program is drawn and extruded in
-    /// this unit: Gmsh's tolerances are lengths, so that the same plan in another size would be meshed otherwise.
+    /// Exponent of a unit of length in which a disc radius of a few decimetres is about 1. The supplied plan is drawn and extruded in this
+    /// unit: tolerances of Gmsh are lengths, so that a scaled plan would be meshed differently.
     int decimal_exponent(const double disc_outer_radius)
     {
       return 1 + static_cast<int>(std::floor(std::log10(disc_outer_radius)));
     }
 
-    /// All lengths divided by a power of ten as a decimal number is, by moving the point; exact for up to 15 digits.
+    /// All lengths divided by a power of ten, by moving the decimal point; exact for up to 15 digits.
     GeometryParameters in_unit(GeometryParameters parameters, const int exponent)
     {
       const auto move_point = [exponent](double &length) {
@@ -160,15 +160,15 @@ namespace Squeal
       return parameters;
     }
 
-    /// Of the least that a mesh is for; what more it takes is known later.
+    /// Checks the minimum memory of any study; additional needs are known later.
     void check_least_memory(ProblemSize size, const std::string &where, const MPI_Comm communicator)
     {
       constexpr double no_modes = 0.;
-      size.contact_nodes        = 0.; // their attachment modes are not always needed
+      size.contact_nodes        = 0.; // attachment modes are not always needed
       check_memory(size, no_modes, where, communicator);
     }
 
-    /// Refuses a mesh whose groups, of the dimensions that count, do not say what they are.
+    /// Rejects a mesh with unnamed groups in the relevant dimensions.
     void check_groups(const GmshMesh &mesh, const std::string &where)
     {
       const std::string other_formats = "; Gmsh reads no names from formats other than .msh (.unv, .inp, .bdf, ...): name the parts in the "
@@ -185,7 +185,7 @@ namespace Squeal
                           "give it one: Physical Volume(\"disc\") = {...} in a .geo, a line of $PhysicalNames in a .msh" + other_formats);
     }
 
-    /// Refuses names of surfaces that the mesh does not have, before any surface of the mesh counts as unused.
+    /// Rejects missing surface names before unused surfaces are checked.
     void check_named(const GmshMesh                 &gmsh,
                      const std::vector<std::string> &mounted,
                      const ContactParameters        &contact,
@@ -215,7 +215,7 @@ namespace Squeal
         require(name, "Mounts/Elastic mounts, Mounts/Dashpots or Steady sliding/Pressed faces");
     }
 
-    /// Puts the faces of surfaces that rub on disc_contact and pin_contact as well.
+    /// Adds the faces of contact surfaces to disc_contact and pin_contact.
     void name_contact(Mesh &mesh, const ContactParameters &contact, const std::string &where)
     {
       const std::vector<unsigned int> bodies = body_of_nodes(mesh);
@@ -293,7 +293,7 @@ namespace Squeal
       return finished(extrude(plan, parameters));
     }
 
-    // Of the supplied plan, where elements of the wanted size do not fit between the pins
+    // For the supplied plan, if elements of the requested size do not fit between the pins
     constexpr int    max_attempts      = 5;
     constexpr double smaller_next_time = 0.9;
   } // namespace
@@ -328,7 +328,7 @@ namespace Squeal
     check_mesh(mesh);
     if (!is_built_in) // conforming by construction
       {
-        // Tied faces may coincide and need not match: what shares nodes is checked
+        // Tied faces may coincide and need not match, so that their shared nodes are checked
         mesh.tied.clear();
         find_bodies(mesh);
         check_topology(mesh, given.pairing_tolerance, where);

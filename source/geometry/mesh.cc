@@ -20,7 +20,7 @@ namespace Squeal
 {
   namespace
   {
-    /// FNV-1a with 64 bits.
+    /// 64-bit FNV-1a hash.
     std::uint64_t hash(const std::string_view bytes)
     {
       std::uint64_t result = 0xcbf29ce484222325ull;
@@ -53,7 +53,7 @@ namespace Squeal
     double size = 0.;
     for (const Mesh::Point &point : mesh.points)
       size = std::max(size, point.norm());
-    // A power of ten, which rounding of the size does not change
+    // A power of ten, insensitive to rounding of the size
     const double unit = 1e-8 * std::pow(10., std::floor(std::log10(size)));
     std::string  places;
     for (const Mesh::Point &point : mesh.points)
@@ -66,7 +66,7 @@ namespace Squeal
 
   namespace
   {
-    /// What all names begin with, up to the end of a word; empty: nothing.
+    /// Common beginning of all names, up to the end of a word; may be empty.
     std::string common_words(const std::vector<std::string> &names)
     {
       const auto is_separator = [](const char c) { return std::string_view("_.- ").find(c) != std::string_view::npos; };
@@ -102,7 +102,7 @@ namespace Squeal
 
   void find_bodies(Mesh &mesh)
   {
-    // Volumes by way of their nodes
+    // Join volumes that share nodes
     const std::vector<std::string>     &names = mesh.volume_names;
     boost::disjoint_sets_with_storage<> sets(names.size() + mesh.points.size());
     for (const Mesh::Cell &cell : mesh.cells)
@@ -240,13 +240,13 @@ namespace Squeal
     return geometry_of(mesh, face.nodes, topology(face.shape).corners.size());
   }
 
-  // ------------------------------------------------------ places within cells
+  // ------------------------------------------------------ positions in cells
 
   namespace
   {
     using Tensor = dealii::Tensor<1, 3>;
 
-    /// Depth below a face in reference coordinates, from 0 on it to 1 at the corner farthest from it: offset + gradient · ξ.
+    /// Depth below a face in reference coordinates, from 0 on the face to 1 at the farthest corner: offset + gradient · ξ.
     struct FaceDepth
     {
       double offset;
@@ -277,7 +277,7 @@ namespace Squeal
       return all[static_cast<unsigned int>(shape)];
     }
 
-    /// Below the nearest face; negative outside.
+    /// Depth below the nearest face; negative outside.
     double least_depth(const Shape shape, const Mesh::Point &xi)
     {
       double least = 1.;
@@ -294,7 +294,7 @@ namespace Squeal
       return sum;
     }
 
-    /// x(ξ) and its derivatives by the nodes' places.
+    /// x(ξ) and its derivatives from the positions of the nodes.
     std::pair<Tensor, dealii::Tensor<2, 3>> mapped(const ShapeFunctions           &functions,
                                                    const std::vector<Mesh::Point> &nodes,
                                                    const Mesh::Point              &xi)
@@ -308,10 +308,10 @@ namespace Squeal
       return result;
     }
 
-    /// A point of the reference cell about as near as the nearest: cut off at each face in turn.
+    /// A point of the reference cell close to the nearest one: clipped at each face in turn.
     Mesh::Point moved_inside(const Shape shape, Mesh::Point xi)
     {
-      constexpr unsigned int n_rounds = 8; // one is enough where faces are at right angles
+      constexpr unsigned int n_rounds = 8; // one is enough for faces at right angles
       for (unsigned int round = 0; round < n_rounds; ++round)
         for (const FaceDepth &face : depths_below_faces(shape))
           if (const double depth = face.at(xi); depth < 0.)
@@ -357,7 +357,7 @@ namespace Squeal
     const auto xi = reference_coordinates(cell.shape, 1, corners, point);
     if (!xi)
       return {};
-    // Outside, where the map may be singular, the nearest point counts
+    // Outside, where the map may be singular, use the nearest point
     const ShapeFunctions &functions = ShapeFunctions::of(cell.shape, 1);
     Depth                 depth{least_depth(cell.shape, *xi), std::numeric_limits<double>::infinity()};
     if (depth.relative < 0.)

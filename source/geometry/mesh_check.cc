@@ -20,10 +20,10 @@ namespace Squeal
 {
   namespace
   {
-    /// For each corner, the corners at the ends of three of its edges, as a right-handed triple; at a pyramid's apex, none.
+    /// For each corner, the other ends of three of its edges, as a right-handed triple; none at the apex of a pyramid.
     struct CornerEdges
     {
-      double                                   unit; ///< triple product of the directions in a regular cell
+      double                                   unit; ///< triple product of the unit edge vectors in a regular cell
       std::vector<std::array<unsigned int, 3>> ends;
     };
 
@@ -37,7 +37,7 @@ namespace Squeal
       return shape == Shape::tetrahedron ? tetrahedron : shape == Shape::pyramid ? pyramid : shape == Shape::wedge ? wedge : hexahedron;
     }
 
-    /// At each corner, the triple product of the three edges that meet there, each divided by its length; 0 where one has none.
+    /// Triple product of the three normalised edges at each corner; 0 if an edge has no length.
     std::vector<double> scaled_jacobians(const Mesh &mesh, const Mesh::Cell &cell)
     {
       const CornerEdges  &corners = corner_edges(cell.shape);
@@ -56,7 +56,7 @@ namespace Squeal
       return result;
     }
 
-    /// Whether the corners of two faces, the same, follow each other in the same sense.
+    /// True if two faces with the same corners have the same orientation.
     bool turn_alike(const CellFace &a, const CellFace &b)
     {
       const auto first = std::find(b.corners.begin(), b.corners.end(), a.corners[0]) - b.corners.begin();
@@ -68,7 +68,7 @@ namespace Squeal
       return names.empty() ? "(none)" : boost::algorithm::join(names, ", ");
     }
 
-    /// Several discs on one axis are volumes of their own, each with a mount.
+    /// Checks that every body is connected; several discs on one axis are separate volumes, each with a mount.
     void check_connected(const Mesh &mesh, const std::vector<std::string> &mounted_surfaces, const std::string &where)
     {
       boost::disjoint_sets_with_storage<> sets(mesh.points.size());
@@ -113,7 +113,7 @@ namespace Squeal
         }
     }
 
-    /// Nodes of a named surface, by the body they belong to.
+    /// Nodes of a named surface, grouped by body.
     std::vector<std::set<unsigned int>> nodes_by_body(const Mesh                      &mesh,
                                                       const std::vector<unsigned int> &body_of_node,
                                                       const std::string               &name)
@@ -135,7 +135,7 @@ namespace Squeal
       return nearest;
     }
 
-    /// The nodes of a cell's mirror image, one for each node: bottom and top exchanged, or two coordinates of the base.
+    /// Node permutation of the mirror image of a cell: bottom and top exchanged, or two coordinates of the base.
     std::vector<unsigned int> mirrored_nodes(const Shape shape, const unsigned int degree)
     {
       const auto                nodes = reference_nodes(shape, degree);
@@ -268,7 +268,7 @@ namespace Squeal
                           list(mesh.volume_names),
                         where, "name the disc's volume 'disc' and each pin's or pad's otherwise, such as 'pin_1'");
 
-      // Volumes that share nodes are one body, but the disc slides
+      // Volumes that share nodes are one body, except disc and pins
       std::vector<std::optional<unsigned int>> volume_of_node(mesh.points.size());
       for (const Mesh::Cell &cell : mesh.cells)
         for (const unsigned int node : cell.nodes)
@@ -299,7 +299,7 @@ namespace Squeal
         throw MeshError("There is no face on a physical surface '" + name + "'; the surfaces are: " + list(mesh.surface_names), where,
                         "give the surface this name, or correct the names in Contact/Pairs and Contact/Tied");
 
-    // Named faces are outer faces of volumes of their kind
+    // Named faces must be outer faces of matching volumes
     const std::vector<CellFace> faces = all_faces(mesh);
     for (const Mesh::Face &face : mesh.faces)
       {

@@ -22,14 +22,14 @@ namespace Squeal
   {
     constexpr unsigned int not_numbered = static_cast<unsigned int>(-1);
 
-    /// A kind of Gmsh's elements.
+    /// An element type of Gmsh.
     struct ElementType
     {
       const char  *name;
       int          number; ///< in a .msh
       Shape        shape;
       unsigned int degree;
-      bool         is_complete = true; ///< or a serendipity element, without nodes on faces and inside
+      bool         is_complete = true; ///< false for serendipity elements, without nodes on faces and inside
     };
 
     constexpr ElementType element_types[] = {{"Triangle 3", 2, Shape::triangle, 1},
@@ -57,7 +57,7 @@ namespace Squeal
       unsigned int       group;
     };
 
-    /// By their tags, which write_msh() gives in the order of the mesh.
+    /// Elements by tag; write_msh() numbers them in the order of the mesh.
     using TaggedElements = std::multimap<std::size_t, GroupElement>;
 
     void add_group(TaggedElements &all, const GmshMesh::Group &group, std::vector<std::string> &names, const std::string &where)
@@ -76,7 +76,7 @@ namespace Squeal
       names.push_back(group.name);
     }
 
-    /// Groups of volumes, those of the disc first.
+    /// Groups of volumes, the disc first.
     std::vector<const GmshMesh::Group *> volumes(const GmshMesh &mesh)
     {
       std::vector<const GmshMesh::Group *> result;
@@ -125,7 +125,7 @@ namespace Squeal
       return first == nullptr ? 1 : first->degree;
     }
 
-    /// Nodes of cells in the order of Gmsh's, which the cells then refer to; the new numbers of all.
+    /// Numbers the nodes of cells in Gmsh's order and updates the cells; returns the new numbers.
     std::vector<unsigned int> number_nodes(TaggedElements           &cells,
                                            const GmshMesh           &mesh,
                                            std::vector<Mesh::Point> &points,
@@ -154,7 +154,7 @@ namespace Squeal
   {
     if (gmsh.n_unnamed_volume_elements > 0)
       throw MeshError(std::to_string(gmsh.n_unnamed_volume_elements) + " volume elements belong to no physical volume", where,
-                      "name every volume that is meshed: the disc 'disc', every other body as you like");
+                      "name every meshed volume: the disc 'disc', other bodies freely");
     Mesh           result;
     TaggedElements cells, faces;
     for (const GmshMesh::Group *group : volumes(gmsh))
@@ -168,15 +168,14 @@ namespace Squeal
         if (const unsigned int first = cells.lower_bound(tag)->second.group; first != cell.group)
           throw MeshError(
             "An element belongs to physical volumes '" + result.volume_names[first] + "' and '" + result.volume_names[cell.group] + "'",
-            where, "put every volume into one physical group; in a mesh file, let each group have an elementary tag (entity) of its own");
+            where, "put every volume into one physical group; in a mesh file, give each group its own elementary tag (entity)");
         result.cells.push_back({cell.type->shape, cell.nodes, cell.group});
         result.element_tags.push_back(tag);
       }
     for (auto &[tag, face] : faces)
       {
         if (const Topology &parts = topology(face.type->shape); result.degree == 2)
-          face.nodes.resize(parts.corners.size() +
-                            parts.edges.size()); // the centre is that of the cell, which may be a serendipity element
+          face.nodes.resize(parts.corners.size() + parts.edges.size()); // the cell, whose centre it is, may be a serendipity element
         for (unsigned int &node : face.nodes)
           if ((node = new_index[node]) == not_numbered)
             throw MeshError("Surface '" + result.surface_names[face.group] + "' has a face that is not a face of any element", where,
@@ -230,7 +229,7 @@ namespace Squeal
       }
     stream << "$EndNodes\n";
 
-    // Elements carry their index, so that their order is kept
+    // Elements carry their index to keep their order
     struct Block
     {
       std::size_t n_elements = 0;

@@ -23,16 +23,17 @@ namespace Squeal
 
     using Position = Mesh::Point;
     using Box      = dealii::BoundingBox<3>;
-    using Sample   = std::pair<Position, unsigned int>; ///< a place with the index of a node, face or element
+    using Sample   = std::pair<Position, unsigned int>; ///< a position with the index of a node, face or element
     using Tree     = dealii::RTree<Sample>;
 
-    // Nodes coincide: far below what is drawn on purpose, above the rounding of files with six digits
+    // Coincident nodes: far below intended distances, above rounding in files with six digits
     constexpr double of_shortest_edge = 1e-3, of_size = 2e-5, most_of_shortest_edge = 0.1, most_of_longest_edge = 5e-3;
 
-    /// Nodes of a finer part lie off the coarser part's faces by up to this much of an element, where a curved face is chords.
+    /// Largest distance of nodes of a finer part from the faces of the coarser part, relative to the element, where a curved face is
+    /// approximated by chords [-].
     constexpr double off_curved_faces = 0.3;
 
-    /// Bodies overlap: below this, chords of a curved face may lie inside another body.
+    /// Overlap of bodies, relative to the element: chords of a curved face may penetrate another body by less [-].
     constexpr double chord_depth = 0.05;
 
     std::string place(const Position &p)
@@ -59,7 +60,7 @@ namespace Squeal
       return box;
     }
 
-    /// Cells have straight edges here: second-order nodes are on edges that both neighbours have.
+    /// Bounding box with straight edges: second-order nodes are on edges that both neighbours have.
     Box box_around(const Mesh &mesh, const Mesh::Cell &cell)
     {
       std::vector<Position> corners;
@@ -68,7 +69,7 @@ namespace Squeal
       return Box(corners);
     }
 
-    /// Distance from which on a node is another node, for each node [m].
+    /// Distance above which a neighbouring point is a different node, for each node [m].
     std::vector<double> node_tolerances(const Mesh &mesh)
     {
       std::vector<double> shortest(mesh.points.size(), std::numeric_limits<double>::infinity()), longest(mesh.points.size(), 0.);
@@ -106,7 +107,7 @@ namespace Squeal
 
     // -------------------------------------------------------- coincident nodes
 
-    /// Calls visit(node, other), node < other, for nodes that coincide.
+    /// Calls visit(node, other), node < other, for coincident nodes.
     template <typename Visit>
     void visit_coincident(const std::vector<Sample> &nodes, const std::vector<double> &tolerances, const Visit &visit)
     {
@@ -124,21 +125,21 @@ namespace Squeal
                       const std::vector<unsigned int> &bodies,
                       const std::string               &where)
     {
-      std::map<unsigned int, std::set<unsigned int>> twins; // by body, those with a lower one
+      std::map<unsigned int, std::set<unsigned int>> twins; // by body, nodes that coincide with one of lower number
       visit_coincident(nodes, tolerances, [&](const unsigned int node, const unsigned int other) {
         if (bodies[node] == bodies[other])
           twins[bodies[node]].insert(other);
       });
       for (const auto &[body, of_body] : twins)
         throw MeshError(counted(of_body.size(), "node", "nodes") + " of body '" + mesh.body_names[body] + "' " +
-                          (of_body.size() == 1 ? "coincides" : "coincide") + " with other nodes of it; the first one is at " +
+                          (of_body.size() == 1 ? "coincides" : "coincide") + " with other nodes of the same body; the first one is at " +
                           place(mesh.points[*of_body.begin()]),
                         where,
-                        "make one node of those that coincide (Coherence Mesh in Gmsh, or merge duplicate nodes in the pre-processor), "
+                        "merge coincident nodes (Coherence Mesh in Gmsh, or merge duplicate nodes in the pre-processor), "
                         "or open the crack that they form");
     }
 
-    /// Refuses quadrilaterals whose neighbours are triangles: they share nodes and yet move apart.
+    /// Rejects quadrilaterals with triangles as neighbours: they share nodes but are not conforming.
     void check_matching(const Mesh &mesh, const std::vector<CellFace> &outline, const std::string &where)
     {
       std::set<std::array<unsigned int, 4>> triangles;
@@ -200,14 +201,14 @@ namespace Squeal
       for (const auto &[pin, faces] : wrong)
         throw MeshError("'" + mesh.body_names[pin] + "' and the disc lie on the same side of " +
                           counted(faces.size(), "contact face", "contact faces") + ", the first one at " +
-                          place(face_geometry(mesh, faces.front()).centre) + ": one body is drawn into the other",
-                        where, "draw the pin on the other side of its contact face, for example with the extrusion reversed");
+                          place(face_geometry(mesh, faces.front()).centre) + ": one body is inside the other",
+                        where, "model the pin on the other side of its contact face, for example with the extrusion reversed");
     }
 
     // --------------------------------------------------------- nodes in elements
 
-    /// Nodes where faces of the outline meet in several fans, or more than two at an edge. There, parts of a body are joined by single
-    /// nodes or edges, as on both sides of hanging nodes.
+    /// Nodes at which faces of the outline meet in several fans, or edges with more than two faces: parts of a body are joined there only
+    /// by single nodes or edges, as on both sides of hanging nodes.
     std::vector<bool> pinched_nodes(const Mesh &mesh, const std::vector<CellFace> &outline)
     {
       struct Edge
@@ -251,11 +252,11 @@ namespace Squeal
       return result;
     }
 
-    /// Of nodes, or of nodes and centres of elements, by their index, which for element e is the number of nodes + e.
+    /// Misplaced nodes or element centres, by index; the index of the centre of element e is the number of nodes + e.
     struct MisplacedPoints
     {
       std::map<unsigned int, std::set<unsigned int>>                          hanging;  ///< on or in elements of their body
-      std::map<std::pair<unsigned int, unsigned int>, std::set<unsigned int>> overlaps; ///< by their body and that in which they are
+      std::map<std::pair<unsigned int, unsigned int>, std::set<unsigned int>> overlaps; ///< by their body and the body that contains them
     };
 
     std::vector<Box> boxes_of_bodies(const Mesh &mesh, const std::vector<unsigned int> &bodies)
@@ -328,11 +329,11 @@ namespace Squeal
         return place(index < n_nodes ? mesh.points[index] : centre(mesh, mesh.cells[index - n_nodes]));
       };
       for (const auto &[body, nodes] : points.hanging)
-        throw MeshError(counted(nodes.size(), "node", "nodes") + " of body '" + mesh.body_names[body] + "' " +
-                          (nodes.size() == 1 ? "lies" : "lie") +
-                          " on edges or faces of elements of this body, or inside them, without being their nodes; the first one is at " +
-                          place_of(*nodes.begin()),
-                        where, "mesh neighbouring parts of a body with the same nodes on their common faces (no hanging nodes)");
+        throw MeshError(
+          counted(nodes.size(), "node", "nodes") + " of body '" + mesh.body_names[body] + "' " + (nodes.size() == 1 ? "is" : "are") +
+            " on edges or faces of elements of this body, or inside them, but not nodes of these elements; the first one is at " +
+            place_of(*nodes.begin()),
+          where, "mesh neighbouring parts of a body with the same nodes on their common faces (no hanging nodes)");
       const auto most = std::max_element(points.overlaps.begin(), points.overlaps.end(),
                                          [](const auto &a, const auto &b) { return a.second.size() < b.second.size(); });
       if (most == points.overlaps.end())
@@ -343,7 +344,7 @@ namespace Squeal
                         "' overlap: " + counted(n_inside, "node", "nodes") + " and " +
                         counted(indices.size() - n_inside, "element centre", "element centres") +
                         " of the former are inside the latter, the first one at " + place_of(*indices.begin()),
-                      where, "move one of them, or remove the one that is drawn twice");
+                      where, "move one of them, or remove duplicate bodies");
     }
   } // namespace
 

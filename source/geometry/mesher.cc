@@ -28,7 +28,7 @@ namespace Squeal
                                          "$Entities; write it with them, or in format 2.2";
     constexpr std::size_t quoted_lines = 8;
 
-    /// A file in memory, which vanishes with its last descriptor.
+    /// A file in memory that is removed with its last descriptor.
     using MemoryFile = std::unique_ptr<std::FILE, decltype(&std::fclose)>;
 
     MemoryFile memory_file(const std::string &content)
@@ -53,15 +53,15 @@ namespace Squeal
     {
       if (!is_confined)
         return boost::this_process::environment();
-      // Where the libraries are, and nothing else
+      // Only the library path
       process::environment result;
       if (const char *path = std::getenv("LD_LIBRARY_PATH"))
         result["LD_LIBRARY_PATH"] = path;
-      result["HOME"] = "/dev/null"; // no preferences of the libraries, either; not even root can make a folder there
+      result["HOME"] = "/dev/null"; // no preferences of libraries; not even root can create a folder there
       return result;
     }
 
-    /// A line of Gmsh, which may quote anything from a file: nothing that a terminal would obey, and not of any length.
+    /// A line of Gmsh's output, which may quote arbitrary file contents: without control characters and truncated.
     std::string shown(std::string line)
     {
       constexpr std::size_t longest_line = 500;
@@ -72,7 +72,7 @@ namespace Squeal
       return line;
     }
 
-    /// What Gmsh printed last, from the first error if there is one.
+    /// The end of Gmsh's output, from the first error if there is one.
     std::string quoted(const std::string &log)
     {
       std::istringstream       stream(log);
@@ -95,7 +95,7 @@ namespace Squeal
                       "use larger elements or fewer of them, or raise Geometry/Meshing memory limit");
     }
 
-    /// What became of a process that said nothing.
+    /// Throws the error for a process that ended without a reply.
     [[noreturn]] void explain_end(const int status, const std::string &log, const MesherLimits &limits, const std::string &where)
     {
       if (WIFSIGNALED(status) && WTERMSIG(status) == SIGALRM)
@@ -105,7 +105,8 @@ namespace Squeal
         throw ForbiddenAction("starts a program, writes a file or opens a connection");
       if (WIFSIGNALED(status))
         throw MeshError(std::string("Gmsh crashed (") + strsignal(WTERMSIG(status)) + "). " + quoted(log), where, repair);
-      throw MeshError("The geometry ended Gmsh before there was a mesh. " + quoted(log), where, "remove Exit or Abort from the geometry");
+      throw MeshError("The geometry ended Gmsh before the mesh was complete. " + quoted(log), where,
+                      "remove Exit or Abort from the geometry");
     }
 
     GmshMesh mesh_from(const std::string &reply, const std::string &log, const MesherLimits &limits, const std::string &where)
@@ -120,7 +121,7 @@ namespace Squeal
           case MesherReply::out_of_memory:
             refuse_memory(limits, where);
         }
-      throw MeshError("The mesher gave an unknown reply", where, "build all of the program anew");
+      throw MeshError("The mesher gave an unknown reply", where, "rebuild the whole program");
     }
   } // namespace
 
@@ -157,7 +158,7 @@ namespace Squeal
       }
     catch (const std::length_error &)
       {
-        explain_end(status, log, limits, where); // the reply breaks off
+        explain_end(status, log, limits, where); // the reply is incomplete
       }
   }
 } // namespace Squeal

@@ -15,19 +15,20 @@ namespace Squeal
 {
   namespace
   {
-    /// Parts of the slave's area, of that of an element and of ∫ Ñ_j that must at least be in the overlap [-].
+    /// Smallest overlap relative to the slave area, to the area of an element and to ∫ Ñ_j [-].
     constexpr double least_overlap = 1e-3, least_of_element = 0.02, least_of_node = 0.1;
 
-    /// Smaller weights are rounding errors.
+    /// Smaller weights are rounding errors [-].
     constexpr double least_weight = 1e-13;
 
-    /// Largest mean cosine between normals of surfaces that face each other.
+    /// Largest mean cosine between the normals of opposite surfaces [-].
     constexpr double largest_cosine = -0.5;
 
-    /// Largest gap over the mean size of the slave's faces, and the one from which a note mentions it: chords of curved faces leave less [-].
+    /// Largest gap relative to the mean size of the slave faces, and gap above which a note is given: chords of curved faces cause smaller
+    /// gaps [-].
     constexpr double touching_gap = 0.5, noted_gap = 0.05;
 
-    /// Size of slave faces over that of the master's from which the pressure of the slave oscillates [-].
+    /// Ratio of slave to master face sizes above which the slave pressure oscillates [-].
     constexpr double noted_coarseness = 3.;
 
     unsigned int n_corners(const SurfaceElement &element)
@@ -35,7 +36,7 @@ namespace Squeal
       return element.shape == Shape::triangle ? 3 : 4;
     }
 
-    /// From N to Ñ, see mortar(); α = 0 without 6-node triangles.
+    /// Transformation from N to Ñ, see mortar(); α = 0 without 6-node triangles.
     class Transformation
     {
     public:
@@ -69,14 +70,14 @@ namespace Squeal
         return result;
       }
 
-      std::vector<NodeWeights> values; ///< ũ_j of u
-      std::vector<NodeWeights> forces; ///< on ũ_j, of those on u
+      std::vector<NodeWeights> values; ///< ũ_j in terms of u
+      std::vector<NodeWeights> forces; ///< forces on ũ_j in terms of forces on u
 
     private:
       void add_edge(const unsigned int e, const unsigned int v, const unsigned int w)
       {
         if (values[e].size() > 1)
-          return; // the edge of the element on its other side
+          return; // edge of the neighbouring element, already done
         values[e] = {{e, 1. / (1. - 2. * alpha)}, {v, -alpha / (1. - 2. * alpha)}, {w, -alpha / (1. - 2. * alpha)}};
         forces[e] = {{e, 1. - 2. * alpha}};
         forces[v].emplace_back(e, alpha);
@@ -86,16 +87,16 @@ namespace Squeal
       double alpha = 0.;
     };
 
-    /// A slave node with what the elements there add up to.
+    /// A slave node with the sums over its elements.
     struct SlaveNode
     {
       double                         whole = 0.; ///< ∫ Ñ_j over the elements
-      double                         area  = 0.; ///< and over the overlap
+      double                         area  = 0.; ///< ∫ Ñ_j over the overlap
       std::map<unsigned int, double> master;     ///< ∫ ψ_j N_l
-      std::set<unsigned int>         neighbours; ///< in elements that overlap
+      std::set<unsigned int>         neighbours; ///< in overlapping elements
     };
 
-    /// Adds the dual functions of an element; does nothing if its functions depend on each other there.
+    /// Adds the dual functions of an element; does nothing if its functions are linearly dependent on the overlap.
     void add_element(std::vector<SlaveNode> &nodes,
                      const SurfaceElement   &element,
                      const FaceMatrix       &transformation,
@@ -123,7 +124,7 @@ namespace Squeal
         }
     }
 
-    /// Slave nodes of each row, by the node that has it: nodes with hardly any overlap join the largest of their neighbours.
+    /// Slave nodes of each row, by the node of the row: nodes with little overlap are merged with the neighbour of largest area.
     std::map<unsigned int, std::vector<unsigned int>> grouped(const std::vector<SlaveNode> &nodes)
     {
       std::map<unsigned int, std::vector<unsigned int>> groups;
@@ -205,10 +206,10 @@ namespace Squeal
       const char *where = "surfaces disc_contact and pin_contact";
       if (mean_cosine > largest_cosine)
         throw MeshError(text("the contact faces do not face each other: the mean cosine between their normals is ", mean_cosine), where,
-                        "let the normals of the two surfaces be opposite");
+                        "make the normals of the two surfaces opposite");
       if (!(mortar.overlap_area >= least_overlap * mortar.slave_area) || mortar.rows.empty())
         throw MeshError(text("the faces overlap by ", mortar.overlap_area, " m² of ", mortar.slave_area, " m²"), where,
-                        text("let them lie on each other, with a gap below ", search_distance, " m, or name surfaces that do"));
+                        text("position them opposite each other, with a gap below ", search_distance, " m, or name other surfaces"));
     }
   } // namespace
 
@@ -257,7 +258,7 @@ namespace Squeal
       notes.push_back(text("gaps or penetrations of up to ", coupling.largest_gap, " m: the faces are coupled as if they touched"));
     if (coupling.coarseness > noted_coarseness)
       notes.push_back(text("faces of ", slave, " are up to ", coupling.coarseness, " times as large as those of ", master,
-                           ": the pressure is resolved by the coarser side only"));
+                           ": only the coarser side resolves the pressure"));
     return notes;
   }
 } // namespace Squeal

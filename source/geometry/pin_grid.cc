@@ -9,10 +9,10 @@ namespace Squeal
 {
   namespace
   {
-    // Of the radius: all rings but the innermost one lie outside of the first, corners of the blocks on the second
+    // Relative to the radius: all rings except the innermost lie outside the first value, corners of the blocks at the second
     constexpr double rings_end = 0.8, blocks_end = 0.6;
 
-    /// Of the sides of the triangle around the blocks: 0 for arcs, 1 for chords.
+    /// Shape of the sides of the triangle around the blocks: 0 for arcs, 1 for chords.
     constexpr double straightness = 0.5;
 
     Plan::Point between(const double t, const Plan::Point &a, const Plan::Point &b)
@@ -20,7 +20,7 @@ namespace Squeal
       return Plan::Point((1. - t) * a + t * b);
     }
 
-    /// The outline of the blocks inside the rings. Blocks have their outer corners halfway between the ends of spokes.
+    /// Outline of the blocks inside the rings. The outer corners of blocks are halfway between the ends of spokes.
     std::vector<Plan::Point> bulging_triangle(const std::vector<unsigned int> &outline, const std::vector<Plan::Point> &points)
     {
       const unsigned int       side   = outline.size() / 3;
@@ -68,7 +68,7 @@ namespace Squeal
       return i == 0 ? centre_node : i == k ? at(2 * k * s) : centre_node + s % 3 * (k - 1) + i;
     };
 
-    // Blocks: i runs along one spoke, j along the next, the far sides are on the loop
+    // Blocks: i runs along one spoke, j along the next, the opposite sides are on the loop
     std::vector<Plan::Face> faces;
     for (unsigned int b = 0; b < 3; ++b)
       {

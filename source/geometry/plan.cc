@@ -47,7 +47,7 @@ namespace Squeal
       return result;
     }
 
-    /// The nodes of a closed curve around a pin one behind the other, counter-clockwise.
+    /// Nodes of a closed curve around a pin in order, counter-clockwise.
     std::vector<unsigned int> closed_loop(const Plan::Curve &curve, const std::vector<Plan::Point> &points, const std::string &where)
     {
       std::vector<unsigned int> loop = closed_polygon(curve.edges);
@@ -56,12 +56,12 @@ namespace Squeal
                         "give the curves around exactly one hole of the plan this name");
       if (loop.size() % 6 != 0)
         throw MeshError("Physical curve '" + curve.name + "' has " + std::to_string(loop.size()) +
-                          " nodes; a pin is filled by three blocks of equal size, which needs a multiple of 6",
-                        where, "make it of three arcs with 'Transfinite Curve' of the same number of nodes");
+                          " nodes; three equal blocks that fill a pin need a multiple of 6",
+                        where, "build it from three arcs with 'Transfinite Curve' and equal numbers of nodes");
       if (signed_area(loop, points) < 0.)
         std::reverse(loop.begin(), loop.end());
 
-      // The first spoke points away from the axis of the disc.
+      // The first spoke points away from the axis of the disc
       const Plan::Point centre = mean_point(loop, points);
       if (const double radius = std::hypot(centre[0], centre[1]); radius > 0.)
         {
@@ -82,7 +82,7 @@ namespace Squeal
         for (unsigned int v = 0; v < 4; ++v)
           smallest_edge = std::min(smallest_edge, plan.points[face[v]].distance(plan.points[face[(v + 1) % 4]]));
 
-      // Sorted by x, coincident nodes are close to each other in the list.
+      // Sorted by x, coincident nodes are close to each other in the list
       const double             tolerance = 1e-3 * smallest_edge;
       std::vector<Plan::Point> points    = plan.points;
       std::sort(points.begin(), points.end(), [](const Plan::Point &a, const Plan::Point &b) { return a[0] < b[0]; });
@@ -90,8 +90,8 @@ namespace Squeal
         for (auto b = a + 1; b != points.end() && (*b)[0] - (*a)[0] <= tolerance; ++b)
           if (std::abs((*b)[1] - (*a)[1]) <= tolerance)
             throw MeshError("Two nodes of the plan coincide at (" + std::to_string((*a)[0]) + ", " + std::to_string((*a)[1]) +
-                              ") m: surfaces lie side by side without being joined",
-                            where, "let neighbouring surfaces use the same curves, or join them with Coherence");
+                              ") m: neighbouring surfaces are not joined",
+                            where, "use the same curves for neighbouring surfaces, or join them with Coherence");
     }
 
     void check_pins(const Plan &plan, const std::string &where)
@@ -103,7 +103,7 @@ namespace Squeal
       for (const Plan::Pin &pin : plan.pins)
         {
           if (pin.faces.empty())
-            throw MeshError("'" + pin.name + "' has no faces", where, "check what bears this name");
+            throw MeshError("'" + pin.name + "' has no faces", where, "check the entities with this name");
           for (const Plan::Pin &other : plan.pins)
             if (&other != &pin && other.name == pin.name)
               throw MeshError("'" + pin.name + "' names a surface and a curve", where, "keep one of them");
@@ -117,7 +117,7 @@ namespace Squeal
 
     // ------------------------------------------------------------------ reading
 
-    /// Takes the groups of Gmsh's mesh into a plan, those of the highest dimension first.
+    /// Reads the groups of a Gmsh mesh into a plan, highest dimension first.
     class PlanReader
     {
     public:
@@ -169,7 +169,7 @@ namespace Squeal
              {PhysicalNames::disc_contact, PhysicalNames::pin_contact, PhysicalNames::pin_clamp, PhysicalNames::pin_side})
           if (group.name == reserved)
             throw MeshError("The plan has a physical curve '" + group.name + "'", where,
-                            "choose another name; the extrusion gives this one to faces of its own");
+                            "choose another name; this one is reserved for faces of the extrusion");
         (is_pin(group.name) ? pin_curves : plan.curves).push_back(curve);
       }
 
@@ -182,7 +182,7 @@ namespace Squeal
         centres[group.name] = {point[0], point[1]};
       }
 
-      /// Fills the holes, each once for one or two pins.
+      /// Fills the holes, each once for one or two pins
       void fill_holes()
       {
         const std::set<Plan::Edge>                outline = sorted_edges(boundary_edges(plan.faces));
@@ -222,7 +222,7 @@ namespace Squeal
         plan.pins.push_back(pin);
       }
 
-      /// The faces and nodes of what fills a closed curve, without name, side and place.
+      /// Faces and nodes that fill a closed curve, without name, side and position.
       Plan::Pin fill(const std::vector<unsigned int> &loop)
       {
         const PinGrid grid = fill_pin(loop, rings, plan.points);
@@ -237,7 +237,7 @@ namespace Squeal
         return pin;
       }
 
-      /// Index of a node in the plan, which has those that are used by a surface and no others.
+      /// Index of a node in the plan; nodes without a surface are not included.
       unsigned int node_index(const unsigned int node)
       {
         if (plan_node[node] == no_node)
@@ -317,7 +317,7 @@ namespace Squeal
     };
     for_groups(2, &PlanReader::add_surface);
     if (!reader.has_disc)
-      throw MeshError("The plan has no physical surface 'disc'", where, "give the surface of the disc that is not under a pin this name");
+      throw MeshError("The plan has no physical surface 'disc'", where, "give this name to the surface of the disc outside the pins");
     for_groups(1, &PlanReader::add_curve);
     for_groups(0, &PlanReader::add_centre);
     reader.fill_holes();
@@ -341,7 +341,7 @@ namespace Squeal
 
   namespace
   {
-    /// Moves @p nodes away from the centre of the circle on which the closed curve lies, if it is one.
+    /// Moves @p nodes outwards if the closed curve lies on a circle.
     void enlarge(const std::vector<Plan::Edge> &outline, const std::set<unsigned int> &nodes, std::vector<Plan::Point> &points)
     {
       const std::vector<unsigned int> polygon = closed_polygon(outline);
@@ -362,7 +362,7 @@ namespace Squeal
   {
     for (const Plan::Curve &curve : plan.curves)
       enlarge(curve.edges, nodes_of(curve.edges), plan.points);
-    // Pins of both sides may be above the same faces
+    // Pins of both sides may share the same faces
     std::set<std::vector<unsigned int>> done;
     for (const Plan::Pin &pin : plan.pins)
       if (done.insert(pin.faces).second)

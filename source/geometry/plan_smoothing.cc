@@ -11,8 +11,8 @@ namespace Squeal
 {
   namespace
   {
-    /// Moves a point to where a function of it is less than @p least, by steps in eight directions that become half as long again and
-    /// again. Returns the least value found.
+    /// Moves a point to reduce a function of it below @p least, by steps in eight directions with successively halved lengths. Returns the
+    /// smallest value found.
     template <typename Function>
     double move_to_least(Plan::Point &point, const double longest_step, const double shortest_step, double least, const Function &function)
     {
@@ -35,13 +35,13 @@ namespace Squeal
       return least;
     }
 
-    // Sine of a corner's angle below which a face is bad: far from what check_mesh() refuses, and below what plans have by design
+    // Sine of a corner angle below which a face is bad: far above the limit of check_mesh(), and below values in regular plans
     constexpr double least_sine = 0.1;
 
-    // Rows of faces around the bad ones that move along; a pin and its neighbour are fewer apart.
+    // Rows of faces around the bad ones that move with them; fewer than between neighbouring pins
     constexpr int n_rings = 6;
 
-    constexpr int    max_untangling_sweeps = 100; ///< ε has been least for a third of them
+    constexpr int    max_untangling_sweeps = 100; ///< ε has its smallest value for a third of them
     constexpr double epsilon_decrease      = 0.9;
     constexpr double smallest_epsilon      = 1e-3;
     constexpr double converged             = 1e-3; ///< relative decrease of a node's energy in a sweep
@@ -56,7 +56,7 @@ namespace Squeal
       return false;
     }
 
-    /// The faces around bad ones, with what of them may move.
+    /// The faces around bad ones, and which of their nodes may move.
     class Region
     {
     public:
@@ -111,7 +111,7 @@ namespace Squeal
         return std::none_of(region.begin(), region.end(), [&](const Plan::Face &face) { return is_bad(face, points); });
       }
 
-      /// Moves every node and part once; returns the greatest relative decrease of a node's energy.
+      /// Moves every node and part once; returns the largest relative decrease of a node's energy.
       double sweep(const double new_epsilon)
       {
         epsilon         = new_epsilon;
@@ -124,7 +124,7 @@ namespace Squeal
       }
 
     private:
-      /// Faces whose shape depends on the angle of a part: those with nodes on and off it.
+      /// Faces whose shape depends on the angle of a part: those with nodes both in and outside it.
       std::vector<unsigned int> faces_around(const TurningPart &part) const
       {
         std::vector<bool> on_part(points.size(), false);
@@ -187,7 +187,7 @@ namespace Squeal
       std::vector<Plan::Point>              &points;
       std::vector<Plan::Face>                region;
       std::vector<std::vector<unsigned int>> faces_at; ///< by node
-      std::vector<unsigned int>              nodes;    ///< those that may move
+      std::vector<unsigned int>              nodes;    ///< free to move
       std::vector<const TurningPart *>       parts;
       std::vector<std::vector<unsigned int>> part_faces;
       double                                 mean_area = 0., epsilon = 1.;
@@ -216,15 +216,15 @@ namespace Squeal
 
   namespace
   {
-    // Faces above this shape (a rectangle of sides 1 : 3, or an angle of 37°) stay as Gmsh made them.
+    // Faces above this quality (a rectangle of sides 1 : 3, or an angle of 37°) are not changed
     constexpr double good_shape = 0.6;
     constexpr int    max_sweeps = 100;
 
-    // Enough for a displacement to spread from a pin to its neighbours; how evenly does not matter.
+    // Enough to spread a displacement from a pin to its neighbours; it need not be uniform
     constexpr int displacement_sweeps = 200;
     constexpr int displacement_steps  = 5;
 
-    /// Least shape of the four corners.
+    /// Smallest shape quality of the four corners.
     double shape(const Plan::Face &face, const std::vector<Plan::Point> &points)
     {
       double worst = 1.;
@@ -237,14 +237,14 @@ namespace Squeal
       return worst;
     }
 
-    /// Marks the nodes on the outline of a set of faces.
+    /// Fixes the nodes on the outline of a set of faces.
     void fix_outline(const std::vector<Plan::Face> &faces, std::vector<bool> &fixed)
     {
       for (const Plan::Edge &edge : boundary_edges(faces))
         fixed[edge[0]] = fixed[edge[1]] = true;
     }
 
-    /// Nodes on the outline of a pin and those of its rings.
+    /// Fixes the nodes on the outline of a pin and those of its rings.
     void fix(const Plan::Pin &pin, const Plan &plan, std::vector<bool> &fixed)
     {
       fix_outline(plan.faces_of(pin), fixed);
@@ -252,7 +252,7 @@ namespace Squeal
         fixed[node] = true;
     }
 
-    /// A pin with its nodes where they are now: it may turn about its centre.
+    /// A pin with the present positions of its nodes: it may rotate about its centre.
     TurningPart turning_part(const Plan::Pin &pin, const Plan &plan, const std::vector<Plan::Point> &points)
     {
       const std::vector<Plan::Face> faces = plan.faces_of(pin);
@@ -262,14 +262,14 @@ namespace Squeal
 
     void smooth(const std::vector<Plan::Face> &faces, const std::vector<bool> &fixed, std::vector<Plan::Point> &points)
     {
-      // Faces around the nodes that may move
+      // Faces around the movable nodes
       std::vector<std::vector<unsigned int>> faces_at(points.size());
       for (unsigned int face = 0; face < faces.size(); ++face)
         for (const unsigned int node : faces[face])
           if (!fixed[node])
             faces_at[node].push_back(face);
 
-      // Length of steps: fixed, so that tangled nodes do not run away
+      // Fixed step lengths keep tangled nodes from moving far away
       std::vector<double> longest_edge(points.size(), 0.);
       for (const Plan::Face &face : faces)
         for (unsigned int v = 0; v < 4; ++v)
@@ -329,7 +329,7 @@ namespace Squeal
     for (const Plan::Pin &pin : plan.pins)
       fix(pin, plan, fixed);
     smooth(plan.faces, fixed, plan.points);
-    std::set<std::vector<unsigned int>> done; // pins of both sides may be above the same faces
+    std::set<std::vector<unsigned int>> done; // pins of both sides may share the same faces
     std::vector<TurningPart>            parts;
     for (const Plan::Pin &pin : plan.pins)
       if (pin.is_round && done.insert(pin.faces).second)
@@ -339,7 +339,7 @@ namespace Squeal
 
   std::vector<Plan::Point> points_on_side(const Plan &plan, const Plan::Side side)
   {
-    // Pins of this side and the boundary of the annulus have given displacements
+    // Pins of this side and the boundary of the annulus have prescribed displacements
     std::vector<Plan::Point> displacements(plan.points.size());
     std::vector<bool>        outline(plan.points.size(), false), given(plan.points.size(), false);
     bool                     displaced = false;
@@ -378,7 +378,7 @@ namespace Squeal
             displacements[node] = sum / double(neighbours[node].size());
           }
 
-    // In steps, smoothed each time: faces that turned over at once might not be turned back
+    // In steps, smoothed each time: faces inverted in one large step might not be repaired
     std::vector<Plan::Point> points = plan.points;
     for (int step = 0; step < displacement_steps; ++step)
       {
@@ -387,7 +387,7 @@ namespace Squeal
         smooth(plan.faces, outline, points);
       }
 
-    // A round pin may also roll along its neighbours; a pad has its place
+    // A round pin may also roll along its neighbours; a pad may not
     std::vector<TurningPart> parts;
     for (const Plan::Pin &pin : plan.pins)
       if (pin.side == side && pin.is_round)

@@ -57,7 +57,7 @@ namespace Squeal
     constexpr double      straight      = 1e-8;
     if (points.size() < fewest_points)
       return {};
-    // About the centroid and in units of their distances from it
+    // Relative to the centroid, scaled by the distances from it
     Eigen::MatrixX2d x(points.size(), 2);
     for (std::size_t i = 0; i < points.size(); ++i)
       x.row(i) << points[i][0], points[i][1];

@@ -18,15 +18,15 @@ namespace Squeal
 {
   namespace
   {
-    // Fit of ProblemSize::memory() [byte]
+    // Fitted constants of ProblemSize::memory() [byte]
     constexpr double program          = 1.8e8;
-    constexpr double bytes_per_entry  = 90.;   ///< of K: of all matrices together
-    constexpr double factor_per_dof   = 3100.; ///< at reference_dofs
+    constexpr double bytes_per_entry  = 90.;   ///< per entry of K, for all matrices
+    constexpr double factor_per_dof   = 3100.; ///< for reference_dofs
     constexpr double reference_dofs   = 3e4;
     constexpr double factor_growth    = 0.4; ///< exponent of the factor per dof
     constexpr double vectors_per_node = 1., vectors_per_mode = 3.;
 
-    /// ProblemSize::row_length of meshes of one shape.
+    /// ProblemSize::row_length for meshes of one cell shape.
     double row_length(const Shape shape, const unsigned int degree)
     {
       switch (shape)
@@ -42,7 +42,8 @@ namespace Squeal
         }
     }
 
-    /// Of a plan with numbers of faces and nodes, and of those under all pins together. Layers of nodes share those of neighbouring layers.
+    /// Size of an extruded plan from numbers of faces and nodes, in total and under all pins. Layers of nodes belong to two layers of
+    /// cells.
     ProblemSize extruded(const double              faces,
                          const double              nodes,
                          const double              pin_faces,
@@ -85,11 +86,11 @@ namespace Squeal
 
   namespace
   {
-    /// Nodes that elements of degree 1 get in degree 2: at middles of edges, at centres of quadrilaterals and of hexahedra.
+    /// Number of nodes added in degree 2: at middles of edges, at centres of quadrilaterals and hexahedra.
     template <typename Elements>
     std::size_t n_added_nodes(const Elements &elements)
     {
-      using Part = std::array<unsigned int, 4>; // the nodes of an edge, the corners of a face
+      using Part = std::array<unsigned int, 4>; // nodes of an edge, or corners of a face
       std::vector<Part> parts;
       std::size_t       n_inside = 0;
       for (const auto &element : elements)
@@ -137,7 +138,7 @@ namespace Squeal
     const double needed = size.memory(n_modes), available = available_memory(communicator);
     if (!(needed > available))
       return;
-    throw MeshError(text("The scene has about ", size.cells, " cells and ", size.dofs, " dofs, which need about ", needed / 1e9,
+    throw MeshError(text("The model has about ", size.cells, " cells and ", size.dofs, " dofs, which need about ", needed / 1e9,
                          " GB of memory; ", available / 1e9, " GB are available"),
                     where,
                     "raise Geometry/Element size, lower Geometry/Disc layers, Geometry/Pin layers or Geometry/Nodes per pin face, or lower "
@@ -146,8 +147,8 @@ namespace Squeal
 
   namespace
   {
-    /// Share of the disc's faces that a rotation about an axis moves within themselves, n·(a × (x − c)) ≈ 0: of the lateral ones, which
-    /// tell where the axis is, or of the others, which tell how it is inclined, whichever is less.
+    /// Fraction of the disc's faces that a rotation about an axis maps onto themselves, n·(a × (x − c)) ≈ 0: the smaller of that of the
+    /// lateral faces, which determine the position of the axis, and that of the others, which determine its direction.
     double round_share(const Mesh &mesh, const std::vector<CellFace> &faces, const Mesh::Point &c, const dealii::Tensor<1, 3> &a)
     {
       constexpr double largest_lateral_cosine = 0.5, fitting_motion = 5e-3;
@@ -166,7 +167,7 @@ namespace Squeal
               least              = std::min(least, value);
               most               = std::max(most, value);
             }
-          // A chord is parallel to its circle in the middle, where a triangle need not have its centre
+          // A chord is parallel to its circle at its midpoint, which need not be the centre of a triangle
           if (std::abs(least + most) / 2. < fitting_motion * area * motion.norm())
             fitting[is_lateral] += area;
         }
@@ -179,7 +180,7 @@ namespace Squeal
     constexpr double clearly_rounder = 0.1, least_round = 0.5;          // shares of the surface
     constexpr double negligible_angle = 5e-3, negligible_offset = 5e-3; // [rad], [outer radius]
 
-    // Moments of each face, exact for a triangle or parallelogram: a twelfth of those of each corner, the rest of those of its centre
+    // Moments of each face, exact for triangles and parallelograms: weight 1/12 for each corner, the remainder for the centre
     std::vector<CellFace> faces = outer_faces(mesh);
     faces.erase(std::remove_if(faces.begin(), faces.end(), [](const CellFace &face) { return face.body != 0; }), faces.end());
     double          area = 0., radius = 0.;
@@ -201,7 +202,7 @@ namespace Squeal
       }
     centre /= area;
 
-    // Of a round body, the axis belongs to the eigenvalue that differs from the other two
+    // The axis of a body of revolution belongs to the eigenvalue that differs from the other two
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(moments / area - centre * centre.transpose());
     const Eigen::Vector3d                                s    = axes.eigenvalues(); // ascending
     Eigen::Vector3d                                      axis = axes.eigenvectors().col(s[1] - s[0] < s[2] - s[1] ? 2 : 0);
@@ -217,7 +218,7 @@ namespace Squeal
           return text("(", rounded(x[0]), ", ", rounded(x[1]), ", ", rounded(x[2]), ")");
         };
         throw MeshError(
-          "The disc turns about the z axis, but it is round about the axis through " +
+          "The disc turns about the z axis, but its axis of revolution passes through " +
             print(centre, std::pow(10., std::floor(std::log10(1e-3 * radius)))) + " m in direction " + print(axis, 1e-3),
           where, "move and turn all volumes so that the axis of the disc is the z axis, e.g. by Translate and Rotate in the geometry");
       }

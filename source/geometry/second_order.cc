@@ -17,13 +17,13 @@ namespace Squeal
 
   namespace
   {
-    using Edge = std::array<unsigned int, 2>; ///< its corners, the lower first
+    using Edge = std::array<unsigned int, 2>; ///< its corners, lower number first
     using Key  = std::array<unsigned int, 4>; ///< see face_key()
 
-    /// Largest difference between the distances of a face's corners from the axis, relative to these.
+    /// Largest relative difference of the distances of a face's corners from the axis [-].
     constexpr double round_within = 1e-6;
 
-    /// Points closer than this are taken for the same [m]: far below any element size, in any unit of length.
+    /// Points closer than this coincide [m]: far below any element size, in any unit of length.
     double resolution(const std::vector<Point<3>> &points)
     {
       const auto [lower, upper] = dealii::BoundingBox<3>(points).get_boundary_points();
@@ -35,7 +35,7 @@ namespace Squeal
       return {{std::min(a, b), std::max(a, b)}};
     }
 
-    /// The edges of a face of a cell.
+    /// Edges of a face of a cell.
     std::vector<Edge> edges_of(const CellFace &face)
     {
       std::vector<Edge> edges;
@@ -44,7 +44,7 @@ namespace Squeal
       return edges;
     }
 
-    /// Edges and faces that lie on circular cylinders about axes parallel to z.
+    /// Edges and faces on circular cylinders about axes parallel to z.
     class Cylinders
     {
     public:
@@ -58,7 +58,7 @@ namespace Squeal
         attach_other_side();
       }
 
-      /// Axis of the cylinder that an edge or a face is on; null: none.
+      /// Axis of the cylinder of an edge or a face; null: none.
       const Point<2> *axis(const Edge &edge) const
       {
         const auto found = axis_of_edge.find(edge);
@@ -84,7 +84,7 @@ namespace Squeal
 
       using Range = std::pair<std::vector<CellFace>::const_iterator, std::vector<CellFace>::const_iterator>;
 
-      /// The one or two of the cells at a face.
+      /// The one or two cells at a face.
       Range cells_at(const Key &key) const
       {
         const auto first =
@@ -92,10 +92,11 @@ namespace Squeal
         return {first, std::find_if(first, faces.end(), [&](const CellFace &face) { return face.key != key; })};
       }
 
-      /// Surfaces that are cylinders, body by body.
+      /// Finds cylindrical surfaces, body by body.
       void find_surfaces()
       {
-        for (const char *name : {PhysicalNames::pin_side, PhysicalNames::disc_rim, PhysicalNames::disc_bore}) // the last one prevails
+        for (const char *name :
+             {PhysicalNames::pin_side, PhysicalNames::disc_rim, PhysicalNames::disc_bore}) // the last one takes precedence
           {
             std::map<unsigned int, std::vector<CellFace>> patches; // by body
             for (const Mesh::Face &face : mesh.faces)
@@ -115,12 +116,12 @@ namespace Squeal
           }
       }
 
-      /// The surfaces themselves, then the rings behind them.
+      /// Attaches the surfaces, then the rings behind them.
       void attach_surfaces()
       {
         struct RingFace
         {
-          CellFace    face; ///< between two rings, or between the innermost one and what is inside
+          CellFace    face; ///< between two rings, or between the innermost one and the interior
           std::size_t behind;
           Point<2>    axis;
         };
@@ -143,7 +144,7 @@ namespace Squeal
             attach(ring.face, ring.axis);
       }
 
-      /// The opposite face of a face's hexahedron, as that of the cell behind it, where there is one and the face is round.
+      /// Opposite face of a hexahedron, as a face of the next cell, if there is one and the face is round.
       std::optional<CellFace> face_behind(const CellFace &face, const Point<2> &axis) const
       {
         if (mesh.cells[face.cell].shape != Shape::hexahedron)
@@ -163,7 +164,8 @@ namespace Squeal
         return first->cell == own.cell ? *(first + 1) : *first;
       }
 
-      /// The same rims on both sides of the contact: a pin's outline and rings on the disc, the disc's rim or bore on a pad that ends there.
+      /// Attaches the same edges on the other side of the contact: outline and rings of a pin on the disc, rim or bore of the disc on a pad
+      /// that ends there.
       void attach_other_side()
       {
         for (const Mesh::Face &face : mesh.faces)
@@ -180,7 +182,7 @@ namespace Squeal
         return {{std::lround(p[0] / grid), std::lround(p[1] / grid), std::lround(p[2] / grid)}};
       }
 
-      /// Of a face and its edges, which are remembered but for those along the axis: they are straight and lie on no rim.
+      /// Attaches a face and its edges, except straight edges along the axis.
       void attach(const CellFace &face, const Point<2> &axis)
       {
         axis_of_face[face.key] = axis;
@@ -194,7 +196,7 @@ namespace Squeal
       }
     };
 
-    /// A mean of points with weights: of their places, or of their angles, radii and heights about an axis.
+    /// Weighted mean of points: of their positions, or of their angles, radii and heights about an axis.
     Point<3> mean(const std::vector<std::pair<double, Point<3>>> &points, const Point<2> *axis)
     {
       Point<3> sum;
@@ -204,7 +206,7 @@ namespace Squeal
         return sum;
       const auto   angle_of = [&](const Point<3> &p) { return std::atan2(p[1] - (*axis)[1], p[0] - (*axis)[0]); };
       const double start    = angle_of(points[0].second);
-      double       turn = 0., radius = 0.; // angle from the first point on
+      double       turn = 0., radius = 0.; // angle relative to the first point
       for (const auto &[weight, point] : points)
         {
           turn += weight * std::remainder(angle_of(point) - start, 2. * M_PI);
@@ -213,7 +215,7 @@ namespace Squeal
       return {(*axis)[0] + radius * std::cos(start + turn), (*axis)[1] + radius * std::sin(start + turn), sum[2]};
     }
 
-    /// Adds the nodes that elements of degree 2 lack, each once.
+    /// Adds the missing nodes of elements of degree 2, each once.
     class AddedNodes
     {
     public:
@@ -223,7 +225,7 @@ namespace Squeal
         , cylinders(cylinders)
       {}
 
-      /// Those of all cells and faces.
+      /// Adds nodes to all cells and faces.
       void add()
       {
         for (const Mesh::Cell &cell : mesh.cells)
@@ -250,7 +252,7 @@ namespace Squeal
         return key;
       }
 
-      /// Of a cell or face with nodes at its corners, at corners and edges, or all.
+      /// Adds nodes to a cell or face that has corner nodes, corner and edge nodes, or all nodes.
       void add(const Shape shape, Mesh::Nodes &nodes)
       {
         const Topology    &parts     = topology(shape);
@@ -263,7 +265,7 @@ namespace Squeal
         for (unsigned int f = 0; f < parts.faces.size(); ++f)
           if (const auto &numbers = nodes_of_face(shape, 2, f); numbers.size() == 9)
             nodes.push_back(on_face(nodes, numbers));
-        // Transfinite: faces less edges plus corners
+        // Transfinite interpolation: faces minus edges plus corners
         std::vector<std::pair<double, Point<3>>> points;
         for (unsigned int i = 0; i < nodes.size(); ++i)
           points.emplace_back(i < n_corners ? 1. / 8. : i < n_outline ? -1. / 4. : 1. / 2., mesh.points[nodes[i]]);

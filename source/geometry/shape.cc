@@ -73,7 +73,7 @@ namespace Squeal
   {
     constexpr unsigned int n_shapes = 6;
 
-    /// For each shape in degree 1 and 2.
+    /// A value for each shape in degree 1 and 2.
     template <typename Value, typename Make>
     std::array<std::array<Value, 2>, n_shapes> for_all_elements(const Make &make)
     {
@@ -117,7 +117,7 @@ namespace Squeal
 
   namespace
   {
-    /// One of deal.II's elements with its functions in our order.
+    /// An element of deal.II with its functions in our order.
     template <int dim>
     class DealFunctions : public ShapeFunctions
     {
@@ -195,7 +195,7 @@ namespace Squeal
       static constexpr unsigned int n_functions = 14;
       using Matrix                              = Eigen::Matrix<double, n_functions, n_functions>;
 
-      /// Functions that span the space, with their derivatives. At the apex, which no cell's quadrature reaches, w counts as zero.
+      /// Functions that span the space, with derivatives. w is set to zero at the apex, which no quadrature point reaches.
       static Eigen::Matrix<double, n_functions, 4> space(const Point<3> &p)
       {
         using Function = Eigen::RowVector4d; // value and derivatives
@@ -242,7 +242,7 @@ namespace Squeal
         }
     }
 
-    /// Of a rule on [0, 1]³, that on the pyramid: its cross-section shrinks as 1 − z.
+    /// Maps a rule on [0, 1]³ to the pyramid, with a cross-section that decreases as 1 − z.
     Quadrature<3> on_pyramid(const Quadrature<3> &cube)
     {
       std::vector<Point<3>> points;
@@ -306,7 +306,7 @@ namespace Squeal
         case Shape::hexahedron:
           return listed(QGauss<3>(n));
         default:
-          return listed(on_pyramid(QGauss<3>(n + 1))); // rational functions, and the shrinking section
+          return listed(on_pyramid(QGauss<3>(n + 1))); // for rational functions and the decreasing cross-section
       }
   }
 } // namespace Squeal

@@ -22,11 +22,11 @@ namespace Squeal
 
   namespace
   {
-    using Space      = Eigen::Matrix<double, 3, most_face_nodes>; // coefficients of places
-    using Plane      = Eigen::Matrix<double, 2, most_face_nodes>; // of places in a plane
+    using Space      = Eigen::Matrix<double, 3, most_face_nodes>; // coefficients of positions
+    using Plane      = Eigen::Matrix<double, 2, most_face_nodes>; // of positions in a plane
     using Derivative = Eigen::Matrix<double, most_face_nodes, 2>;
 
-    /// The leading n of these span the shape functions of a face with n nodes.
+    /// Monomials; the first n span the shape functions of a face with n nodes.
     FaceVector monomials(const Vector2d &r)
     {
       const double x = r[0], y = r[1];
@@ -53,13 +53,13 @@ namespace Squeal
       return element.nodes.size() > 4 ? 2 : 1;
     }
 
-    /// Number of the kind: triangles and quadrilaterals of degree 1, those of degree 2.
+    /// Index of the face type: triangles and quadrilaterals of degree 1, then of degree 2.
     unsigned int kind(const SurfaceElement &element)
     {
       return 2 * (degree_of(element) - 1) + (element.shape == Shape::triangle ? 0 : 1);
     }
 
-    /// Coefficients of the shape functions, N_i = Σ_k C_ik m_k; they are whole numbers.
+    /// Coefficients of the shape functions, N_i = Σ_k C_ik m_k, which are integers.
     FaceMatrix find_coefficients(const Shape shape, const unsigned int degree)
     {
       const auto      nodes = reference_nodes(shape, degree);
@@ -92,7 +92,7 @@ namespace Squeal
       return result;
     }
 
-    /// Element of degree 1, or quarter of an element of degree 2.
+    /// An element of degree 1, or a quarter of an element of degree 2.
     struct Facet
     {
       unsigned int          element;
@@ -167,7 +167,7 @@ namespace Squeal
       return a[0] * b[1] - a[1] * b[0];
     }
 
-    /// Part of a polygon inside of a convex one, both counter-clockwise (I. E. Sutherland, G. W. Hodgman 1974).
+    /// Part of a polygon inside a convex one, both counter-clockwise (I. E. Sutherland, G. W. Hodgman 1974).
     Polygon clipped(Polygon polygon, const Polygon &by)
     {
       for (std::size_t k = 0; k < by.size(); ++k)
@@ -196,16 +196,16 @@ namespace Squeal
       return twice / 2.;
     }
 
-    /// Reference coordinates of a place by Newton's method from @p r.
+    /// Reference coordinates of a position by Newton's method from @p r.
     Vector2d located(const Plane &map, const Vector2d &place, Vector2d r)
     {
       constexpr double longest_step = 0.25;
       for (unsigned int i = 0; i < 50; ++i)
         {
           const Vector2d step = (map * derivatives(r)).inverse() * (place - map * monomials(r));
-          // A longer step may leave for where the map is folded
+          // A longer step may reach a region where the map is folded
           r += step * std::min(1., longest_step / step.norm());
-          // The error that remains is of the order of the square
+          // The remaining error is of the order of the square
           if (step.squaredNorm() < 1e-16)
             return r;
         }
@@ -214,7 +214,7 @@ namespace Squeal
                       "mesh the contact faces with elements that are less distorted or less curved");
     }
 
-    /// FacetPlane of both surfaces onto the plane of a slave facet.
+    /// Projections of both surfaces onto the plane of a slave facet.
     struct FacetPlane
     {
       explicit FacetPlane(const Facet &facet)
@@ -245,11 +245,11 @@ namespace Squeal
         , space(map_of(patch, patch.elements[facet.element]))
         , r(facet.reference)
       {
-        space.col(0) -= plane.origin; // differences keep digits that places would lose
+        space.col(0) -= plane.origin; // differences avoid cancellation of positions
         map = plane.axes * space;
       }
 
-      /// A straight triangle, on which functions are polynomials of the place.
+      /// True for a straight triangle, on which shape functions are polynomials of the position.
       bool is_affine() const
       {
         return space.rightCols<most_face_nodes - 3>().norm() < 1e-9 * space.middleCols<2>(1).norm();
@@ -268,12 +268,12 @@ namespace Squeal
       const FaceMatrix &functions;
       Space             space;
       Plane             map;
-      Vector2d          r; ///< reference coordinates of the last place
+      Vector2d          r; ///< reference coordinates of the last position
     };
 
-    /// Exact for products on straight triangles, polynomials of degree 4. On distorted quadrilaterals and curved triangles functions are no
-    /// polynomials of the place: 28 points give the nodal forces of a constant pressure to 1e-13 if corners are shifted by 10 % of the element, to 1e-10 if by
-    /// 20 %.
+    /// Quadrature rule, exact for products on straight triangles, polynomials of degree 4. On distorted quadrilaterals and curved triangles
+    /// functions are not polynomials of the position: 28 points give the nodal forces of a constant pressure to 1e-13 if corners are
+    /// shifted by 10 % of the element, to 1e-10 for 20 %.
     const std::vector<QuadraturePoint> &rule(const bool are_affine)
     {
       static const auto polynomials = quadrature(Shape::triangle, 2), others = quadrature(Shape::triangle, 5);
@@ -311,7 +311,7 @@ namespace Squeal
 
   SurfaceOverlap overlap(const SurfacePatch &slave, const SurfacePatch &master, const double search_distance)
   {
-    // Skip facets at an angle above 78° to each other
+    // Skip facets with an angle above 78° between them
     constexpr double least_cosine = 0.2;
     // Skip rounding errors along common edges
     constexpr double least_part = 1e-14;
@@ -332,7 +332,7 @@ namespace Squeal
         const OverlapSide of_slave(slave, facet, plane);
         ElementOverlap   &element = result.elements[facet.element];
         double            covered = 0., sizes = 0.;             // for the mean size of master facets
-        const double      beside = 0.1 * std::sqrt(facet.area); // curved elements leave the boxes of their facets
+        const double      beside = 0.1 * std::sqrt(facet.area); // curved elements extend beyond the boxes of their facets
         const auto        visit  = [&](const Leaf &leaf) {
           const Facet  &other  = masters[leaf.second];
           const double  cosine = facet.normal.dot(other.normal);

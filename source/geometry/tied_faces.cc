@@ -13,20 +13,20 @@ namespace Squeal
 {
   namespace
   {
-    /// Part of a tied surface that must at least lie on the other one [-].
+    /// Smallest part of a tied surface that must be opposite the other one [-].
     constexpr double least_tied = 0.2;
 
-    /// Smaller coefficients of a row are rounding errors.
+    /// Smaller coefficients of a row are rounding errors [-].
     constexpr double least_coefficient = 1e-13;
 
-    /// A named surface with the numbers of its nodes in the mesh.
+    /// A named surface with the mesh numbers of its nodes.
     struct NumberedPatch
     {
       SurfacePatch              patch;
       std::vector<unsigned int> numbers;
     };
 
-    /// Faces as the cells have them, outwards and with all nodes; @p outer: all outer faces of the mesh.
+    /// Faces as in the cells, outwards and with all nodes; @p outer: all outer faces of the mesh.
     NumberedPatch patch_of(const Mesh &mesh, const std::vector<CellFace> &outer, const std::string &surface)
     {
       std::set<std::array<unsigned int, 4>> named;
@@ -90,8 +90,8 @@ namespace Squeal
           }
         if (coupling.overlap_area < least_tied * coupling.slave_area)
           throw MeshError(text("only ", std::round(100. * coupling.overlap_area / coupling.slave_area),
-                               " % of the first surface lies on the ", "second one"),
-                          where, "exchange the surfaces if the first one is the larger, or correct their places");
+                               " % of the first surface is opposite the ", "second one"),
+                          where, "exchange the surfaces if the first one is the larger, or correct their positions");
         for (const MortarRow &row : coupling.rows)
           {
             double self = 0.;
@@ -112,7 +112,7 @@ namespace Squeal
           result.notes.push_back(first + " / " + second + ", tied: " + note);
       }
     if (!resolve(result.masters))
-      throw MeshError("tied faces depend on each other in a circle", "parameter Contact/Tied", "exchange the surfaces of one of the ties");
+      throw MeshError("tied faces depend on each other circularly", "parameter Contact/Tied", "exchange the surfaces of one of the ties");
     merge_masters(result.masters);
     return result;
   }

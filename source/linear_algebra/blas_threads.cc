@@ -9,7 +9,7 @@ namespace Squeal
 {
   namespace
   {
-    /// A function of a library that may or may not be loaded; null if it is not. The reference BLAS, which Debian may install, lacks some.
+    /// A function of an optional library; null if it is not loaded. The reference BLAS of Debian lacks some.
     template <typename Function>
     Function *loaded(const char *name)
     {

@@ -16,10 +16,10 @@ namespace Squeal
 {
   namespace
   {
-    /// Matrices with fewer rows are ordered faster by minimum degree than their better order would be found.
+    /// Matrix size below which minimum degree is faster overall than nested dissection.
     constexpr int rows_for_dissection = 2000;
 
-    /// Right-hand sides of a task, for all of which the factor is read once: as many as give every thread a task, within limits.
+    /// Number of right-hand sides in a task, which reads the factor once: enough tasks for all threads, within limits.
     int columns_of_task(const int n_columns)
     {
       constexpr int fewest = 4, most = 32;
@@ -96,7 +96,7 @@ namespace Squeal
       }
 
     private:
-      /// Its view of some columns, which it only reads.
+      /// CHOLMOD's view of some columns, which it only reads.
       static cholmod_dense columns(const MultiVector &X, const int first, const int n)
       {
         cholmod_dense view = {};
@@ -109,7 +109,7 @@ namespace Squeal
         return view;
       }
 
-      /// The lower triangle by columns, which are the rows of the upper one.
+      /// Lower triangle by columns, stored as the rows of the upper one.
       struct Triangle
       {
         explicit Triangle(const SparseMatrix &A)
@@ -173,7 +173,7 @@ namespace Squeal
           throw_not_positive_definite("CHOLMOD", what);
       }
 
-      /// min L_ii² / A_ii: what the elimination left of the diagonal entries.
+      /// min L_ii² / A_ii: smallest relative pivot.
       double smallest_relative_pivot(const std::vector<double> &diagonal) const
       {
         const auto *first_column = static_cast<const int *>(L->super), *row_start = static_cast<const int *>(L->pi),

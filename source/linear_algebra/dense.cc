@@ -20,7 +20,7 @@ namespace Squeal
 
   namespace
   {
-    /// A X, stretch by stretch between rows of zeros.
+    /// A X, block by block between zero rows.
     DenseMatrix multiply_sparing_rows(const DenseMatrix &A, const DenseMatrix &X)
     {
       DenseMatrix result  = DenseMatrix::Zero(A.rows(), X.cols());

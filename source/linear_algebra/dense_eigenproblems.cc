@@ -58,7 +58,7 @@ namespace Squeal
     SingularValues result{std::vector<double>(k), DenseMatrix::Identity(n, n)};
     if (k == 0)
       return result;
-    // All of V, of the left vectors no more than that takes
+    // All of V; of the left vectors only as many as needed
     const bool  is_tall = m >= n;
     DenseMatrix left(m, is_tall ? n : m);
     check_lapack(LAPACKE_dgesdd(LAPACK_COL_MAJOR, is_tall ? 'S' : 'A', m, n, A.data(), m, result.values.data(), left.data(), m,
@@ -75,7 +75,7 @@ namespace Squeal
     if (n == 0)
       return pairs;
 
-    // A = D Q T Qᵀ D⁻¹ by dgeev's steps, but vectors of T only where they are wanted
+    // A = D Q T Qᵀ D⁻¹ by the steps of dgeev, but with vectors of T only for selected values
     std::vector<double> scale(n), tau(std::max(n - 1, 1)), real(n), imaginary(n);
     lapack_int          low = 0, high = 0;
     check_lapack(LAPACKE_dgebal(LAPACK_COL_MAJOR, 'B', n, A.data(), n, &low, &high, scale.data()), "dgebal");
@@ -107,7 +107,7 @@ namespace Squeal
     lapack_int m = 0;
     if (k == 0)
       return pairs;
-    DenseMatrix right = DenseMatrix::Zero(n, k), left = right; // LAPACKE looks whether there are numbers in them
+    DenseMatrix right = DenseMatrix::Zero(n, k), left = right; // initialised, because LAPACKE checks for NaN
     check_lapack(LAPACKE_dtrevc(LAPACK_COL_MAJOR, 'B', 'S', selected.data(), n, A.data(), n, left.data(), n, right.data(), n, k, &m),
                  "dtrevc");
     const auto of_matrix = [&](const DenseMatrix &of_triangle, const char side) {

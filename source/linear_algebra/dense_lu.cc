@@ -11,9 +11,9 @@ namespace Squeal
 {
   namespace
   {
-    /// Reciprocal condition number up to which a matrix is singular, which leaves 10⁻¹⁷ to 10⁻¹⁵.
+    /// Reciprocal condition number below which a matrix is singular; singular matrices have 10⁻¹⁷ to 10⁻¹⁵ [-].
     constexpr double singular_condition = 1e-14;
-    /// The same of Q(λ), which is nearly singular close to an eigenvalue.
+    /// The same for Q(λ), which is nearly singular close to an eigenvalue [-].
     constexpr double singular_complex_condition = 1e-16;
   } // namespace
 
@@ -21,7 +21,7 @@ namespace Squeal
   DenseLU<Matrix>::DenseLU(const Matrix &A)
     : norm(A.size() == 0 ? 0. : A.cwiseAbs().colwise().sum().template maxCoeff<Eigen::PropagateNaN>())
   {
-    // LAPACK's factors of what is not finite are not defined.
+    // LAPACK's factors of non-finite matrices are undefined
     if (!std::isfinite(norm))
       return;
     factors.compute(A);
@@ -51,7 +51,7 @@ namespace Squeal
     return {modulus, std::remainder(argument, 2. * M_PI)};
   }
 
-  // Eigen's own solve refers to the first entry, which a matrix without columns lacks
+  // Eigen's own solve accesses the first entry, which a matrix without columns lacks
   template <typename Matrix>
   Matrix DenseLU<Matrix>::solve(const Matrix &B) const
   {
@@ -78,7 +78,7 @@ namespace Squeal
 
   ComplexDenseMatrix balanced(ComplexDenseMatrix A)
   {
-    // A few sweeps do: nobody asks for the very minimum.
+    // A few sweeps suffice; the exact minimum is not needed
     for (int sweep = 0; sweep < 5; ++sweep)
       for (Eigen::Index k = 0; k < A.rows(); ++k)
         {

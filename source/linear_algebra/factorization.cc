@@ -13,14 +13,14 @@ namespace Squeal
       if (!(A.columns() == A.rows()))
         throw SolverError("a matrix of " + std::to_string(A.n_rows()) + " rows and " + std::to_string(A.n_columns()) +
                             " columns, or with rows and columns distributed differently, cannot be factorised",
-                          what, "this is a mistake in the program: please report it");
+                          what, "this is an error in the program: please report it");
     }
   } // namespace
 
   void throw_not_positive_definite(const std::string &library, const std::string &what)
   {
     throw SolverError("the matrix is not positive definite to working precision (" + library + ")", what,
-                      "check the boundary conditions: a body that can move rigidly has a singular stiffness");
+                      "check the boundary conditions: a body with rigid-body motions has a singular stiffness");
   }
 
   void throw_singular(const std::string &library, const std::string &what)
@@ -42,7 +42,7 @@ namespace Squeal
     check_square(A, what);
     const int n_processes = A.rows().n_processes();
     if (library == FactorizationLibrary::cholmod && n_processes > 1)
-      throw SolverError("CHOLMOD was asked for on " + std::to_string(n_processes) + " processes but works on one", what,
+      throw SolverError("CHOLMOD was requested on " + std::to_string(n_processes) + " processes, but runs on one only", what,
                         "choose MUMPS or automatic as factorisation library, or run on one process");
     if (library == FactorizationLibrary::mumps || n_processes > 1)
       return mumps_factorization(A, true, what);

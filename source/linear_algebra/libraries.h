@@ -9,7 +9,7 @@
 
 namespace Squeal
 {
-  // One function per library; only factorization.cc chooses between them.
+  // One function per library; only factorization.cc chooses between them
 
   /// Supernodal LLᵀ; one process.
   std::unique_ptr<Factorization> cholmod_factorization(const SparseMatrix &A, const std::string &what);
@@ -20,12 +20,12 @@ namespace Squeal
   /// Throws the error for a matrix that is not positive definite.
   [[noreturn]] void throw_not_positive_definite(const std::string &library, const std::string &what);
 
-  /// Throws the error for a matrix that is singular.
+  /// Throws the error for a singular matrix.
   [[noreturn]] void throw_singular(const std::string &library, const std::string &what);
 
   /// Throws the error for any other failure of a library.
   [[noreturn]] void throw_library_failure(const std::string &library, const std::string &failure, const std::string &what);
 
-  /// Pivots below this fraction of the diagonal entry they come from are rounding errors.
+  /// Pivots below this fraction of the original diagonal entry are rounding errors [-].
   constexpr double relative_pivot_tolerance = 1e-12;
 } // namespace Squeal

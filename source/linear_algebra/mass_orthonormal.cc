@@ -24,13 +24,13 @@ namespace Squeal
       });
     }
 
-    /// Eigenpairs of a symmetric matrix, the same on all processes.
+    /// Eigenpairs of a symmetric matrix, identical on all processes.
     RealPairs common_eigenpairs(const MPI_Comm communicator, const DenseMatrix &A)
     {
       return agreed(communicator, symmetric_eigenpairs(A));
     }
 
-    /// Eigenvectors of the @p n largest eigenvalues, each divided by the root of its value, largest first.
+    /// Eigenvectors of the @p n largest eigenvalues, each divided by the square root of its value, largest first.
     DenseMatrix largest_axes(const RealPairs &pairs, const int n)
     {
       return pairs.vectors.rightCols(n).rowwise().reverse() *
@@ -43,17 +43,17 @@ namespace Squeal
       return pairs.vectors * as_column(pairs.values).cwiseSqrt().cwiseInverse().asDiagonal() * pairs.vectors.transpose();
     }
 
-    /// Whether directions are looked for among the columns as they are or scaled to unit norm.
+    /// Whether columns are scaled to unit norm before directions are computed.
     enum class Scaling
     {
       none,
       unit_norm
     };
 
-    /// Largest ‖WᵀMW − I‖ from which one symmetric orthonormalisation leaves rounding errors only.
+    /// Largest ‖WᵀMW − I‖ after which one symmetric orthonormalisation is accurate to rounding [-].
     constexpr double nearly_orthonormal = 1e-3;
 
-    /// W ← W (WᵀMW)^(-1/2), the orthonormal vectors next to W; whether W had been so close to them that this is enough.
+    /// W ← W (WᵀMW)^(-1/2), the orthonormal vectors closest to W; true if W was close enough for one pass.
     bool orthonormalize_symmetrically(const SparseMatrix &M, MultiVector &W)
     {
       const DenseMatrix G    = weighted_gram(W, M);
@@ -62,13 +62,13 @@ namespace Squeal
       return away <= nearly_orthonormal;
     }
 
-    /// Largest over smallest of ascending eigenvalues.
+    /// Ratio of the largest to the smallest of ascending eigenvalues.
     double condition_number(const std::vector<double> &values)
     {
       return values.front() > 0. ? values.back() / values.front() : std::numeric_limits<double>::infinity();
     }
 
-    /// The columns of X that are not zero, scaled, and the @p pairs of their Gram matrix; nothing if all are zero.
+    /// Nonzero columns of X, scaled, and the @p pairs of their Gram matrix; nothing if all are zero.
     std::optional<MultiVector> scaled_columns(const SparseMatrix &M, MultiVector X, const Scaling scaling, RealPairs &pairs)
     {
       const DenseMatrix   G = weighted_gram(X, M);
@@ -103,12 +103,12 @@ namespace Squeal
                                                 const FirstProjection projection,
                                                 PrincipalAxes        *axes)
     {
-      // A Gram matrix resolves directions down to the square root of the
-      // rounding unit; with this ratio per pass they still come out accurate.
+      // A Gram matrix resolves directions down to the square root of the machine precision; with this ratio per pass they are still
+      // accurate
       const double   resolved     = 1e-10;
-      const MPI_Comm communicator = X.communicator(); // before X is handed over
+      const MPI_Comm communicator = X.communicator(); // before X is moved
 
-      std::deque<MultiVector> kept; // none is copied when the next one comes
+      std::deque<MultiVector> kept; // a deque does not copy elements when it grows
       const auto              project = [&](MultiVector &Y) {
         if (Q != nullptr)
           project_out(M, *Q, Y);
@@ -116,8 +116,8 @@ namespace Squeal
           project_out(M, W, Y);
       };
 
-      // The largest direction of the scaled columns is the yardstick
-      RealPairs                  pairs; // of what remains
+      // Tolerances are relative to the largest direction of the scaled columns
+      RealPairs                  pairs; // of the remaining directions
       std::optional<MultiVector> remaining = scaled_columns(M, std::move(X), scaling, pairs);
       if (!remaining)
         return {};
@@ -126,7 +126,7 @@ namespace Squeal
         *axes = {{}, condition_number(pairs.values)};
       const double smallest = tolerance * tolerance * largest;
 
-      // One projection leaves components of the size of the rounding error, the second none.
+      // One projection leaves components of the size of rounding errors, the second none
       const auto project_remaining = [&] {
         project(*remaining);
         project(*remaining);
@@ -145,7 +145,7 @@ namespace Squeal
           if (!(values.back() > smallest) || n_rest == k)
             break;
 
-          // Where nothing is left for another pass the axes take the place of the columns
+          // If no pass follows, the axes overwrite the columns
           const DenseMatrix S = largest_axes(pairs, k - n_rest);
           MultiVector       W = n_rest > 0 ? *remaining * S : std::move(*remaining);
           if (n_rest == 0)
@@ -161,7 +161,7 @@ namespace Squeal
             }
           kept.push_back(std::move(W));
 
-          // Rounding in V leaves a trace of the kept directions in the others, which the projection removes.
+          // Rounding in V leaves traces of the kept directions in the others: project them out
           if (n_rest > 0)
             {
               remaining.emplace(*remaining * pairs.vectors.leftCols(n_rest));
@@ -196,7 +196,7 @@ namespace Squeal
     const int                  n = X.n_columns();
     std::optional<MultiVector> W = orthonormalize_if_any(M, Q, std::move(X), tolerance, axes);
     if (!W)
-      throw SolverError("all " + std::to_string(n) + " vectors are zero or depend linearly on those already there", "orthonormalisation",
+      throw SolverError("all " + std::to_string(n) + " vectors are zero or linearly dependent on existing ones", "orthonormalisation",
                         "give other vectors, or a smaller tolerance");
     return std::move(*W);
   }
@@ -208,13 +208,13 @@ namespace Squeal
       throw SolverError("all " + std::to_string(X.n_columns()) + " vectors are zero", "proper orthogonal decomposition",
                         "give other vectors");
     if (maximum < 1)
-      throw SolverError("a basis of " + std::to_string(maximum) + " vectors was asked for", "proper orthogonal decomposition",
-                        "ask for one vector at least");
+      throw SolverError("a basis of " + std::to_string(maximum) + " vectors was requested", "proper orthogonal decomposition",
+                        "request at least one vector");
     if (W->n_columns() <= maximum)
       return *W;
     if (axes != nullptr)
       axes->norms.resize(maximum);
-    // Returned as it is the view would outlive W; its copy does not refer to it.
+    // Copy: a returned view would dangle
     const MultiVector largest = view(*W, 0, maximum);
     return largest;
   }

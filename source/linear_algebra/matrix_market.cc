@@ -23,10 +23,10 @@ namespace Squeal
 {
   namespace
   {
-    /// Of a row or column, even without entries [byte].
+    /// Memory per row or column, even without entries [byte].
     constexpr double bytes_of_row = 32.;
 
-    /// The words of a text, line by line, with errors that name the line.
+    /// Words of a text, line by line; errors quote the line.
     class WordReader
     {
     public:
@@ -87,16 +87,16 @@ namespace Squeal
       boost::to_lower(word);
     const auto is = [&header](const std::size_t i, const char *name) { return header[i] == name; };
     if (header.size() != 5 || !is(0, "%%matrixmarket") || !is(1, "matrix") || !(is(2, "coordinate") || is(2, "array")))
-      reader.refuse("the first line is no header of the Matrix Market");
+      reader.refuse("the first line is not a Matrix Market header");
     if (!is(3, "real") && !is(3, "integer"))
       reader.refuse(text("the matrix is ", header[3], ", not real"));
     const bool is_array = is(2, "array"), is_general = is(4, "general"), is_skew = is(4, "skew-symmetric");
     if (!is_general && !is_skew && !is(4, "symmetric"))
-      reader.refuse(in_quotes(header[4]) + " is none of general, symmetric, skew-symmetric");
+      reader.refuse(in_quotes(header[4]) + " is not general, symmetric or skew-symmetric");
 
     const std::vector<std::string> sizes = reader.next();
     if (sizes.size() != (is_array ? 2 : 3))
-      reader.refuse("the line of the sizes has not " + std::string(is_array ? "two" : "three") + " numbers");
+      reader.refuse("the line of sizes does not have " + std::string(is_array ? "two" : "three") + " numbers");
     const int n_rows = reader.number<int>(sizes[0]), n_columns = reader.number<int>(sizes[1]);
     if (n_rows < 1 || n_columns < 1 || (!is_general && n_rows != n_columns))
       reader.refuse(text("a matrix of size ", n_rows, " x ", n_columns, is_general ? "" : " is not square"));
@@ -142,7 +142,7 @@ namespace Squeal
       {
         const auto n = reader.number<long>(sizes[2]);
         if (n < 0)
-          reader.refuse(text(n, " is no number of entries"));
+          reader.refuse(text(n, " is not a number of entries"));
         for (long k = 0; k < n; ++k)
           {
             const std::vector<std::string> &words = reader.next();

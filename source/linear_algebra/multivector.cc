@@ -18,7 +18,7 @@ namespace Squeal
     {
       if (!condition)
         throw SolverError("the shapes of two sets of vectors do not fit together", operation,
-                          "this is a mistake in the program: please report it");
+                          "this is an error in the program: please report it");
     }
 
     void require_same_shape(const MultiVector &X, const MultiVector &Y, const char *operation)
@@ -26,13 +26,13 @@ namespace Squeal
       require(X.n_local_rows() == Y.n_local_rows() && X.n_columns() == Y.n_columns(), operation);
     }
 
-    /// Rows that are a task; the same however many threads there are, so that sums do not depend on their number.
+    /// Number of rows in a task; independent of the number of threads, so that sums do not depend on it.
     constexpr int rows_together = 8192;
 
-    /// Columns that are copied together.
+    /// Number of columns copied together.
     constexpr int columns_of_copy = 8;
 
-    /// Y = X. Several threads copy much: to write to new memory takes longer than to read.
+    /// Y = X with several threads for large blocks: writing to new memory takes longer than reading.
     void copy(const Eigen::Ref<const DenseMatrix> &X, Eigen::Ref<DenseMatrix> Y)
     {
       run_parts(static_cast<int>(X.cols()), columns_of_copy,
@@ -266,7 +266,7 @@ namespace Squeal
     const std::vector<double> norms = column_norms(X);
     std::vector<int>          result;
     for (int j = 0; j < X.n_columns(); ++j)
-      if (norms[j] != 0.) // NaN included
+      if (norms[j] != 0.) // also for NaN
         result.push_back(j);
     return result;
   }
@@ -295,7 +295,7 @@ namespace Squeal
         for (int i = 0; i < X.n_local_rows(); ++i)
           {
             const std::uint64_t bits = mix(stream ^ mix(static_cast<std::uint64_t>(map.number(i))));
-            // The upper 53 bits make a double in [0, 1).
+            // The upper 53 bits give a double in [0, 1)
             X(i, j) = 2. * static_cast<double>(bits >> 11) / 9007199254740992. - 1.;
           }
       }
@@ -304,7 +304,7 @@ namespace Squeal
 
   namespace
   {
-    /// Between process 0, where all rows lie, and their owners.
+    /// Delivery between process 0, which holds all rows, and their owners.
     RowDelivery from_root(const RowMap &map)
     {
       std::vector<int> numbers(map.rank() == 0 ? map.n() : 0);
@@ -330,7 +330,7 @@ namespace Squeal
 
   DenseMatrix gather(const MultiVector &X)
   {
-    if (is_alone(X.communicator())) // any thread may gather
+    if (is_alone(X.communicator())) // any thread may call gather() then
       return X.local();
     DenseMatrix whole(X.map().rank() == 0 ? X.map().n() : 0, X.n_columns());
     from_root(X.map()).fetch(X.local(), whole);

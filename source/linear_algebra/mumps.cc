@@ -17,10 +17,10 @@ namespace Squeal
 {
   namespace
   {
-    /// Right-hand sides that are solved for together: their number bounds what MUMPS and the solutions take.
+    /// Number of right-hand sides per solve, which limits the memory of MUMPS and the solutions.
     constexpr int block_size = 64;
 
-    /// What MUMPS is told about a matrix.
+    /// Matrix type passed to MUMPS.
     enum class MatrixKind
     {
       general           = 0,
@@ -28,11 +28,11 @@ namespace Squeal
       symmetric         = 2
     };
 
-    /// Whether factors are there after the factorisation; without them it takes a fraction of the memory.
+    /// Whether factors are stored; without them the memory is a fraction.
     enum class Factors
     {
       kept,
-      counted ///< of their pivots, signs and numbers only
+      counted ///< only numbers and signs of pivots
     };
 
     /// An instance of MUMPS with the factors of one matrix.
@@ -82,31 +82,31 @@ namespace Squeal
 
       double n_factor_entries() const
       {
-        // Negative numbers are millions.
+        // Negative numbers are in millions
         return id.infog[28] >= 0 ? id.infog[28] : -1e6 * id.infog[28];
       }
 
-      /// Every process gives its rows of X and gets its rows of Y: none sees those of others.
+      /// Each process passes its rows of X and receives its rows of Y.
       void solve(const bool transpose, const MultiVector &X, MultiVector &Y)
       {
         for (int first = 0; first < X.n_columns(); first += block_size)
           {
             const int n_columns = std::min(block_size, X.n_columns() - first);
-            // Rows stay where their pivots are.
+            // Solution rows are distributed like the pivots
             solution.resize(n_solved() * static_cast<std::size_t>(n_columns));
             solved_rows.resize(n_solved());
             id.nrhs      = n_columns;
             id.icntl[8]  = transpose ? 0 : 1;
-            id.icntl[19] = 10; // right-hand sides by rows of each process ...
+            id.icntl[19] = 10; // right-hand sides distributed by rows ...
             id.nloc_rhs  = static_cast<int>(own_rows.size());
             id.lrhs_loc  = std::max(1, id.nloc_rhs);
             id.irhs_loc  = address(own_rows);
-            id.rhs_loc   = id.nloc_rhs > 0 ? const_cast<double *>(X.col(first).data()) : &nothing; // which MUMPS only reads
-            id.icntl[20] = 1;                                                                      // ... and so the solutions
+            id.rhs_loc   = id.nloc_rhs > 0 ? const_cast<double *>(X.col(first).data()) : &nothing; // MUMPS only reads it
+            id.icntl[20] = 1;                                                                      // ... and so are the solutions
             id.lsol_loc  = std::max(1, n_solved());
             id.isol_loc  = address(solved_rows);
             id.sol_loc   = solution.empty() ? &nothing : solution.data();
-            id.icntl[26] = 32; // columns that pass through the factors together
+            id.icntl[26] = 32; // columns per block in the solution
             run(3);
             check("solution");
             for (int &number : solved_rows)
@@ -122,16 +122,16 @@ namespace Squeal
         for (int output : {0, 1, 2})
           id.icntl[output] = -1;
         id.icntl[3]  = 0;
-        id.icntl[17] = 3;     // every process brings its rows
+        id.icntl[17] = 3;     // distributed matrix entries
         id.icntl[12] = 1;     // no dense parallel root, which would hide signs of pivots
-        id.icntl[23] = 1;     // pivots that vanish are reported, not divided by ...
-        id.cntl[2]   = 1e-14; // ... where they are below this, relative to the scaled matrix
+        id.icntl[23] = 1;     // report null pivots instead of dividing by them ...
+        id.cntl[2]   = 1e-14; // ... if below this, relative to the scaled matrix
         id.icntl[10] = 0;
         id.icntl[30] = factors == Factors::kept ? 0 : 1;
 
         std::vector<int>    row, column;
         std::vector<double> value;
-        // MUMPS must not see null pointers on processes without rows.
+        // MUMPS requires valid pointers on processes without rows
         row.reserve(1);
         column.reserve(1);
         value.reserve(1);
@@ -152,7 +152,7 @@ namespace Squeal
 
         run(1);
         check("analysis");
-        // Pivoting may need more memory than the analysis foresaw: allow for more and try again.
+        // Pivoting may need more memory than the analysis estimated: increase it and try again
         for (int attempt = 0; attempt < 6; ++attempt)
           {
             const ThreadsOfFactorization threads(id.n);
@@ -171,13 +171,13 @@ namespace Squeal
         id.a_loc                = nullptr;
       }
 
-      /// Rows of solutions that MUMPS leaves here.
+      /// Number of solution rows on this process.
       int n_solved() const
       {
         return id.info[22];
       }
 
-      /// Of numbers for MUMPS, which must not see null pointers.
+      /// Address for MUMPS, which requires valid pointers.
       static int *address(std::vector<int> &numbers)
       {
         numbers.reserve(1);
@@ -199,9 +199,9 @@ namespace Squeal
 
       const std::string   what;
       const RowMap        map;
-      std::vector<int>    own_rows, solved_rows; ///< numbers, from 1 on
+      std::vector<int>    own_rows, solved_rows; ///< numbered from 1
       std::vector<double> solution;              ///< n_solved() × columns of a block
-      double              nothing = 0.;          ///< what pointers to no rows point to
+      double              nothing = 0.;          ///< target of pointers to no rows
       DMUMPS_STRUC_C      id      = {};
     };
 

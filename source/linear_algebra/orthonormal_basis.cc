@@ -11,11 +11,11 @@ namespace Squeal
 {
   namespace
   {
-    /// Norm of what Gram and Schmidt leave of a dependent unit vector.
+    /// Norm of the remainder of a dependent unit vector after Gram-Schmidt [-].
     constexpr double dependent = 1e-13;
 
-    /// By Cholesky factors of XᴴX, twice (CholeskyQR2: T. Fukaya et al., 2014), in a few products of blocks. Nothing where a column leaves
-    /// less than 10⁻³ of itself beside those before it: squares of such parts drown in rounding errors.
+    /// CholeskyQR2: Cholesky factors of XᴴX, twice (T. Fukaya et al., 2014), in a few block products. Nothing if a column has less than
+    /// 10⁻³ of its norm outside the span of the previous ones: squares of such parts are lost in rounding errors.
     std::optional<OrthonormalBasis> basis_by_cholesky(const ComplexDenseMatrix &X)
     {
       constexpr double least_part = 1e-3;

@@ -42,7 +42,7 @@ namespace Squeal
 
   namespace
   {
-    /// Columns that travel together: more take larger buffers, fewer more messages.
+    /// Number of columns sent together: more need larger buffers, fewer need more messages.
     constexpr Eigen::Index columns_at_a_time = 16;
   } // namespace
 

@@ -6,7 +6,7 @@ namespace Squeal
 {
   bool resolve(SlaveRows &rows)
   {
-    constexpr int most_passes = 20; // chains are short unless they close
+    constexpr int most_passes = 20; // chains are short unless circular
     for (int pass = 0; pass < most_passes; ++pass)
       {
         bool is_done = true;

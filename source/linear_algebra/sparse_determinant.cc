@@ -18,7 +18,7 @@ namespace Squeal
   {
     const char *const what = "the determinant of a sparse matrix";
 
-    /// The entries of A in the places of a pattern that contains its own.
+    /// Entries of A at the positions of a pattern that includes its own.
     std::vector<double> on_pattern(const SparseRows &pattern, const SparseMatrix &A)
     {
       std::vector<double> values(pattern.nonZeros(), 0.);
@@ -36,7 +36,7 @@ namespace Squeal
       return values;
     }
 
-    /// A matrix with the places of all entries; add() keeps those that cancel.
+    /// Union of the patterns of all matrices; add() keeps cancelling entries.
     std::shared_ptr<SparseMatrix> union_pattern(const SparseMatrix &M, const SparseMatrix *C, const SparseMatrix &K)
     {
       auto result = add(1., M, 1., K);
@@ -97,7 +97,7 @@ namespace Squeal
         imaginary[k] = entry.imag();
       }
 
-    // UMFPACK takes rows for columns: the determinant is the same.
+    // UMFPACK expects columns and gets rows: the determinant is the same
     void     *numeric = nullptr;
     const int status  = umfpack_zi_numeric(pattern.outerIndexPtr(), pattern.innerIndexPtr(), real.data(), imaginary.data(),
                                            implementation->symbolic, &numeric, implementation->control.data(), nullptr);

@@ -20,9 +20,9 @@ namespace Squeal
 {
   struct SparseMatrix::Halo
   {
-    std::vector<int> numbers;   ///< of the columns, ascending
-    RowDelivery      delivery;  ///< between their owners and here
-    long long        n_entries; ///< of all processes
+    std::vector<int> numbers;   ///< global numbers of the columns, ascending
+    RowDelivery      delivery;  ///< between their owners and this process
+    long long        n_entries; ///< on all processes
 
     int index(const int number) const
     {
@@ -32,7 +32,7 @@ namespace Squeal
 
   namespace
   {
-    /// Rows from entries in any order; those of one column are added.
+    /// Rows from unordered entries; duplicates are added.
     SparseRows filled(const int n_rows, const int n_columns, const std::function<void(int, SparseMatrix::Row &)> &fill)
     {
       SparseRows        result(n_rows, n_columns);
@@ -56,14 +56,14 @@ namespace Squeal
       return result;
     }
 
-    /// Number of the column at a place here, that of one in the halo included.
+    /// Global number of a local column, including the halo.
     int column_number(const SparseMatrix &A, const int place)
     {
       const int n_own = A.columns().n_local();
       return place < n_own ? A.columns().number(place) : A.halo()->numbers[place - n_own];
     }
 
-    /// Calls @p f(place of the row, number of the column, value) for the entries of the rows of this process.
+    /// Calls @p f(local row, global column number, value) for the entries of this process.
     template <typename Function>
     void for_entries(const SparseMatrix &A, const Function &f)
     {
@@ -72,13 +72,13 @@ namespace Squeal
           f(i, column_number(A, entry.col()), entry.value());
     }
 
-    /// An entry on its way to another process.
+    /// An entry to be sent to another process.
     struct Entry
     {
       int    i, j;
       double x;
 
-      // As Eigen's triplets have them
+      // Interface of Eigen's triplets
       int row() const
       {
         return i;
@@ -99,10 +99,10 @@ namespace Squeal
       }
     };
 
-    /// Entries by the process that shall have them.
+    /// Entries by destination process.
     using EntriesOfProcesses = std::map<unsigned int, std::vector<Entry>>;
 
-    /// Sends entries; returns those for this process.
+    /// Sends entries; returns those received by this process.
     std::vector<Entry> delivered(const MPI_Comm communicator, EntriesOfProcesses sent)
     {
       std::vector<Entry> result;
@@ -118,7 +118,7 @@ namespace Squeal
       return result;
     }
 
-    /// The rows of B that the columns of A refer to, in the order of the places of A's columns.
+    /// Rows of B referenced by the columns of A, in the order of A's local columns.
     SparseRows rows_for(const SparseMatrix &A, const SparseMatrix &B)
     {
       std::map<unsigned int, std::vector<int>> wanted;
@@ -139,7 +139,7 @@ namespace Squeal
 
     [[noreturn]] void throw_misfit(const char *operation)
     {
-      throw SolverError("shapes or distributions do not fit together", operation, "this is a mistake in the program: please report it");
+      throw SolverError("shapes or distributions do not fit together", operation, "this is an error in the program: please report it");
     }
   } // namespace
 
@@ -151,7 +151,7 @@ namespace Squeal
     : row_map(rows)
     , column_map(columns)
   {
-    local.swap(by_number); // Eigen 3.4 copies what is moved
+    local.swap(by_number); // Eigen 3.4 copies instead of moving
     local.makeCompressed();
     local.data().squeeze();
     if (is_alone(rows.communicator()))
@@ -201,7 +201,7 @@ namespace Squeal
         return;
       }
 
-    // The rows of X or Aᵀ X here, those of the halo behind the own ones
+    // Local rows of X or Aᵀ X; halo rows follow the own ones
     const RowDelivery &delivery = columns_elsewhere->delivery;
     const int          n_own    = columns().n_local();
     DenseMatrix        here(local.cols(), X.n_columns());

@@ -8,7 +8,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Rows of a product that are a task.
+    /// Number of rows in a task.
     constexpr int rows_of_task = 2048;
 
     /// Computes at most @p width columns of A X in row-major storage, so that each entry of A is read once.
@@ -27,7 +27,7 @@ namespace Squeal
 
   void multiply_rows(const SparseRows &A, const Eigen::Ref<const DenseMatrix> &X, Eigen::Ref<DenseMatrix> Y)
   {
-    // To put rows of X side by side would cost more than the product
+    // Interleaving rows of X would cost more than the product
     if (X.cols() == 1 || A.nonZeros() < X.rows())
       {
         run_parts(A.rows(), rows_of_task, [&](const int first, const int n) { Y.middleRows(first, n) = A.middleRows(first, n) * X; });

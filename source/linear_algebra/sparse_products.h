@@ -7,9 +7,9 @@
 
 namespace Squeal
 {
-  /// Y = A X for the rows of A and those columns of it that are known here.
+  /// Y = A X for local rows and columns of A.
   void multiply_rows(const SparseRows &A, const Eigen::Ref<const DenseMatrix> &X, Eigen::Ref<DenseMatrix> Y);
 
-  /// Y = Aᵀ X for all rows of A. Columns of X are tasks.
+  /// Y = Aᵀ X for local rows of A. One task per column of X.
   void multiply_transpose(const SparseRows &A, const Eigen::Ref<const DenseMatrix> &X, Eigen::Ref<DenseMatrix> Y);
 } // namespace Squeal

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Runs Gmsh for squeal in a process of its own, which a geometry can neither take down nor get out of.
-// Started by run_mesher() (geometry/mesher.h); no program for users.
+// Runs Gmsh for squeal in a separate, confined process. Started by run_mesher() (geometry/mesher.h); not for direct use.
 
 #include "meshing.h"
 
@@ -22,7 +21,7 @@ namespace
 {
   using namespace Squeal;
 
-  /// Sends a reply to the original standard output; what Gmsh prints is redirected to the log.
+  /// Sends a reply to the original standard output; output of Gmsh is redirected to the log.
   void send(std::FILE *answer, const MesherReply reply, const std::string &content)
   {
     std::fputc(static_cast<char>(reply), answer);
@@ -31,7 +30,7 @@ namespace
   }
 } // namespace
 
-/// Arguments: file or nothing, bytes of memory, seconds, whether confined, then pairs of names and values for DefineNumber.
+/// Arguments: file or empty, bytes of memory, seconds, confined or not, then pairs of names and values for DefineNumber.
 int main(int argc, char **argv)
 {
   if (argc < 5)
@@ -68,5 +67,5 @@ int main(int argc, char **argv)
     {
       send(answer, MesherReply::out_of_memory, "");
     }
-  _exit(0); // Gmsh has nothing to tidy up that anyone needs
+  _exit(0); // skip Gmsh's cleanup
 }

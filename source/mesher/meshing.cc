@@ -16,7 +16,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Runs one step. Gmsh carries on after most errors: a call that returns has not necessarily succeeded.
+    /// Runs one step and checks the log: Gmsh continues after most errors, so that a call that returns may have failed.
     void attempt(const std::string &step, const std::function<void()> &action)
     {
       bool failed = false;
@@ -28,7 +28,7 @@ namespace Squeal
         {
           throw;
         }
-      catch (...) // 4.8 throws integers in places, strings in others
+      catch (...) // 4.8 throws integers or strings
         {
           failed = true;
         }
@@ -41,7 +41,7 @@ namespace Squeal
     /// Elements by their type.
     struct Elements
     {
-      /// Of one entity, or of all of a dimension.
+      /// Elements of one entity, or of all entities of a dimension.
       explicit Elements(const int dimension, const int entity = -1)
       {
         gmsh::model::mesh::getElements(types, tags, nodes, dimension, entity);
@@ -51,7 +51,7 @@ namespace Squeal
       std::vector<std::vector<std::size_t>> tags, nodes;
     };
 
-    /// Groups of all entities with physical names or numbers: dimension and tag, ascending.
+    /// Physical groups as pairs of dimension and tag, ascending.
     gmsh::vectorpair physical_groups()
     {
       gmsh::vectorpair groups;
@@ -60,8 +60,8 @@ namespace Squeal
       return groups;
     }
 
-    /// Whether a file is a mesh of a format before 4, where every element has its own physical tag next to that of its entity. Gmsh gives
-    /// the elements of an entity all groups of any of them, and converters write one entity for all.
+    /// True for a mesh format before 4, where every element has its own physical tag in addition to that of its entity. Gmsh gives all
+    /// elements of an entity all groups of any of them, and some converters write a single entity.
     bool has_physical_tags(const std::string &file)
     {
       std::ifstream stream(file, std::ios::binary);
@@ -105,7 +105,7 @@ namespace Squeal
         }
     }
 
-    /// Refuses tags for which Gmsh would give the elements of all entities.
+    /// Rejects tags for which Gmsh would return the elements of all entities.
     void check_physical_tags()
     {
       gmsh::vectorpair entities;
@@ -115,7 +115,7 @@ namespace Squeal
           throw GmshError("Elements of dimension " + std::to_string(dimension) + " have the negative physical tag " + std::to_string(tag));
     }
 
-    /// Entities of a dimension by the numbers of their physical groups; 0: those in none. With @p are_tagged, see has_physical_tags().
+    /// Entities of a dimension by the numbers of their physical groups; 0: no group. For @p are_tagged, see has_physical_tags().
     std::map<int, std::vector<int>> physical_groups(const int dimension, const bool are_tagged)
     {
       gmsh::vectorpair entities;
@@ -123,18 +123,18 @@ namespace Squeal
       std::map<int, std::vector<int>> result;
       for (const auto &[d, entity] : entities)
         {
-          std::vector<int> groups = {entity}; // physical tags have been read as those of entities
+          std::vector<int> groups = {entity}; // physical tags were read as entity tags
           if (!are_tagged)
             gmsh::model::getPhysicalGroupsForEntity(dimension, entity, groups);
           if (groups.empty())
             groups = {0};
           for (const int group : groups)
-            result[std::abs(group)].push_back(entity); // negative where a file reverses the entity
+            result[std::abs(group)].push_back(entity); // negative if a file reverses the entity
         }
       return result;
     }
 
-    /// Keeps one of those elements that have the same nodes: an element stands twice where two groups of one name have it.
+    /// Removes duplicate elements, which occur if an element is in two groups with the same name.
     void remove_copies(std::vector<GmshMesh::Element> &elements)
     {
       std::set<std::vector<unsigned int>> known;
@@ -146,7 +146,7 @@ namespace Squeal
       elements.erase(std::remove_if(elements.begin(), elements.end(), is_copy), elements.end());
     }
 
-    /// Groups of one dimension, those of one name as one.
+    /// Groups of one dimension; groups with the same name are merged.
     std::vector<GmshMesh::Group> collect_groups(const int                                  dimension,
                                                 const std::map<int, std::vector<int>>     &entities_of_groups,
                                                 const std::map<std::size_t, unsigned int> &nodes)
@@ -197,16 +197,16 @@ namespace Squeal
 
   void start_gmsh()
   {
-    // One of its libraries would keep preferences in the user's folder
+    // One of Gmsh's libraries would store preferences in the user's home folder
     const char       *variable = std::getenv("HOME");
     const std::string home     = variable != nullptr ? variable : "/";
-    setenv("HOME", "/dev/null", 1); // where not even root can make a folder
+    setenv("HOME", "/dev/null", 1); // where not even root can create a folder
     gmsh::initialize(0, nullptr, /* readConfigFiles */ false);
     setenv("HOME", home.c_str(), 1);
     gmsh::option::setNumber("General.Terminal", 1);
     gmsh::option::setNumber("General.NumThreads", 1);
-    // An exception could not leave the parallel region in which Gmsh meshes
-    // surfaces and would end the program; errors are found in the log instead.
+    // An exception cannot leave the parallel region in which Gmsh meshes surfaces and would end the program: errors are detected in the log
+    // instead
     gmsh::option::setNumber("General.AbortOnError", 0);
     gmsh::option::setNumber("Mesh.RandomSeed", 1);
     gmsh::option::setNumber("Mesh.RandomFactor", 1e-9);
@@ -225,7 +225,7 @@ namespace Squeal
     attempt("reading the geometry", [&] {
       gmsh::open(script);
       if (!file.empty())
-        gmsh::merge(file); // not by the script's Include, whose strings end at quotes
+        gmsh::merge(file); // not by Include in the script, whose strings end at quotes
     });
     if (are_tagged)
       check_physical_tags();

@@ -9,7 +9,7 @@
 
 namespace Squeal
 {
-  /// Gmsh failed or reported an error: at what. Its log, which it prints, says more.
+  /// Gmsh failed or reported an error; the message names the step, details are in its log.
   class GmshError : public std::runtime_error
   {
   public:
@@ -17,30 +17,28 @@ namespace Squeal
   };
 
   /// Starts Gmsh without the user's configuration files, on one thread and with fixed seeds, so that the same input gives the same mesh.
-  /// Once in a process.
+  /// Call once per process.
   void start_gmsh();
 
-  /// Gives a parameter a value that DefineNumber[..., Name "..."] takes over. Throws GmshError.
+  /// Sets the value for DefineNumber[..., Name "..."]. Throws GmshError.
   void set_number(const std::string &name, double value);
 
-  /// Opens a script that sets variables, then a geometry or mesh if there is one, and meshes what is not meshed yet: a solid as the file
-  /// itself prescribes, a plan with quadrilaterals only, every element halved. Groups with the same name become one. Throws GmshError, and
-  /// std::bad_alloc where memory ends.
+  /// Opens a script that sets variables, then a geometry or mesh if there is one, and meshes what is not meshed yet: a solid as prescribed
+  /// in the file, a plan with quadrilaterals only, every element halved. Groups with the same name are merged. Throws GmshError, and
+  /// std::bad_alloc if memory is exhausted.
   GmshMesh mesh_geometry(const std::string &script, const std::string &file);
 
   /**
-   * From here on this process starts no program, writes, makes, renames and
-   * removes no file, and opens no connection; what is open stays usable. Whoever
-   * tries ends the process by SIGSYS (libseccomp).
+   * Confines this process: from now on it starts no program, does not write, create, rename or remove files, and opens no connection; open
+   * files remain usable. A forbidden call ends the process by SIGSYS (libseccomp).
    *
-   * A Gmsh script does all of these with statements of its own: SystemCall,
-   * NonBlockingSystemCall, OnelabRun, CreateDir, Save, Print, Printf > "file",
-   * and some plugins and options.
+   * Gmsh scripts can do all of these by SystemCall, NonBlockingSystemCall, OnelabRun, CreateDir, Save, Print, Printf > "file", and some
+   * plugins and options.
    *
-   * Throws std::runtime_error where the system cannot confine a process.
+   * Throws std::runtime_error if the system cannot confine a process.
    */
   void confine();
 
-  /// Ends this process by SIGALRM after @p seconds, and lets allocations beyond @p bytes of address space fail. No core is dumped.
+  /// Ends this process by SIGALRM after @p seconds, and limits its address space to @p bytes. No core dump is written.
   void limit_resources(double bytes, double seconds);
 } // namespace Squeal

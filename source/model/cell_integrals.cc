@@ -14,22 +14,23 @@ namespace Squeal
 
   namespace
   {
-    /// A free dof of an element, or of masters of its tied nodes, and its place among the rows of this process; -1 for those of others.
+    /// A free dof of an element, or of masters of its tied nodes, and its local row; -1 for rows of other processes.
     struct FreeDof
     {
       unsigned int in_element;
       int          number, row;
-      double       weight; ///< in the element's dof
+      double       weight; ///< weight in the dof of the element
     };
 
-    /// An element that contributes to rows of this process.
+    /// An element that contributes to local rows.
     struct Contribution
     {
       const NodalElement  *element;
-      std::vector<FreeDof> dofs; ///< nothing is integrated over clamped ones
+      std::vector<FreeDof> dofs; ///< clamped dofs are not integrated
     };
 
-    /// A process has all elements that have one of its rows, and integrates them: at the borders more than one does, and nothing is sent.
+    /// Elements with at least one local row. Elements at partition boundaries are integrated by several processes, so that no matrix
+    /// entries are sent.
     std::vector<Contribution> contributions(const Model &model, const std::vector<const NodalElement *> &elements)
     {
       std::vector<Contribution> result;
@@ -65,11 +66,11 @@ namespace Squeal
       pattern.copy_from(rows);
     }
 
-    /// Elements that one thread integrates, and those whose matrices are kept until they are added.
+    /// Number of elements per thread task, and number of element matrices stored until they are added.
     constexpr int elements_of_task = 256, elements_together = 8 * elements_of_task;
 
-    /// The sums over all elements. Of some at a time, threads first integrate, each other ones, then add, each to another matrix: always in the
-    /// order of the elements.
+    /// Sums over all elements, in blocks: threads first integrate different elements, then add to different matrices, always in the order
+    /// of the elements.
     void integrate_and_add(const Model                               &model,
                            const std::vector<Contribution>           &contributions,
                            const std::vector<ElementIntegral>        &integrals,
@@ -123,11 +124,11 @@ namespace Squeal
     std::vector<std::shared_ptr<const SparseMatrix>> result(matrices.size());
     const auto                                       convert = [&](const int k) {
       result[k] = std::make_shared<SparseMatrix>(map, map, [&matrix = matrices[k]](const int i, SparseMatrix::Row &row) {
-        // Left out: directions that a mass does not couple, and the diagonal that deal.II adds in rows of other bodies
+        // Omit directions without coupling in a mass, and the diagonal that deal.II adds in rows of other bodies
         for (auto entry = matrix.begin(i); entry != matrix.end(i); ++entry)
           if (entry->value() != 0.)
             row.emplace_back(entry->column(), entry->value());
-        // deal.II has the diagonal first
+        // deal.II stores the diagonal first
         if (!row.empty())
           std::rotate(row.begin(), row.begin() + 1, std::upper_bound(row.begin() + 1, row.end(), row.front()));
       });
@@ -137,7 +138,7 @@ namespace Squeal
       run_tasks(n, convert);
     else
       for (int k = 0; k < n; ++k)
-        convert(k); // together with other processes
+        convert(k); // collective
     return result;
   }
 } // namespace Squeal

@@ -13,7 +13,7 @@ namespace Squeal
   {
     constexpr unsigned int n_modes = 9;
 
-    /// A displacement with one component.
+    /// A displacement field with a single component.
     struct Displacement
     {
       unsigned int component;
@@ -68,7 +68,7 @@ namespace Squeal
       return result;
     }
 
-    /// Eliminates the last unknowns: the Schur complement of a positive definite matrix.
+    /// Eliminates the last unknowns by the Schur complement of a positive definite matrix.
     void condense(const FullMatrix<double> &full, FullMatrix<double> &condensed)
     {
       const unsigned int n = condensed.m(), m = full.m() - n;
@@ -80,7 +80,7 @@ namespace Squeal
           for (unsigned int j = 0; j < m; ++j)
             modes(i, j) = full(n + i, n + j);
         }
-      // L⁻¹ K_αu: its square is symmetric to the last bit
+      // L⁻¹ K_αu: its square is exactly symmetric
       const DenseMatrix half = modes.llt().matrixL().solve(coupling);
       for (unsigned int i = 0; i < n; ++i)
         for (unsigned int j = 0; j <= i; ++j)

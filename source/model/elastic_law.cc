@@ -9,7 +9,7 @@ namespace Squeal
 {
   namespace
   {
-    /// C over E_1 in the axes of the material.
+    /// C / E_1 in the axes of the material.
     ElasticLaw::Stiffness stiffness_in_axes(const Material &material)
     {
       const double          E1 = material.young_modulus, nu12 = material.poisson_ratio;
@@ -25,7 +25,7 @@ namespace Squeal
       return result;
     }
 
-    /// C in x, y and z from C in the axes that are the columns of R.
+    /// C in x, y and z from C in the material axes, the columns of R.
     ElasticLaw::Stiffness rotated(const ElasticLaw::Stiffness &C, const Eigen::Matrix3d &R)
     {
       // σ_ij = R_ik R_jl σ_kl

@@ -26,13 +26,13 @@ namespace Squeal
 
   namespace
   {
-    /// What a process has of the model.
+    /// The part of the model on one process.
     struct Part
     {
       std::vector<Node> nodes;
       std::vector<Cell> cells;
       std::vector<Face> faces;
-      int               n_own_dofs = 0; ///< free ones
+      int               n_own_dofs = 0; ///< free dofs
 
       template <class Archive>
       void serialize(Archive &archive, const unsigned int /*version*/)
@@ -79,7 +79,7 @@ namespace Squeal
       return Utilities::unpack<Part>(buffer, false);
     }
 
-    /// The whole mesh with its nodes and dofs numbered, on process 0, and the parts of it for the processes.
+    /// The whole mesh on process 0, with nodes and dofs numbered, and its parts for the processes.
     class Division
     {
     public:
@@ -141,13 +141,13 @@ namespace Squeal
 
     private:
       const Mesh                                             &mesh;
-      const SlaveRows                                        &masters; ///< of tied nodes
-      std::vector<std::pair<CellFace, std::vector<unsigned>>> faces;   ///< outer ones with their surfaces
+      const SlaveRows                                        &masters; ///< masters of tied nodes
+      std::vector<std::pair<CellFace, std::vector<unsigned>>> faces;   ///< outer faces with their surfaces
       std::vector<unsigned int>                               process_of_cell, process_of_node;
       std::vector<Node>                                       nodes_of_mesh;
       std::vector<int>                                        n_dofs_of_process;
 
-      /// Whether the displacement of a node has a part in rows of a process.
+      /// True if the displacement of a node contributes to rows of a process.
       bool has_dofs_of(const unsigned int node, const unsigned int process) const
       {
         const auto tied = masters.find(node);
@@ -172,7 +172,7 @@ namespace Squeal
         });
       }
 
-      /// By METIS, cells that share a face being neighbours.
+      /// Partitions the cells by METIS, with cells that share a face as neighbours.
       void distribute_cells(const unsigned int n_processes)
       {
         DynamicSparsityPattern      neighbours(mesh.cells.size());
@@ -188,7 +188,7 @@ namespace Squeal
         SparsityTools::partition(pattern, n_processes, process_of_cell);
       }
 
-      /// In the order of the cells; a node belongs to the first process that has a cell with it.
+      /// Numbers nodes in the order of the cells; a node belongs to the first process that has a cell with it.
       void number_nodes()
       {
         constexpr unsigned int nobody = -1;
@@ -261,7 +261,7 @@ namespace Squeal
     Part own;
     if (this_process(communicator) == 0)
       {
-        // Process 0 alone has all cells, and of the parts of other processes one at a time
+        // Only process 0 has all cells; it creates the parts of other processes one at a time
         const unsigned int n        = n_processes(communicator);
         const Mesh         with_all = degree() == 2 ? second_order(mesh) : mesh;
         const TiedNodes    tied     = tied_nodes(with_all);

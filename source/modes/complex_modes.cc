@@ -13,7 +13,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Y_j += c_j (x_j + i y_j) for the columns of complex vectors kept as real and imaginary halves.
+    /// Y_j += c_j (x_j + i y_j) for the columns of complex vectors stored as real and imaginary halves.
     void add_scaled(MultiVector &Y, const std::vector<std::complex<double>> &c, const MultiVector &X)
     {
       const int k = X.n_columns() / 2;
@@ -24,7 +24,7 @@ namespace Squeal
         }
     }
 
-    /// φᴴ M φ = 1 for every vector, its entry of largest modulus real and positive.
+    /// Scales every vector to φᴴ M φ = 1 with its entry of largest modulus real and positive.
     void normalize(const SparseMatrix &M, MultiVector &real_part, MultiVector &imaginary_part)
     {
       fix_phase(real_part, imaginary_part);
@@ -71,7 +71,7 @@ namespace Squeal
     if (k == 0)
       return;
 
-    // Ascending frequency; of a pair with equal frequencies the stable mode first
+    // Ascending frequency; for equal frequencies the stable mode first
     std::vector<int> order(k);
     std::iota(order.begin(), order.end(), 0);
     constexpr double equal = 1e-9;
@@ -100,7 +100,7 @@ namespace Squeal
     if (modes.left_real_part)
       normalize(*system.mass, *modes.left_real_part, *modes.left_imaginary_part);
 
-    // Residuals, of some modes at a time: all of them would take more memory than all else
+    // Residuals of a few modes at a time: all of them would dominate the memory
     constexpr int modes_together = 16;
     modes.residuals.resize(k);
     modes.energy_residuals.resize(k);

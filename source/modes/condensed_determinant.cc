@@ -16,10 +16,10 @@ namespace Squeal
   {
     using Complex = std::complex<double>;
 
-    /// Columns that are solved for together: enough for the kernels, few enough for the memory.
+    /// Number of columns solved together: a compromise between speed and memory.
     constexpr int chunk_size = 64;
 
-    /// More terms than this mean that the series does not converge.
+    /// Number of terms above which the series counts as divergent.
     constexpr int most_terms = 400;
 
     /// (1 − r) / (1 + r) and r of the series at λ.
@@ -39,7 +39,7 @@ namespace Squeal
       return term.weighted(DenseMatrix(DenseMatrix::Ones(term.right->rank(), 1)), values);
     }
 
-    /// The matrix E, whose columns are those of several factors.
+    /// The matrix E, with the columns of several factors.
     using Factors = std::vector<const LowRankFactor *>;
 
     int total_rank(const Factors &factors)
@@ -48,7 +48,7 @@ namespace Squeal
                              [](const int n, const LowRankFactor *factor) { return n + factor->rank(); });
     }
 
-    /// Calls @p action with all columns of E, some at a time, and the number of the first of them.
+    /// Calls @p action with blocks of columns of E and the index of their first column.
     void for_chunks(const Factors &factors, const std::function<void(const MultiVector &, int)> &action)
     {
       int offset = 0;
@@ -73,7 +73,7 @@ namespace Squeal
       return result;
     }
 
-    /// P (K + s M)⁻¹ on sets of vectors, P the M-orthogonal projection onto the complement of the modes Φ, if there are any.
+    /// P (K + s M)⁻¹ for sets of vectors, P the M-orthogonal projection onto the complement of the modes Φ, if there are any.
     struct ComplementInverse
     {
       const LinearOperator      &inverse;
@@ -90,7 +90,7 @@ namespace Squeal
       }
     };
 
-    /// ‖(K + s M)^−½ E‖ on the complement, the same on all processes.
+    /// ‖(K + s M)^−½ E‖ on the complement, identical on all processes.
     double norm_on_complement(const Factors &factors, const ComplementInverse &complement_inverse, const MPI_Comm communicator)
     {
       DenseMatrix flexibility(total_rank(factors), total_rank(factors));
@@ -125,7 +125,7 @@ namespace Squeal
           continue;
         if (term.matrix)
           throw SolverError("the term `" + term.name + "` is not confined to the contact", "determinant condensed to the contact nodes",
-                            "take sparse LU factors instead (small systems), or leave the term out: Rayleigh damping, say");
+                            "use sparse LU factors instead (small systems), or remove the term, for example Rayleigh damping");
         const auto known     = std::find(factors.begin(), factors.end(), term.left.get());
         const int  first_row = total_rank({factors.begin(), known});
         if (known == factors.end())
@@ -137,7 +137,7 @@ namespace Squeal
     if (Phi != nullptr && n_rows > 0)
       modes_forces = transpose_times(factors, *Phi).transpose().cast<Complex>();
 
-    // Norms, and how many terms to take
+    // Norms, and number of terms
     for (Block &block : blocks)
       block.norm = max_norm(weights_of(*block.term, system.values)) *
                    norm_on_complement({block.term->right.get()}, complement_inverse, M.communicator());
@@ -148,9 +148,9 @@ namespace Squeal
     for (n_moments = 1; std::any_of(request.lambda.begin(), request.lambda.end(), is_coarse); ++n_moments)
       if (n_moments == most_terms)
         throw SolverError("a series of " + std::to_string(most_terms) + " terms does not reach the tolerance",
-                          "determinant condensed to the contact nodes", "take more real modes");
+                          "determinant condensed to the contact nodes", "use more real modes");
 
-    // Moments: T_{k+1} = 2 (2 w H − I) T_k − T_{k−1}. H blows up what rounding leaves of the modes: it is taken out in every step.
+    // Moments: T_{k+1} = 2 (2 w H − I) T_k − T_{k−1}. H amplifies rounding errors in the modes: they are projected out in every step
     for (Block &block : blocks)
       block.moments.assign(n_moments, DenseMatrix(block.term->right->rank(), n_rows));
     const double w = deflation_square + shift;

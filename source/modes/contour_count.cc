@@ -21,16 +21,17 @@ namespace Squeal
 
     const char *const place = "count of complex modes by the argument principle";
 
-    /// ‖ΔN N⁻¹‖ at the points; between them N⁻¹ may be twice as large.
+    /// Largest ‖ΔN N⁻¹‖ at the points; between them N⁻¹ may be twice as large [-].
     constexpr double largest_truncation = 0.25;
 
-    /// Bounds of the truncation of N: the first try, and where rounding ends it.
+    /// First and smallest bound of the truncation error of N; the latter is limited by rounding [-].
     constexpr double first_tolerance = 1e-7, least_tolerance = 1e-13;
 
-    /// Steps below this part of ω_high mean that a zero lies on the contour; so close may no real mode be to its ends.
+    /// Shorter steps, relative to ω_high, mean that a zero lies on the contour; also the smallest distance of a real mode from its ends
+    /// [-].
     constexpr double shortest_step = 1e-9;
 
-    /// Corners of what is followed, counterclockwise, and how often it makes up the whole contour.
+    /// Corners of the contour, counterclockwise, and number of its repetitions by symmetry.
     struct Contour
     {
       Contour(const ContourOptions &options, const bool damped)
@@ -41,7 +42,7 @@ namespace Squeal
       {
         if (!(high > low))
           throw SolverError(decimal_text(hertz(high)) + " Hz as the end of the band, " + decimal_text(hertz(low)) + " Hz as its beginning",
-                            place, "let the band end above its beginning");
+                            place, "give a band whose end is above its beginning");
         if (damped)
           corners = {{0., low}, {width, low}, {width, high}, {-width, high}, {-width, low}, {0., low}};
         else
@@ -50,7 +51,7 @@ namespace Squeal
 
       [[noreturn]] void refuse(const std::string &why, const Complex lambda) const
       {
-        throw SolverError(text("the count is refused: ", why, " at ", decimal_text(hertz(lambda.imag())), " Hz with a growth rate of ",
+        throw SolverError(text("the count is rejected: ", why, " at ", decimal_text(hertz(lambda.imag())), " Hz with a growth rate of ",
                                lambda.real(), " 1/s"),
                           place, std::abs(lambda.real()) < width ? "change Band/Maximum frequency" : "change Band/Maximum rate");
       }
@@ -60,7 +61,7 @@ namespace Squeal
       std::vector<Complex> corners;
     };
 
-    /// Turns of the determinant along the contour; n_points and largest_phase_step of @p count take account of them.
+    /// Turns of the determinant along the contour; updates n_points and largest_phase_step of @p count.
     int turns(FollowedDeterminant  &determinant,
               const Contour        &contour,
               const ContourOptions &options,
@@ -82,7 +83,8 @@ namespace Squeal
               if (length < std::min(rest, shortest_step * contour.high))
                 contour.refuse("a mode lies on the contour", lambda);
               if (determinant.n_points >= options.maximum_points)
-                contour.refuse("more than " + std::to_string(options.maximum_points) + " points are needed; it was given up", lambda);
+                contour.refuse("more than " + std::to_string(options.maximum_points) + " points are needed; the count was abandoned",
+                               lambda);
 
               const bool last = length == rest;
               const Step step = determinant.attempt(last ? to : lambda + length * direction);
@@ -108,7 +110,7 @@ namespace Squeal
       return whole;
     }
 
-    /// Real modes inside, by inertia.
+    /// Number of real modes inside, by inertia.
     int n_frictionless_modes(const CoupledSystem &system, const Contour &contour)
     {
       const auto below = [&](const double omega) {
@@ -117,7 +119,7 @@ namespace Squeal
       return below(contour.high) - below(contour.low);
     }
 
-    /// None may lie on the contour, and inside have to be as many as there are by inertia.
+    /// Checks that no real mode is on the contour, and that as many are inside as counted by inertia.
     void check_real_modes(const SymmetricModes &modes, const Contour &contour, const int n_frictionless)
     {
       int n_inside = 0;
@@ -142,7 +144,7 @@ namespace Squeal
     {
       const SparseMatrix &K = *system.stiffness, &M = *system.mass;
 
-      // The real modes, and the inverse that gives both them and the series
+      // Real modes, and the inverse for them and for the series
       progress.update("real modes beyond the band");
       SymmetricModesOptions real = options.real_modes;
       if (real.what == SymmetricModesOptions().what)
@@ -203,7 +205,7 @@ namespace Squeal
           request.tolerance *= 0.2 * largest_truncation / count.truncation_bound;
           if (!(request.tolerance >= least_tolerance))
             throw SolverError(
-              "the count is refused: the determinant is not known well enough on the contour, which passes a mode too closely", place,
+              "the count is rejected: the determinant is not accurate enough on the contour, which passes too close to a mode", place,
               "change Band/Maximum frequency or Band/Maximum rate");
           determinant.reset();
         }
@@ -249,7 +251,7 @@ namespace Squeal
   {
     if (const int n_found = n_in_rectangle(lambda, contour); n_found != n_counted)
       throw SolverError(text(n_found, " complex modes were found in the band up to |Re lambda| = ", contour.largest_growth, " 1/s, ",
-                             n_counted, " are counted"),
+                             n_counted, " were counted"),
                         place, "lower Complex modes/Tolerance, or change Band/Maximum frequency or Band/Maximum rate");
   }
 

@@ -18,15 +18,15 @@
 
 namespace Squeal
 {
-  /// What a step to another point of the contour would be.
+  /// An attempted step to another point of the contour.
   struct Step
   {
-    double size;               ///< acceptable up to 1, and about proportional to the length
+    double size;               ///< acceptable up to 1; approximately proportional to the length
     double phase;              ///< of the determinant [rad]
-    double largest_phase = 0.; ///< of its parts
+    double largest_phase = 0.; ///< largest phase of its factors [rad]
   };
 
-  /// A determinant that is followed along the contour.
+  /// A determinant followed along the contour.
   class FollowedDeterminant
   {
   public:
@@ -35,10 +35,10 @@ namespace Squeal
     virtual void start(std::complex<double> lambda)   = 0;
     virtual Step attempt(std::complex<double> lambda) = 0;
 
-    /// Goes to the point of the last attempt.
+    /// Moves to the point of the last attempt.
     virtual void accept() = 0;
 
-    /// What must not be exceeded whatever the size of the step turns out to be [rad/s].
+    /// Largest permitted step, regardless of Step::size [rad/s].
     virtual double longest_step(const std::complex<double>) const
     {
       return std::numeric_limits<double>::infinity();
@@ -47,14 +47,14 @@ namespace Squeal
     int n_points = 0;
   };
 
-  /// ‖F‖_F of a step. Between its ends F may exceed it, but must stay below 1.
+  /// Limit for ‖F‖_F of a step. Between its ends F may be larger, but must stay below 1 [-].
   constexpr double largest_change = 0.5;
 
-  /// The determinant of a small matrix.
+  /// Determinant of a small matrix.
   class FollowedDense : public FollowedDeterminant
   {
   public:
-    /// The matrix A at a point and, of use for a bound of errors, what multiplies its inverse there.
+    /// The matrix A at a point and, for an error bound, factors of its inverse.
     struct Sample
     {
       ComplexDenseMatrix                matrix;
@@ -64,7 +64,7 @@ namespace Squeal
     };
     using Function = std::function<Sample(std::complex<double>)>;
 
-    /// @p poles of the matrix on the positive imaginary axis, to which steps are kept short
+    /// @param poles of the matrix on the positive imaginary axis; steps are limited near them
     FollowedDense(Function function, std::vector<double> poles, const double largest_phase_step, MPI_Comm comm)
       : function(std::move(function))
       , poles(std::move(poles))
@@ -87,7 +87,7 @@ namespace Squeal
       F                         = current.factors->solve(F);
       F.diagonal().array() -= 1.;
       const std::complex<double> trace = F.trace();
-      // A NaN must not reach LAPACK.
+      // A NaN must not reach LAPACK
       const double norm         = F.norm();
       const auto [size, phase]  = agreed_pair(std::isfinite(norm) ? std::min(norm, balanced(F).norm()) : norm, trace.imag());
       constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -99,7 +99,7 @@ namespace Squeal
       step.phase = next.argument - current.argument;
       step.phase += 2. * M_PI * std::round((phase - step.phase) / (2. * M_PI));
       step.largest_phase = std::abs(step.phase);
-      // Farther from the trace than the bound: rounding has spoilt one of the two.
+      // Phase differs from the trace by more than the bound: one of them has a large rounding error
       if (!(std::abs(step.phase - phase) <= -std::log(1. - size) - size + 1e-6))
         return {infinity, 0.};
       step.size = std::max(step.size, step.largest_phase / largest_phase_step);
@@ -114,7 +114,7 @@ namespace Squeal
 
     double longest_step(const std::complex<double> lambda) const override
     {
-      double distance = std::numeric_limits<double>::infinity(); // to a pole ±iω
+      double distance = std::numeric_limits<double>::infinity(); // to the nearest pole ±iω
       for (const double omega : poles)
         distance = std::min(distance, std::hypot(lambda.real(), std::abs(lambda.imag()) - omega));
       return 0.5 * distance;
@@ -138,7 +138,7 @@ namespace Squeal
       std::tie(next.argument, next.error) = agreed_pair(next.factors->log_determinant().imag(), sample.offset + sample.factor * norm);
     }
 
-    /// Every process computes the same; steps are decided upon what process 0 found.
+    /// All processes compute the same; steps are decided by the values of process 0.
     std::pair<double, double> agreed_pair(const double first, const double second) const
     {
       const std::vector<double> values = agreed(comm, {{first, second}, {}}).values;
@@ -152,7 +152,7 @@ namespace Squeal
     Point                     current, next;
   };
 
-  /// det Q.
+  /// Follows det Q by sparse LU.
   class FollowedSparse : public FollowedDeterminant
   {
   public:

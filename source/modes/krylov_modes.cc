@@ -14,7 +14,7 @@ namespace Squeal
 {
   namespace
   {
-    /// All terms in a power of λ as they are: a matrix of their sum would be another one of the size of K.
+    /// All terms with a power of λ, applied one by one: their sum would be another matrix of the size of K.
     struct SumOfTerms : LinearOperator
     {
       SumOfTerms(const CoupledSystem &system, const ParameterValues &values, const int power)
@@ -38,7 +38,7 @@ namespace Squeal
       const int              power;
     };
 
-    /// Whether the symmetric factor of UpdatedInverse, made at the values of the system, holds Q(s) at others but for friction.
+    /// True if the symmetric factor of UpdatedInverse, for the values of the system, equals Q(s) at other values except for friction.
     bool is_in_factor(const CoupledSystem &system, const ParameterValues &values, const double shift)
     {
       return std::all_of(system.terms.begin(), system.terms.end(), [&](const Term &term) {
@@ -47,7 +47,7 @@ namespace Squeal
       });
     }
 
-    /// Modes at friction coefficient @p mu with Q(s)⁻¹ by @p inverse where that has all of it, else by LU factors.
+    /// Modes at the friction coefficient @p mu, with Q(s)⁻¹ from @p inverse if it covers all terms, else from LU factors.
     ComplexModes attempt(const CoupledSystem         &system,
                          const std::vector<Term>     &sparse,
                          const ParameterValues       &values,
@@ -89,9 +89,9 @@ namespace Squeal
     for (const Term &term : system.terms)
       (term.is_sparse() ? sparse : others).push_back(term);
     const bool has_full_terms = !terms_of(others, values, 1).empty();
-    // The inverse would hold them
+    // Modal damping cannot enter the shifted factor
     if (shift != 0. && has_full_terms)
-      throw SolverError("modal damping and a disc that is free or held softly do not go together with the Krylov solver", "complex modes",
+      throw SolverError("the Krylov solver cannot combine modal damping with a free or softly held disc", "complex modes",
                         "choose Complex modes/Solver = residual iteration, hold the disc by stiffer Mounts/Elastic mounts, or leave "
                         "Damping/Modal damping ratio empty");
 
@@ -107,7 +107,7 @@ namespace Squeal
     options.expected                   = n_expected;
     options.close_vectors              = real_modes;
     options.tolerance                  = parameters.complex_tolerance;
-    // Without damping the modes of equal frequency that all pins have stay a cluster, which a narrower block finds only in part at a time
+    // Without damping, modes of equal frequency on all pins remain a cluster, which a narrower block finds only in parts
     options.block_size     = pencil.damping ? 8 : 12;
     options.stiffness_norm = norm_bound(sparse, values, 0);
     options.damping_norm   = norm_bound(sparse, values, 1);
@@ -120,8 +120,8 @@ namespace Squeal
       }
     catch (const SolverError &)
       {
-        // Near the friction coefficient where a mode begins to diverge K̃ is almost singular, and its inverse magnifies rounding
-        // errors: a shift helps. If the reason was another one, the next attempt says so.
+        // Close to the friction coefficient of a static instability K̃ is almost singular, and its inverse amplifies rounding errors: a
+        // shift helps. For another reason, the next attempt reports it
         if (shift != 0. || has_full_terms)
           throw;
         options.shift = band.end / band_per_stabilizing_shift;

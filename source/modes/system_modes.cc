@@ -66,7 +66,7 @@ namespace Squeal
     SymmetricModesOptions options = real_modes_options(solvers, "real modes of the coupled system", shift);
     options.count                 = count;
     options.block_size            = block_size;
-    // The factor serves here too, unless the shift brought damping into it.
+    // The same factor is used, unless the shift includes damping in it
     if (shift == 0. || !system.has_damping())
       options.inverse = result.inverse.get();
     result.real              = symmetric_modes(*system.stiffness, *system.mass, count.limit, options);

@@ -17,19 +17,19 @@ namespace Squeal
   {
     using Complex = std::complex<double>;
 
-    /// Least distance of times in a list of modes, as a part of the time, and that from a time of zero [Hz].
+    /// Smallest relative distance of times in a list of modes, and smallest distance from time zero [Hz].
     constexpr double least_relative_step = 1e-6, least_step = 1e-6;
 
     /// Resolution of fields: steps per largest displacement, or per radian.
     constexpr double steps_of_fields = 65536., steps_of_animations = 4096.;
 
-    /// Rounds to multiples of 1 / @p n, which compress better.
+    /// Rounds to multiples of 1 / @p n for better compression.
     double in_steps(const double n, const double value)
     {
       return std::round(n * value) / n + 0.;
     }
 
-    /// Largest |u| of the dofs of all processes, by which fields are divided; one where nothing moves.
+    /// Largest |u| over the dofs of all processes, for scaling fields; one if nothing moves.
     template <typename Number>
     double largest_modulus(const std::vector<Number> &displacement, const MPI_Comm communicator)
     {
@@ -42,7 +42,7 @@ namespace Squeal
 
     using Partitioner = dealii::Utilities::MPI::Partitioner;
 
-    /// Dofs of this process, and those of its nodes that others have.
+    /// Own dofs, and ghost dofs of the nodes of this process.
     std::shared_ptr<const Partitioner> dofs_of(const std::vector<Node> &nodes, const RowMap &map)
     {
       std::vector<dealii::types::global_dof_index> dofs;
@@ -60,7 +60,7 @@ namespace Squeal
     template <typename Number>
     using Vectors = std::vector<std::array<Number, 3>>;
 
-    /// Displacements of the vertices, zero where they are clamped, from those on the free dofs, rows of this process. All must call.
+    /// Displacements of the vertices, zero if clamped, from local rows of the free dofs. Collective.
     template <typename Number>
     Vectors<Number> vertex_values(const FieldMesh                          &mesh,
                                   const std::shared_ptr<const Partitioner> &dofs,
@@ -76,7 +76,7 @@ namespace Squeal
       return result;
     }
 
-    /// value(u) of each displacement of the vertices.
+    /// value(u) for each displacement of the vertices.
     template <typename Number, typename Function>
     VertexField vector_field(const std::string &name, const Vectors<Number> &displacement, const Function &value)
     {
@@ -234,8 +234,8 @@ namespace Squeal
         std::vector<VertexField> fields;
         for (std::size_t j = 0; j < modes.size(); ++j)
           {
-            const double growth = options.grows ? 2. * M_PI * modes[j].lambda.real() / modes[j].lambda.imag() : 0.; // in a period
-            // When the amplitude is largest: scaled to this time, growth cannot overflow
+            const double growth = options.grows ? 2. * M_PI * modes[j].lambda.real() / modes[j].lambda.imag() : 0.; // per period
+            // Scaling to the time of the largest amplitude avoids overflow
             const double  largest_at = growth > 0. ? options.periods : 0.;
             const Complex turn       = std::polar(scales[j] * std::exp(growth * (periods - largest_at)), 2. * M_PI * periods);
             fields.push_back(

@@ -36,7 +36,7 @@ namespace Squeal
   {
     constexpr const char *unfinished_name = ".unfinished";
 
-    /// As the user wrote it, without the slash at its end and detours.
+    /// Normalised name as given by the user, without a trailing slash.
     std::string shown_name(const std::string &directory)
     {
       std::string name = fs::path(directory).lexically_normal().string();
@@ -56,7 +56,7 @@ namespace Squeal
       return fs::exists(fs::symlink_status(file));
     }
 
-    /// NAME.kept, NAME.kept-2, ...: the first that is free.
+    /// First unused name of NAME.kept, NAME.kept-2, ...
     fs::path free_name(const fs::path &file)
     {
       fs::path result = file.string() + ".kept";
@@ -76,7 +76,7 @@ namespace Squeal
       throw FileError("the name of the result folder is empty", "--output", "name a folder");
     try
       {
-        place      = (fs::absolute(directory) / "").parent_path(); // without the slash at the end
+        place      = (fs::absolute(directory) / "").parent_path(); // without the trailing slash
         unfinished = place / unfinished_name;
         open();
       }
@@ -103,10 +103,10 @@ namespace Squeal
       throw FileError("the folder `" + shown + "` holds files that are not the results of a run", where,
                       "choose another name, or empty the folder");
     take_lock();
-    fs::remove_all(unfinished); // of a run that was killed
+    fs::remove_all(unfinished); // from a killed run
     fs::create_directory(unfinished);
 
-    // A disk that is full and names that are too long should show before the work, not after.
+    // Detect a full disk or too long names before the computation
     constexpr std::size_t longest_name = 200, size = 4096;
     const fs::path        file    = unfinished / std::string(longest_name, 'x');
     const int             problem = write_file(file, std::string(size, ' '));
@@ -122,8 +122,8 @@ namespace Squeal
     if (::flock(lock, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) // some file systems have no locks
       return;
     ::close(lock);
-    lock = -1; // what lies there is the other's
-    throw FileError("another run writes to `" + shown + "`", "--output " + shown, "wait until it has ended, or choose another name");
+    lock = -1; // leave the files of the other run
+    throw FileError("another run is writing to `" + shown + "`", "--output " + shown, "wait until it has ended, or choose another name");
   }
 
   ResultFolder::~ResultFolder()
@@ -131,7 +131,7 @@ namespace Squeal
     remove_traces();
   }
 
-  /// Removes everything but results in their place.
+  /// Removes everything except committed results.
   void ResultFolder::remove_traces()
   {
     std::error_code ignored;
@@ -143,7 +143,7 @@ namespace Squeal
         lock = -1;
       }
     if (is_new)
-      fs::remove(place, ignored); // which fails where there is something in it
+      fs::remove(place, ignored); // fails if it is not empty
   }
 
   void ResultFolder::write(const std::string &name, const std::function<void(std::ostream &)> &writer) const
@@ -168,7 +168,7 @@ namespace Squeal
     return written;
   }
 
-  /// Moves the files, the record last: a folder with a record has all files that it lists.
+  /// Moves the files, the record last: a folder with a record is complete.
   std::vector<std::string> ResultFolder::put_in_place() const
   {
     const FileSizes former = read_file_list(place / run_record).value_or(FileSizes());
@@ -179,7 +179,7 @@ namespace Squeal
           std::error_code ignored;
           fs::remove(place / name, ignored);
           for (fs::path folder = fs::path(name).parent_path(); !folder.empty(); folder = folder.parent_path())
-            fs::remove(place / folder, ignored); // which fails where there is something in it
+            fs::remove(place / folder, ignored); // fails if it is not empty
         }
 
     std::vector<std::string> remarks;
@@ -189,8 +189,8 @@ namespace Squeal
         {
           const fs::path kept = free_name(target);
           fs::rename(target, kept);
-          remarks.push_back("the results need the name `" + name + "`: the file of yours in " + shown + " is `" +
-                                          kept.lexically_relative(place).string() + "` now");
+          remarks.push_back("the results use the name `" + name + "`: your file in " + shown + " is `" +
+                                          kept.lexically_relative(place).string() + "`");
         }
       fs::create_directories(target.parent_path());
       fs::rename(unfinished / name, target);
@@ -212,7 +212,7 @@ namespace Squeal
         for (const auto &[name, size] : written)
           if (std::error_code missing; fs::file_size(unfinished / name, missing) != size)
             throw FileError("a result was removed or changed while the program ran", "file " + shown + "/" + name,
-                            "let nothing else write to the folder of a run, and run again");
+                            "make sure that nothing else writes to the result folder, and run again");
         try
           {
             remarks = put_in_place();
@@ -221,7 +221,7 @@ namespace Squeal
           {
             is_stuck = true;
             throw FileError("the results cannot be moved to their place: " + error.code().message(), "--output " + shown,
-                            "those that are missing are in `" + unfinished.string() + "`: move them yourself");
+                            "the missing ones are in `" + unfinished.string() + "`: move them yourself");
           }
       }
     if (afterwards)
@@ -285,7 +285,7 @@ namespace Squeal
                                {"peak memory so far [byte]", step.peak_memory},
                                {"result", step.summary}});
     tree[file_list] = record.files;
-    // Names of files and words of a command need not be UTF-8.
+    // File names and command-line words need not be UTF-8
     stream << tree.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
   }
 

@@ -16,7 +16,7 @@ namespace Squeal
   {
     constexpr int significant_digits = 12;
 
-    /// A cell as text; @p shown says how numbers are shown.
+    /// An entry as text; @p shown formats numbers.
     template <typename Shown>
     std::string text_of(const Entry &cell, const Shown &shown)
     {
@@ -27,7 +27,7 @@ namespace Squeal
       const auto *number = std::get_if<double>(&cell);
       if (number == nullptr)
         return "";
-      // A minus before zeros says nothing
+      // No minus sign before zeros
       const std::string text = shown(*number);
       return text[0] == '-' && text.find_first_not_of("-0.") == std::string::npos ? text.substr(1) : text;
     }
@@ -35,7 +35,7 @@ namespace Squeal
     std::string csv_text(const Entry &cell)
     {
       const std::string text = text_of(cell, [](const double number) {
-        char       digits[significant_digits + 8]; // sign, point, exponent
+        char       digits[significant_digits + 8]; // including sign, point, exponent
         const auto end = std::to_chars(digits, digits + sizeof(digits), number, std::chars_format::general, significant_digits);
         return std::string(digits, end.ptr);
       });
@@ -74,7 +74,7 @@ namespace Squeal
 
   void Table::print(std::ostream &stream) const
   {
-    // Every column padded to its width, its header first
+    // Pad every column to its width, header first
     std::vector<std::vector<std::string>> texts;
     for (std::size_t c = 0; c < heads.size(); ++c)
       {

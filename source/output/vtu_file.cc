@@ -17,7 +17,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Of 1 to 9: fields differ in every file, a mesh is compressed once for all.
+    /// zlib levels from 1 to 9: fields differ in every file, while a mesh is compressed only once.
     constexpr int level_of_fields = 1, level_of_meshes = 9;
 
     template <typename Number>
@@ -26,8 +26,8 @@ namespace Squeal
       return std::is_same_v<Number, float> ? "Float32" : std::is_same_v<Number, std::uint8_t> ? "UInt8" : "Int32";
     }
 
-    /// One block of @p size bytes as VTK's readers want it: the number of blocks, their size, that of a shorter last one, and the compressed sizes;
-    /// then the block.
+    /// One block of @p size bytes in VTK's format: number of blocks, block size, size of a shorter last block, compressed sizes, then the
+    /// compressed block.
     std::string compressed(const void *values, const std::size_t size, const int level)
     {
       uLongf        length = compressBound(size);
@@ -35,14 +35,14 @@ namespace Squeal
       std::uint64_t head[4] = {1, size, 0, 0};
       if (compress2(reinterpret_cast<Bytef *>(result.data()) + sizeof(head), &length, static_cast<const Bytef *>(values), size, level) !=
           Z_OK)
-        throw std::bad_alloc(); // the only cause there is
+        throw std::bad_alloc(); // the only possible cause
       head[3] = length;
       result.replace(0, sizeof(head), reinterpret_cast<const char *>(head), sizeof(head));
       result.resize(sizeof(head) + length);
       return result;
     }
 
-    /// A text in the field data of a file, as codes of its characters, which need no escapes.
+    /// A text in the field data of a file, as character codes, which need no escapes.
     std::string field_data(const std::string &text)
     {
       std::ostringstream stream;
@@ -60,7 +60,7 @@ namespace Squeal
       MPI_Send(text.data(), size, MPI_CHAR, 0, 0, communicator);
     }
 
-    /// On process 0: its own text, and what all others send().
+    /// Writes the text of process 0, then those received from the other processes.
     void write_all(std::ostream &stream, const std::string &own, const MPI_Comm communicator)
     {
       int n_processes;
@@ -176,7 +176,7 @@ namespace Squeal
       std::vector<unsigned int> nodes;
     };
 
-    /// Of an element of degree 2: one half as large at each corner, and what these leave.
+    /// Divides an element of degree 2: half-size cells at the corners, and the remainder.
     std::vector<Part> halves(const Shape shape)
     {
       const auto       &corners = topology(shape).corners;
@@ -193,7 +193,7 @@ namespace Squeal
       std::vector<Part> middle;
       if (shape == Shape::triangle)
         middle = {{shape, {3, 4, 5}}};
-      if (shape == Shape::tetrahedron) // an octahedron about one diagonal
+      if (shape == Shape::tetrahedron) // an octahedron, divided about one diagonal
         middle = {{shape, {4, 5, 6, 8}}, {shape, {4, 6, 7, 8}}, {shape, {4, 7, 9, 8}}, {shape, {4, 9, 5, 8}}};
       if (shape == Shape::wedge)
         middle = {{shape, {6, 9, 7, 15, 17, 16}}, {shape, {15, 17, 16, 12, 14, 13}}};
@@ -207,7 +207,7 @@ namespace Squeal
       return result;
     }
 
-    /// Linear cells of an element, corners in the order of VTK: that of Gmsh, but the first triangle of a wedge looks outwards.
+    /// Linear cells of an element, corners in VTK order: that of Gmsh, except that the first triangle of a wedge faces outwards.
     std::vector<Part> parts_of(const Shape shape, const unsigned int degree)
     {
       std::vector<Part> result = degree == 2 ? halves(shape) : std::vector<Part>{{shape, {}}};
@@ -223,10 +223,10 @@ namespace Squeal
       return result;
     }
 
-    /// Numbers of VTK, in the order of the shapes.
+    /// VTK cell types, in the order of the shapes.
     constexpr std::array<std::uint8_t, 6> vtk_types = {{5, 9, 10, 14, 13, 12}};
 
-    /// Elements of this process, sorted by angle about z, radius and height of the mean of their corners.
+    /// Elements of this process, sorted by angle about z, radius and height of their corner mean.
     template <typename Element>
     std::multimap<std::tuple<long, long, double>, const Element *> in_columns(const Model                        &model,
                                                                               const std::vector<const Element *> &elements)
@@ -248,7 +248,7 @@ namespace Squeal
       return result;
     }
 
-    /// Of those among cells or faces that are of this process; numbers vertices in their order.
+    /// Elements of this process among cells or faces; numbers their vertices in order.
     template <typename Element>
     FieldMesh mesh_of(const Model &model, const std::vector<const Element *> &elements)
     {

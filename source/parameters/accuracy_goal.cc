@@ -18,26 +18,26 @@ namespace Squeal
 {
   namespace
   {
-    /// Meshes of any size of disc and pins.
+    /// Mesh density for any size of disc and pins.
     struct MeshDensity
     {
       Element      element;
-      unsigned int blocks; ///< k of the faces of pins
+      unsigned int blocks; ///< k of the pin faces
       unsigned int rings;
       double       grading;
-      unsigned int pin_layers; ///< of pins up to three fifths as high as wide
+      unsigned int pin_layers; ///< for pins with a height of up to 0.6 times their diameter
       unsigned int disc_layers;
-      double       elements_per_wave; ///< of the disc
+      double       elements_per_wave; ///< elements per wavelength in the disc
     };
 
     struct Level
     {
       AccuracyLimits limits;
       MeshDensity    mesh, coarser;
-      double         tolerance; ///< of reduction and solvers: estimated |δλ| / |λ| [-]
+      double         tolerance; ///< of reduced models and solvers: estimated |δλ| / |λ| [-]
     };
 
-    /// Measured on the default scene, see doc/accuracy.md. There must be a goal.
+    /// Measured on the default model, see doc/accuracy.md. Requires a goal.
     const Level &level(const AccuracyGoal goal)
     {
       static const MeshDensity                   fine   = {Element::quadratic, 2, 3, 1.5, 5, 3, 10.};
@@ -51,19 +51,19 @@ namespace Squeal
       return levels.at(goal);
     }
 
-    /// Height over diameter up to which the layers of a level serve [-].
+    /// Largest ratio of height to diameter for the layers of a level [-].
     constexpr double squat_pin = 0.62;
 
-    /// Part of the band by which that on the coarser mesh is longer, over the accuracy asked for, and at least [-].
+    /// Relative extension of the band on the coarser mesh, as a multiple of the requested accuracy, and its smallest value [-].
     constexpr double margin_of_coarser_band = 2., least_band_margin = 0.02;
 
-    /// The same for a given coarser mesh, whose accuracy is not known [-].
+    /// The same for a given coarser mesh of unknown accuracy [-].
     constexpr double margin_of_given_mesh = 0.05;
 
-    /// The shorter one of thin-plate bending waves, 2π (D / ρhω²)^¼, and Rayleigh's waves on the faces at the end of the band [m].
+    /// Shorter of the wavelengths of thin-plate bending, 2π (D / ρhω²)^¼, and of Rayleigh waves on the faces, at the end of the band [m].
     double shortest_wave(const Parameters &parameters)
     {
-      constexpr double rayleigh  = 0.9; // of the speed of shear waves
+      constexpr double rayleigh  = 0.9; // relative to the speed of shear waves
       const Material   disc      = parameters.materials.of("disc");
       const double     frequency = parameters.discretization.maximum_frequency, omega = circular_frequency(frequency);
       const double     nu = disc.mean_poisson_ratio(), h = parameters.geometry.disc_thickness;
@@ -183,7 +183,7 @@ namespace Squeal
           for (const std::string &entry : split(text))
             {
               if (std::find(known.begin(), known.end(), entry) == known.end())
-                throw ParameterError("Accuracy study/" + name + " names " + in_quotes(entry) + ", which is none of " +
+                throw ParameterError("Accuracy study/" + name + " names " + in_quotes(entry) + ", which is not one of " +
                                        boost::algorithm::join(known, ", "),
                                      "", "choose among these, separated by commas");
               read.push_back(enum_value<Enum>(entry));
@@ -206,22 +206,23 @@ namespace Squeal
   void AccuracyStudyParameters::declare(Declarations &declarations)
   {
     declarations.enter("Accuracy study");
-    declarations.add("Mesh factors", factors, "none",
-                     "How many times as fine as the mesh of the section Geometry the meshes are, in every direction, separated by "
-                     "commas: element size, layers and nodes per pin face follow. Two or more; three give an order of convergence.",
-                     {0.1, 10.}, 20);
-    add_list(declarations, "Elements", elements, "Elements that are compared.");
+    declarations.add(
+      "Mesh factors", factors, "none",
+      "Mesh refinements relative to the section Geometry, in every direction, separated by commas: they scale element size, layers and "
+      "nodes per pin face. Two or more; three give an order of convergence.",
+      {0.1, 10.}, 20);
+    add_list(declarations, "Elements", elements, "Elements to be compared.");
     add_list(declarations, "Outlines", outlines, "Outlines of meshes with straight edges; quadratic elements follow the circles.");
     declarations.add_text(
-      "Bases", "Names of reduced bases that are measured beside full order, separated by commas, as in the section Reduction; empty: none.",
+      "Bases", "Names of reduced bases to be compared with full order, separated by commas, as in the section Reduction; empty: none.",
       [this] { return boost::algorithm::join(bases, ", "); }, [this](const std::string &text) { bases = split(text); });
     declarations.add("Grown tolerance", grown_tolerance, "none",
-                     "Bases `residual-grown`: estimated relative error of lambda at which they stop to grow.", {1e-11, 1e-1});
-    declarations.add("Largest number of dofs", largest_dofs, "none", "Meshes with more dofs are left out.", {1.});
-    declarations.add("Band margin", margin, "none",
-                     "Part of the band by which all modes are found beyond its end, so that modes of coarse meshes, whose frequencies "
-                     "are too high, do not lack partners.",
-                     {0., 1.});
+                     "Estimated relative error of lambda at which `residual-grown` bases are complete.", {1e-11, 1e-1});
+    declarations.add("Largest number of dofs", largest_dofs, "none", "Meshes with more dofs are skipped.", {1.});
+    declarations.add(
+      "Band margin", margin, "none",
+      "Relative extension of the band on all meshes, so that modes of coarse meshes, whose frequencies are too high, have counterparts.",
+      {0., 1.});
   }
 
   void AccuracyStudyParameters::check() const
@@ -230,7 +231,7 @@ namespace Squeal
     check_list(elements, "Elements");
     check_list(outlines, "Outlines");
     if (factors.size() < 2)
-      throw ParameterError("Accuracy study/Mesh factors has one entry: without a second mesh no error is known",
+      throw ParameterError("Accuracy study/Mesh factors has one entry: error estimates need a second mesh",
                            "parameter Accuracy study/Mesh factors", "give two or more; three show the order of convergence");
   }
 } // namespace Squeal

@@ -8,27 +8,31 @@ namespace Squeal
 {
   namespace
   {
-    /// Rates of a band over the circular frequency of its end: counts resolve the least, and eigenvalues up to the greatest are found [-].
+    /// Smallest and largest rate of a band relative to the circular frequency of its end: limits of counts and of the search for
+    /// eigenvalues [-].
     constexpr double least_rate = 1e-6, greatest_rate = 10.;
   } // namespace
 
   void DiscretizationParameters::declare(Declarations &declarations)
   {
     declarations.enter("Discretization");
-    declarations.add("Element", element,
-                     "Hexahedra. trilinear: 8 nodes; too stiff in bending. incompatible modes: 8 nodes and quadratic displacements inside "
-                     "each element (Wilson, Taylor), which bend: a system of the same size. quadratic: 27 nodes, on curved boundaries.");
+    declarations.add(
+      "Element", element,
+      "Hexahedra. trilinear: 8 nodes, too stiff in bending. incompatible modes: 8 nodes and additional quadratic displacements inside "
+      "each element (Wilson, Taylor), accurate in bending with the same number of unknowns. quadratic: 27 nodes, follows curved "
+      "boundaries.");
     declarations.add(
       "Coarser mesh", coarser_mesh,
-      "A second mesh that shows the error of the mesh, mode by mode, as the difference between both: parameters of the "
-      "section Geometry with the values of the coarser mesh, such as disc_size = 0.019, pad_size = 0.012; or a file "
-      "(.geo, .msh). The difference covers the error if elements are about twice as large. Accuracy chooses a coarser mesh of its own. Empty: no error is estimated.");
+      "A second mesh for estimates of the discretisation error of each mode, from the difference between both meshes: parameters of the "
+      "section Geometry with values of the coarser mesh, such as disc_size = 0.019, pad_size = 0.012; or a file (.geo, .msh). The "
+      "difference covers the error if elements are about twice as large. Accuracy chooses its own coarser mesh. Empty: no error estimate.");
 
     declarations.enter("Band");
-    declarations.add("Maximum frequency", maximum_frequency, "Hz",
-                     "Upper end of the band in which all modes are found. Coulomb friction is ill-posed in the limit of fine meshes: "
-                     "results hold in a stated band.",
-                     {0.});
+    declarations.add(
+      "Maximum frequency", maximum_frequency, "Hz",
+      "Upper end of the band in which all modes are computed. Coulomb friction is ill-posed in the limit of fine meshes: results hold in "
+      "a stated band.",
+      {0.});
     declarations.add(
       "Maximum rate", maximum_rate, "1/s",
       "Largest |Re lambda| of the modes in the band. Modes that decay faster are not listed; modes that grow faster are. The argument "
@@ -56,52 +60,58 @@ namespace Squeal
                      "Shift-invert eigensolver of the symmetric problem: block Lanczos; block Krylov-Schur (Anasazi) and implicitly "
                      "restarted Lanczos (ARPACK) as independent checks.");
     declarations.add("Tolerance", real_tolerance, "none", "Largest relative residual of a real mode.", {1e-14, 1e-4});
-    declarations.add("Maximum number of modes", maximum_modes, "none",
-                     "Modes of the coupled system in the band above which a run ends before any is computed: 500 take minutes and "
-                     "gigabytes, twice as many up to eight times the time.",
-                     {1});
+    declarations.add(
+      "Maximum number of modes", maximum_modes, "none",
+      "Largest number of coupled modes in the band; the run stops before computing more. 500 modes take minutes and gigabytes, twice as "
+      "many up to eight times as long.",
+      {1});
 
     declarations.enter("Complex modes");
-    declarations.add("Solver", complex_solver,
-                     "Krylov: shift-invert block Krylov on the quadratic pencil of full order (the reference). residual iteration: "
-                     "a basis of real modes grown by right and left residuals, one Cholesky factor for every friction coefficient.");
-    declarations.add("Shift inverse", shift_inverse,
-                     "How the Krylov solver inverts the nonsymmetric stiffness: Cholesky factor of the frictionless system with a "
-                     "correction of rank n_c, or LU factors of the nonsymmetric sparse matrix.");
-    declarations.add("Tolerance", complex_tolerance, "none", "Largest relative residual of a complex mode found by Krylov.", {1e-13, 1e-4});
+    declarations.add(
+      "Solver", complex_solver,
+      "Krylov: shift-invert block Krylov on the quadratic pencil at full order (the reference). residual iteration: a basis of real "
+      "modes enriched by right and left residuals, with one Cholesky factor for every friction coefficient.");
+    declarations.add(
+      "Shift inverse", shift_inverse,
+      "Inverse of the nonsymmetric stiffness in the Krylov solver: Cholesky factor of the frictionless system with a correction of rank "
+      "n_c, or LU factors of the nonsymmetric sparse matrix.");
+    declarations.add("Tolerance", complex_tolerance, "none", "Largest relative residual of a complex mode of the Krylov solver.",
+                     {1e-13, 1e-4});
     declarations.add("Iteration tolerance", iteration_tolerance, "none",
-                     "Largest estimated relative error of lambda at which the residual iteration ends.", {1e-12, 1e-2});
-    declarations.add("Maximum basis", maximum_basis, "vectors", "Largest basis of the residual iteration.", {1});
+                     "Estimated relative error of lambda at which the residual iteration ends.", {1e-12, 1e-2});
+    declarations.add("Maximum basis", maximum_basis, "vectors", "Maximum basis size of the residual iteration.", {1});
 
     declarations.enter("Linear algebra");
     declarations.add("Factorization", library,
                      "Sparse direct solver for symmetric matrices; automatic: CHOLMOD on one process, MUMPS on several.");
-    declarations.add("Threads", n_threads, "none",
-                     "Threads of a process: for values of the friction coefficient that are evaluated at a time, products, solves and "
-                     "large factors. 0: as many as OMP_NUM_THREADS says, or as the process has cores. Results do not depend on it.",
-                     {0, 1024});
+    declarations.add(
+      "Threads", n_threads, "none",
+      "Threads per process, for concurrent friction coefficients, matrix products, solves and large factorisations. 0: OMP_NUM_THREADS, "
+      "or the number of cores of the process. Results do not depend on it.",
+      {0, 1024});
     declarations.add("BLAS threads", blas_threads, "none",
-                     "Threads of the dense kernels per process; more than one only pays on idle cores.", {1, 256});
+                     "Threads of dense kernels per process; more than one pays off only on idle cores.", {1, 256});
   }
 
   void OutputParameters::declare(Declarations &declarations)
   {
     declarations.enter("Output");
-    declarations.add("Mode shapes", fields, "Complex modes whose shapes are written.");
+    declarations.add("Mode shapes", fields, "Complex modes written as fields.");
     declarations.add("Component mode shapes", component_fields,
-                     "Writes the shapes of the modes of the disc alone and of the pins alone, free and sliding, too.");
-    declarations.add("Real mode shapes", real_fields, "Writes the shapes of the coupled modes without friction, too.");
-    declarations.add("Animation frames", animation_frames, "none", "Pictures per period in the animation of an unstable mode; 0: none.",
+                     "Also writes the mode shapes of the disc alone and of the pins alone, free and sliding.");
+    declarations.add("Real mode shapes", real_fields, "Also writes the shapes of coupled modes without friction.");
+    declarations.add("Animation frames", animation_frames, "none", "Frames per period in the animation of an unstable mode; 0: none.",
                      {0, 1000});
-    declarations.add("Animation periods", animation_periods, "none", "Periods that an animation shows.", {1, 1000});
+    declarations.add("Animation periods", animation_periods, "none", "Number of periods in an animation.", {1, 1000});
     declarations.add("Animation growth", animation_growth,
-                     "Shows the mode with its growth e^(R t): by a factor of e in 1 / (2 pi divergence rate) periods, 16 of them at 1 %.");
+                     "Scales the mode by its growth e^(R t): by a factor of e in 1 / (2 pi divergence rate) periods, 16 of them at 1 %.");
     declarations.add(
       "Write matrices", write_matrices,
-      "Writes M, C (damping of the materials), K, C_b (of the contact), P_n, P_t, P_b, K_n, T_c of the closed contact nodes in "
-      "Matrix Market form and the node coordinates.");
-    declarations.add("Write system", write_system,
-                     "Writes the coupled system to the folder system of the results, which System reads. full: all terms. reduced: the "
-                     "reduced model of a sweep, valid from the first to the last value within Sweep/Tolerance.");
+      "Writes M, C (material damping), K, C_b (contact damping), P_n, P_t, P_b, K_n, T_c of the closed contact nodes in Matrix Market "
+      "form, and the node coordinates.");
+    declarations.add(
+      "Write system", write_system,
+      "Writes the coupled system to the folder system of the results, which System reads. full: all terms. reduced: the reduced model of "
+      "a sweep, accurate to Sweep/Tolerance between the first and the last value.");
   }
 } // namespace Squeal

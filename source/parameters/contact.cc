@@ -36,7 +36,8 @@ namespace Squeal
       std::vector<ContactPair> pairs;
       const auto               refuse = [](const std::string &what) {
         throw ParameterError(what, where,
-                                           "write surface of the disc / surface of another body: friction factor; ..., such as disc_top / pad_outer; "
+                                           "write surface of the disc / surface of another body: friction factor; ..., such as disc_top "
+                                                         "/ pad_outer; "
                                                          "disc_bottom / pad_inner: 0.9");
       };
       for (const std::string &entry : split_string_list(text, ';'))
@@ -56,14 +57,14 @@ namespace Squeal
           pair.friction_factor  = *factor;
           pair.normal_stiffness = *stiffness;
           if (names[0] == names[1])
-            refuse(in_quotes(names[0]) + " would rub itself");
+            refuse(in_quotes(names[0]) + " is paired with itself");
           for (const ContactPair &other : pairs)
             if (other.disc == names[0] && other.pin == names[1])
               refuse(in_quotes(entry) + " is given twice");
           pairs.push_back(pair);
         }
       if (pairs.empty())
-        refuse("nothing rubs");
+        refuse("the list of contact pairs is empty");
       return pairs;
     }
 
@@ -98,15 +99,14 @@ namespace Squeal
     declarations.enter("Contact");
     declarations.add_text(
       "Pairs",
-      "Surfaces that rub, as a list `surface of the disc / surface of another body: friction factor, normal stiffness; ...`; the factor, 1 "
-      "if it is left out, multiplies Operation/Friction coefficient, the stiffness is that of springs between the faces, which stay rigid "
-      "on each other without it. Their meshes need not match: faces whose nodes do not coincide are coupled by mortar elements. Units: "
-      "none, N/m^3.",
+      "Pairs of sliding surfaces, as a list `surface of the disc / surface of another body: friction factor, normal stiffness; ...`. The "
+      "factor, by default 1, multiplies Operation/Friction coefficient; the stiffness is that of springs between the faces, without "
+      "which contact is rigid. The meshes need not match: faces with different nodes are coupled by mortar elements. Units: none, N/m^3.",
       [this] { return print(pairs); }, [this](const std::string &text) { pairs = parse(text); });
     declarations.add_text(
       "Tied",
-      "Surfaces that are bonded, as a list `surface / other surface; ...`: nodes of the first one follow the second one, and the volumes "
-      "become one body. Their meshes need not match; the first should be the smaller, finer or softer one. Units: none.",
+      "Bonded surfaces, as a list `surface / other surface; ...`: nodes of the first one follow the second one, and the volumes become "
+      "one body. The meshes need not match; the first should be the smaller, finer or softer one. Units: none.",
       [this] { return print_tied(tied); }, [this](const std::string &text) { tied = parse_tied(text); });
   }
 
@@ -117,12 +117,12 @@ namespace Squeal
         for (const ContactPair &pair : pairs)
           for (const std::string &surface : {one.slave, one.master})
             if (surface == pair.disc || surface == pair.pin)
-              throw ParameterError("surface " + in_quotes(surface) + " is tied, and rubs according to Contact/Pairs", where_tied,
+              throw ParameterError("surface " + in_quotes(surface) + " is tied, but also in Contact/Pairs", where_tied,
                                    "remove it from one of the two lists");
         for (const TiedPair &other : tied)
           if (&one != &other && one.slave == other.slave)
             throw ParameterError("surface " + in_quotes(one.slave) + " is the first of two ties", where_tied,
-                                 "let each surface follow one other surface");
+                                 "tie each surface to one other surface");
       }
   }
 } // namespace Squeal

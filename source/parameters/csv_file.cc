@@ -25,11 +25,11 @@ namespace Squeal
       return text("file ", file, ", line ", line);
     }
 
-    /// Content of the file, without the mark of UTF-8.
+    /// Content of the file, without the byte order mark of UTF-8.
     std::string content_of(const std::string &path, const std::string &parameter, const std::string &row)
     {
       if (path.empty())
-        throw ParameterError("no file of " + row + "s is named", "parameter " + parameter, "name a CSV file");
+        throw ParameterError("no file of " + row + "s is given", "parameter " + parameter, "name a CSV file");
       std::ifstream stream(path, std::ios::binary);
       std::string   content;
       const bool    is_file = stream.is_open() && !std::filesystem::is_directory(path);
@@ -42,12 +42,12 @@ namespace Squeal
       return content.rfind(utf8_mark, 0) == 0 ? content.substr(3) : content;
     }
 
-    /// Refuses encodings and line ends that hide the lines of a file.
+    /// Rejects encodings and line ends that hide the lines of a file.
     void check_encoding(const std::string &content, const std::string &file)
     {
       const bool is_marked = content.rfind("\xFF\xFE", 0) == 0 || content.rfind("\xFE\xFF", 0) == 0;
       if (is_marked || content.find('\0') != std::string::npos)
-        throw ParameterError("the file is not in UTF-8 but, it seems, in UTF-16", where_in(file, 1), as_csv_file);
+        throw ParameterError("the file is not in UTF-8, but apparently in UTF-16", where_in(file, 1), as_csv_file);
       for (auto end = content.find('\r'); end != std::string::npos; end = content.find('\r', end + 1))
         if (end + 1 < content.size() && content[end + 1] != '\n')
           throw ParameterError("a line ends with a carriage return alone, as in old files of the Macintosh",
@@ -55,7 +55,7 @@ namespace Squeal
                                "end lines with a line feed; " + std::string(as_csv_file));
     }
 
-    /// Refuses a first line that a spreadsheet with other separators has written.
+    /// Rejects a first line from a spreadsheet with other separators.
     void check_separator(const std::string &names, const std::string &where)
     {
       if (names.rfind("sep=", 0) == 0)
@@ -100,7 +100,7 @@ namespace Squeal
                                         line.find('\t') != std::string::npos ? ", separated by tabs" :
                                                                                "";
       throw ParameterError(
-        text(values.size(), values.size() == 1 ? " value stands" : " values stand", " below ", n_names, n_names == 1 ? " name" : " names",
+        text(values.size(), values.size() == 1 ? " value is" : " values are", " below ", n_names, n_names == 1 ? " name" : " names",
              is_comma_more ? ": the line ends with a comma" : separator),
         where, "give one value for each name, with decimal points; quote values that contain commas" + decimal_point_hint(line));
     }
@@ -144,9 +144,9 @@ namespace Squeal
       }
     if (result.names.empty())
       throw ParameterError("the file of " + row + "s is empty", "file " + path,
-                           "write names in the first line, a " + row + " in each other one");
+                           "write names in the first line, then one " + row + " per line");
     if (result.rows.empty())
-      throw ParameterError("the file has names, but no " + row, result.where_names, "write a " + row + " in each line below the names");
+      throw ParameterError("the file has names, but no " + row, result.where_names, "write a " + row + " per line below the names");
     return result;
   }
 } // namespace Squeal

@@ -24,10 +24,10 @@ namespace Squeal
     {
       const std::string given = value.empty() ? "but is empty" : "not " + (parse_number(value) ? legible(value) : in_quotes(value));
       throw ParameterError(path + " must " + demand + ", " + given, "",
-                           "give " + accepted + decimal_point_hint(value) + "; squeal --print-parameters says what it is");
+                           "give " + accepted + decimal_point_hint(value) + "; squeal --print-parameters shows its meaning");
     }
 
-    /// A number of a certain kind, and what messages call it.
+    /// A type of number, and its description in messages.
     struct NumberKind
     {
       NumberKind(const Range &range, const bool is_integer, const std::string &unit)
@@ -38,7 +38,7 @@ namespace Squeal
 
       Range       range;
       bool        is_integer;
-      std::string unit; ///< with a blank before it; empty where there is none, or several
+      std::string unit; ///< preceded by a blank; empty without a unit, or with several
 
       /// "0 ... 10", ">= 0", "<= 10", or nothing.
       std::string bounds() const
@@ -62,7 +62,7 @@ namespace Squeal
         return noun + (in ? " in" : "") + (bounds().empty() ? "" : " ") + bounds() + unit;
       }
 
-      /// The number that a text is. Refuses any other text in the name of the parameter @p path.
+      /// Parses a number. Rejects any other text, naming the parameter @p path.
       double parse(const std::string &path, const std::string &text) const
       {
         constexpr int     largest_integer = std::numeric_limits<int>::max();

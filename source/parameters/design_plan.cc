@@ -28,13 +28,13 @@ namespace Squeal
     using dealii::Utilities::split_string_list;
     using dealii::Utilities::trim;
 
-    /// A full grid has so many designs soon; more are a slip of the pen.
+    /// A full grid soon becomes too large; more designs are probably a typo.
     constexpr std::size_t most_designs = 100000;
 
     constexpr const char *where_variables = "parameter Designs/Variables";
     const std::string     how_to_write    = "write Section/Name = a, b, c; or Section/Name = a to b in n";
 
-    /// A value of a range that people can read: six digits, and more where the range is narrow, tell designs apart.
+    /// A rounded value of a range: six digits, and more if the range is narrow, so that designs differ.
     std::string rounded(const double value, const double first, const double last)
     {
       constexpr int      most_digits = 17;
@@ -74,7 +74,7 @@ namespace Squeal
       if (!(variable.first < variable.last))
         refuse("the range in " + in_quotes(entry) + " does not ascend");
       if (variable.by_ratio && !(variable.first > 0.))
-        refuse("the range in " + in_quotes(entry) + " begins at " + exact_text(variable.first) + ", of which there are no ratios",
+        refuse("the range in " + in_quotes(entry) + " begins at " + exact_text(variable.first) + ", which has no ratios",
                "begin with a positive number, or leave out `by ratio`");
       if (in == std::string::npos)
         return;
@@ -93,7 +93,7 @@ namespace Squeal
         return {name, 0};
       const auto number = parse_number(name.substr(bracket + 1, name.size() - bracket - 2));
       if (name.back() != ']' || !number || *number != std::floor(*number) || *number < 1. || *number > 1e6)
-        throw ParameterError(in_quotes(name) + " does not say which number varies", where, "write Section/Name[k] with k from one on");
+        throw ParameterError(in_quotes(name) + " does not give the varied number", where, "write Section/Name[k] with k >= 1");
       return {trim(name.substr(0, bracket)), static_cast<unsigned int>(*number)};
     }
 
@@ -105,10 +105,10 @@ namespace Squeal
       return names;
     }
 
-    /// Refuses names that set a number twice: A and A, A and A[1], A + B and B.
+    /// Rejects names that set a number twice: A and A, A and A[1], A + B and B.
     void refuse_repeated(const std::vector<std::string> &names, const std::string &where)
     {
-      std::vector<std::pair<std::string, std::pair<std::string, unsigned int>>> known; // as written, and what it sets
+      std::vector<std::pair<std::string, std::pair<std::string, unsigned int>>> known; // as given, and the number that it sets
       for (const std::string &several : names)
         for (const std::string &name : split_string_list(several, '+'))
           {
@@ -122,7 +122,7 @@ namespace Squeal
           }
     }
 
-    /// A value by which equal ones are told: "1, 2" for "1.0,2".
+    /// Normalised value, to detect equal ones: "1, 2" for "1.0,2".
     std::string plain(const std::string &value)
     {
       std::string result;
@@ -140,7 +140,7 @@ namespace Squeal
       for (const std::string &level : variable.levels)
         if (const auto [other, is_new] = seen.emplace(plain(level), level); !is_new)
           refuse(in_quotes(variable.name) + " has equal values, " + in_quotes(other->second) + " and " + in_quotes(level),
-                 "give each value once; decimals have a point, not a comma");
+                 "give each value once; write decimals with a point, not a comma");
     }
 
     std::vector<DesignVariable> parse_variables(const std::string &text)
@@ -181,7 +181,7 @@ namespace Squeal
       for (const DesignVariable &variable : variables)
         if (variable.levels.empty())
           refuse("the range of " + in_quotes(variable.name) + " has no levels",
-                 "write `in n` behind it; or set Designs/Plan = Latin hypercube or Sobol sequence, which sample ranges");
+                 "append `in n`; or set Designs/Plan = Latin hypercube or Sobol sequence, which sample ranges");
     }
 
     std::vector<std::vector<std::string>> full_grid(const std::vector<DesignVariable> &variables)
@@ -190,7 +190,7 @@ namespace Squeal
       for (const DesignVariable &variable : variables)
         n *= static_cast<double>(variable.levels.size());
       if (n > most_designs)
-        refuse(text("the full grid has ", n, " designs"), "take fewer levels, or a Latin hypercube");
+        refuse(text("the full grid has ", n, " designs"), "use fewer levels, or a Latin hypercube");
       std::vector<std::vector<std::string>> result = {{}};
       for (const DesignVariable &variable : variables)
         {
@@ -219,7 +219,7 @@ namespace Squeal
       return result;
     }
 
-    /// Samples in the unit cube, a row each. The generators and distributions of Boost give the same numbers everywhere.
+    /// Samples in the unit cube, one per row. Boost's generators and distributions give the same numbers on every platform.
     std::vector<std::vector<double>> samples(const DesignParameters &designs, const std::size_t dimension)
     {
       const std::size_t                 n = designs.n_samples;
@@ -242,7 +242,7 @@ namespace Squeal
       return sobol_points(n, dimension, designs.seed);
     }
 
-    /// Place and length of the k-th number of a text.
+    /// Position and length of the k-th number in a text.
     std::pair<std::size_t, std::size_t> place_of_number(const std::string &text, const unsigned int k)
     {
       const auto   is_of_name = [](const char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '.'; };
@@ -264,7 +264,7 @@ namespace Squeal
           i += end - start;
         }
       throw ParameterError(Squeal::text("the value ", in_quotes(text), " has ", n, n == 1 ? " number" : " numbers", ", not ", k),
-                           where_variables, "count the numbers from one on");
+                           where_variables, "count the numbers from one");
     }
   } // namespace
 

@@ -21,7 +21,7 @@ namespace Squeal
       throw ParameterError(what, "Geometry/" + name, change);
     }
 
-    /// Gmsh with its libraries alone takes less than half of this [GB].
+    /// More than twice the memory of Gmsh with its libraries alone [GB].
     constexpr double least_memory_limit = 1.;
 
     void check_format(const std::string &file)
@@ -52,13 +52,13 @@ namespace Squeal
              "Nodes per pin face", text("the nearest allowed value is ", is_below_nearest ? below : above));
     }
 
-    /// Positions of the pins of one side; @p side is "Top" or "Bottom".
+    /// Checks the pin positions of one side; @p side is "Top" or "Bottom".
     void check_layout(const PinLayout &layout, const std::string &side, const GeometryParameters &parameters)
     {
       const std::string radii_name = side + " pin radii", angles_name = side + " pin angles";
       const double      pin_radius = parameters.pin_diameter / 2.;
 
-      // Inside the annulus
+      // Pins must be inside the annulus
       for (std::size_t i = 0; i < layout.radii.size(); ++i)
         {
           const double inside  = parameters.disc_inner_radius - (layout.radii[i] - pin_radius);
@@ -74,7 +74,7 @@ namespace Squeal
                         " m, both excluded, keeps the pin on the disc; or make the pin smaller"));
         }
 
-      // Apart from each other
+      // Pins must not overlap
       const double to_radians = std::acos(-1.) / 180.;
       for (std::size_t i = 0; i < layout.radii.size(); ++i)
         for (std::size_t j = i + 1; j < layout.radii.size(); ++j)
@@ -94,7 +94,7 @@ namespace Squeal
     {
       const std::string &name = variable.declaration.name;
       declarations.add_text(
-        name, "Variable of the geometry; empty for the value there, " + variable.declaration.value + ". Units: as the geometry says.",
+        name, "Variable of the geometry; empty: the value in the geometry, " + variable.declaration.value + ". Units: as in the geometry.",
         [&variable] { return variable.value ? exact_text(*variable.value) : ""; },
         [&variable, name](const std::string &text) {
           variable.value = parse_number(text);
@@ -104,14 +104,14 @@ namespace Squeal
         });
     }
 
-    /// Whether a Gmsh mesh has physical volumes; their names are text in binary files, too.
+    /// True if a Gmsh mesh has physical volumes; their names are text in binary files, too.
     bool has_volumes(const std::string &mesh)
     {
       std::ifstream stream(mesh, std::ios::binary);
       std::string   line;
       while (std::getline(stream, line) && line.rfind("$PhysicalNames", 0) != 0)
         ;
-      std::getline(stream, line); // their number
+      std::getline(stream, line); // number of names
       while (std::getline(stream, line) && line.rfind("$End", 0) != 0)
         if (int dimension; std::istringstream(line) >> dimension && dimension == 3)
           return true;
@@ -131,7 +131,7 @@ namespace Squeal
       }
     catch (const MeshError &)
       {
-        return; // refused where it is opened
+        return; // rejected when it is opened
       }
     if (is_script(geometry))
       for (const GeometryVariable &variable : GeometryScript(geometry).variables())
@@ -189,12 +189,12 @@ namespace Squeal
   void GeometryParameters::declare(Declarations &declarations)
   {
     declarations.enter("Geometry");
-    declarations.add("File", file,
-                     "Plan or mesh of disc and pins: a Gmsh geometry (.geo) or mesh (.msh). It is looked for beside the parameter "
-                     "file, in the current directory, then among the geometries that come with the program. A file with physical "
-                     "volumes is a solid and is used as it is; one with physical surfaces and curves only is a plan that is extruded. "
-                     "A .geo can use every parameter below, and its own variables (DefineConstant, DefineNumber) are parameters of "
-                     "this section.");
+    declarations.add(
+      "File", file,
+      "Plan or mesh of disc and pins: a Gmsh geometry (.geo) or mesh (.msh). The program looks in the folder of the parameter file, in "
+      "the current directory, then among the supplied geometries. A file with physical volumes is a solid model and used unchanged; one "
+      "with physical surfaces and curves only is a plan to be extruded. A .geo can use every parameter below, and its own variables "
+      "(DefineConstant, DefineNumber) become parameters of this section.");
     declarations.add("Disc inner radius", disc_inner_radius, "m", "Radius of the bore of the disc.", {0.});
     declarations.add("Disc outer radius", disc_outer_radius, "m", "Radius of the rim of the disc.", {0.});
     declarations.add("Disc thickness", disc_thickness, "m", "Thickness of the disc, half of it on each side of z = 0.", {0.});
@@ -211,32 +211,36 @@ namespace Squeal
                      {0.});
     declarations.add("Bottom pin angles", bottom.angles, "degree", "Angles of the axes of the pins on the lower face, as many as radii.");
     declarations.add("Nodes per pin face", nodes_per_pin_face, "none",
-                     "Nodes on each contact face of a pin: 7, 19, 37, 61, ..., that is 3 k (k + 1) + 1.", {1});
+                     "Nodes on each contact face of a pin, 3 k (k + 1) + 1: 7, 19, 37, 61, ...", {1});
     declarations.add("Pin layers", pin_layers, "none", "Layers of elements over the height of a pin.", {1});
     declarations.add("Disc layers", disc_layers, "none", "Layers of elements through the disc.", {1});
-    declarations.add("Element size", element_size, "m",
-                     "Length of the elements of the disc, in its plane and away from the pins; disc_pins.geo takes smaller ones where "
-                     "these do not fit between the pins.",
-                     {0.});
-    declarations.add("Outlines", outlines,
-                     "Straight edges of round pins, bore and rim of a plan. inscribed: nodes on the circle, so that polygons are "
-                     "smaller. true area: nodes moved outwards until area and moments of area are the circle's. Quadratic elements "
-                     "follow the circle.");
-    declarations.add("Pin rings", pin_rings, "none",
-                     "Rings of elements along the outline of every pin of a plan, around its blocks; each adds 6 k nodes to the face, "
-                     "k of Nodes per pin face = 3 k (k + 1) + 1.",
-                     {0, 20});
-    declarations.add("Pin grading", pin_grading, "none",
-                     "Size of a layer or ring of a pin over that of the next one towards the edge where the pin is held; 1: all alike. "
-                     "Stresses are singular there.",
-                     {1., 4.});
+    declarations.add(
+      "Element size", element_size, "m",
+      "Edge length of disc elements, in the plane of the disc and away from the pins; disc_pins.geo uses smaller ones if these do not "
+      "fit between the pins.",
+      {0.});
+    declarations.add(
+      "Outlines", outlines,
+      "Approximation of round pins, bore and rim of a plan by straight edges. inscribed: nodes on the circle, so that polygons are "
+      "smaller. true area: nodes moved outwards so that area and moments of area are those of the circle. Quadratic elements follow the "
+      "circle.");
+    declarations.add(
+      "Pin rings", pin_rings, "none",
+      "Number of rings of elements along the outline of every pin of a plan, around its blocks; each ring adds 6 k nodes to the face, "
+      "with k from Nodes per pin face = 3 k (k + 1) + 1.",
+      {0, 20});
+    declarations.add(
+      "Pin grading", pin_grading, "none",
+      "Size ratio of successive layers and rings of a pin towards the edge of its clamped end, where stresses are singular; 1: uniform.",
+      {1., 4.});
     declarations.add("Pairing tolerance", pairing_tolerance, "m",
-                     "Greatest distance at which a node of the disc and a node of a pin form a contact pair.", {0.});
-    declarations.add("Allow shell commands", allow_shell_commands,
-                     "Whether a .geo may run programs, make, write and remove files and use the network, as Gmsh lets it. Where the "
-                     "system cannot forbid that, a note says so. Only for files whose every line you trust.");
-    declarations.add("Meshing time limit", meshing_time_limit, "s", "Longest time that Gmsh may take.", {0.});
-    declarations.add("Meshing memory limit", meshing_memory_limit, "GB", "Most memory that Gmsh may take.", {0.});
+                     "Largest distance between a node of the disc and a node of a pin that form a contact pair.", {0.});
+    declarations.add(
+      "Allow shell commands", allow_shell_commands,
+      "Lets a .geo run programs, create, write and remove files and use the network, as Gmsh permits. If the system cannot forbid these, "
+      "a note is printed. Only for files in which you trust every line.");
+    declarations.add("Meshing time limit", meshing_time_limit, "s", "Time limit of Gmsh.", {0.});
+    declarations.add("Meshing memory limit", meshing_memory_limit, "GB", "Memory limit of Gmsh.", {0.});
     for (Variable &variable : variables)
       declare_variable(declarations, variable);
   }
@@ -245,7 +249,7 @@ namespace Squeal
   {
     // Sizes and counts
     if (file.empty())
-      refuse("Geometry/File is empty", "File", "name a .geo or .msh, or leave it out for disc_pins.geo");
+      refuse("Geometry/File is empty", "File", "name a .geo or .msh, or remove the line for disc_pins.geo");
     check_format(file);
     check_positive(disc_inner_radius, "Disc inner radius");
     check_positive(disc_outer_radius, "Disc outer radius");
@@ -256,7 +260,7 @@ namespace Squeal
     check_positive(pairing_tolerance, "Pairing tolerance");
     check_positive(meshing_time_limit, "Meshing time limit");
     if (!(meshing_memory_limit >= least_memory_limit))
-      refuse(text("Geometry/Meshing memory limit is ", exact_text(meshing_memory_limit), " GB, with which Gmsh cannot start"),
+      refuse(text("Geometry/Meshing memory limit is ", exact_text(meshing_memory_limit), " GB, not enough to start Gmsh"),
              "Meshing memory limit", text("set it to at least ", exact_text(least_memory_limit), " GB"));
     check_positive(pin_layers, "Pin layers");
     check_positive(disc_layers, "Disc layers");
@@ -270,12 +274,12 @@ namespace Squeal
     check_lengths(top, "Top");
     check_lengths(bottom, "Bottom");
 
-    // Pairs must be unambiguous: neighbours on a contact face are at least one element apart.
+    // Pairs must be unambiguous: neighbours on a contact face are at least one element apart
     if (pairing_tolerance >= element_size / 2.)
       refuse(text("Geometry/Pairing tolerance is ", exact_text(pairing_tolerance), " m with elements of ", exact_text(element_size), " m"),
              "Pairing tolerance", "set it far below the element size; 1e-6 m suits most geometries");
 
-    // The built-in plan; in files of the user's own these need not mean anything
+    // For the built-in plan only; user geometries need not use these parameters
     if (std::filesystem::path(file).filename() != "disc_pins.geo")
       return;
     if (disc_inner_radius >= disc_outer_radius)
@@ -299,7 +303,7 @@ namespace Squeal
 
   namespace
   {
-    /// The number times the factor, rounded, at least one.
+    /// The number times the factor, rounded, but at least one.
     unsigned int scaled(const double number, const double factor)
     {
       return std::max(1L, std::lround(number * factor));
@@ -313,10 +317,10 @@ namespace Squeal
                                               std::make_pair("pin_layers", "Pin layers")})
       if (used.count(variable) == 0)
         throw ParameterError(
-          text("the mesh of Geometry/File = ", in_quotes(geometry.file), " cannot be refined: it does not follow Geometry/", parameter),
+          text("the mesh of Geometry/File = ", in_quotes(geometry.file), " cannot be refined: it does not use Geometry/", parameter),
           "parameter Geometry/File",
-          text("give a plan, which the program extrudes, or a script (.geo) that uses the variables element_size, "
-               "disc_layers and pin_layers; or do without meshes of other widths"));
+          text("give a plan to be extruded, or a script (.geo) that uses the variables element_size, "
+               "disc_layers and pin_layers; or do not use other mesh sizes"));
   }
 
   GeometryParameters refined(const GeometryParameters &geometry, const double factor)

@@ -20,7 +20,7 @@ namespace Squeal
 
   namespace
   {
-    using Pattern = boost::xpressive::sregex; // without recursion, unlike std::regex: a text may be of any length
+    using Pattern = boost::xpressive::sregex; // not recursive, unlike std::regex: texts may be long
     using Match   = boost::xpressive::smatch;
     using Matches = boost::xpressive::sregex_iterator;
 
@@ -29,7 +29,7 @@ namespace Squeal
       return Pattern::compile("\\b" + text + "\\b");
     }
 
-    /// The text with blanks for comments, so that lines keep their numbers.
+    /// The text with comments replaced by blanks, so that line numbers do not change.
     std::string without_comments(const std::string &text)
     {
       const Pattern string_or_comment = Pattern::compile(R"re("[^"]*"?|//[^\n]*|/\*.*?\*/|/\*.*)re");
@@ -42,7 +42,7 @@ namespace Squeal
       });
     }
 
-    /// How deep in brackets a text is where it has been read to, and whether in a string.
+    /// Nesting depth of brackets, and whether the position is in a string.
     struct Nesting
     {
       int  depth     = 0;
@@ -56,7 +56,7 @@ namespace Squeal
       }
     };
 
-    /// The text between a bracket and its counterpart; empty where there is none.
+    /// Text between a bracket and its counterpart; empty if there is none.
     std::string inside_brackets(const std::string &text, const std::size_t open)
     {
       Nesting nesting;
@@ -87,7 +87,7 @@ namespace Squeal
       return result;
     }
 
-    /// The text of option Name "..." among the options of a number.
+    /// Text of the option Name "..." of a number.
     std::string onelab_name(const std::vector<std::string> &options)
     {
       const Pattern name = Pattern::compile(R"re(Name\s*"([^"]*)".*)re");

@@ -32,11 +32,11 @@ namespace Squeal
   {
     declarations.add(
       "System", file,
-      "Folder with a system.json and its matrices, or that file: the run is about this system instead of a mesh. Stability, "
-      "reduction, sweep, sensitivity, geometry (designs), search (with uncertain parameters), robustness and updating accept one. Empty: the "
-      "system comes from the geometry.");
+      "Folder with a system.json and its matrices, or that file: the run uses this system instead of a mesh. Available for stability, "
+      "reduction, sweep, sensitivity, geometry (designs), search (with uncertain parameters), robustness and updating. Empty: the system "
+      "comes from the geometry.");
     declarations.add_text(
-      "System values", "Values of parameters of the system where they differ from those in the file, such as mu = 0.3, omega = 12.6.",
+      "System values", "Parameter values that replace those in the system file, such as mu = 0.3, omega = 12.6.",
       [this] {
         std::string result;
         for (const auto &[name, value] : values)
@@ -52,7 +52,7 @@ namespace Squeal
             const auto sides = trimmed_parts(part, "=");
             const auto value = sides.size() == 2 ? parse_number(sides[1]) : std::nullopt;
             if (!value || sides[0].empty() || !values.emplace(sides[0], *value).second)
-              throw ParameterError(in_quotes(part) + " does not give one parameter one value", "parameter System values",
+              throw ParameterError(in_quotes(part) + " does not assign one value to one parameter", "parameter System values",
                                    "write name = number, separated by commas");
           }
       });

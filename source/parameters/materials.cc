@@ -44,12 +44,13 @@ namespace Squeal
 
     const ListFormat axes_list = {"Materials/Axes",
                                   "not the axes of a volume",
-                                  "volume: x, y, z of a vector along axis 1, x, y, z of another one in the plane of axes 1 and 2; "
+                                  "volume: x, y, z of a vector along axis 1, x, y, z of a second one in the plane of axes 1 and 2; "
                                   "volume: ...",
                                   "volume",
                                   {6}};
 
-    /// Least determinant of the compliance over the product of its diagonal; ν = 0.4999 of an isotropic material leaves 4.5e-4.
+    /// Smallest determinant of the compliance relative to the product of its diagonal; 4.5e-4 for an isotropic material with ν = 0.4999
+    /// [-].
     constexpr double least_determinant = 4e-4;
 
     /// Sine of the angle between two vectors below which they count as parallel.
@@ -62,16 +63,15 @@ namespace Squeal
       declarations.add("Poisson ratio", material.poisson_ratio, "none", "Poisson's ratio.", {-1., 0.5});
       declarations.add("Density", material.density, "kg/m^3", "Mass density.", {0.});
       declarations.add("Rayleigh alpha", material.rayleigh_alpha, "1/s",
-                       "Damping in proportion to the mass, C = alpha M + beta K: modes of omega are damped by the ratio alpha / (2 "
+                       "Mass-proportional damping, C = alpha M + beta K: the damping ratio of a mode at omega is alpha / (2 "
                        "omega).",
                        {0.});
-      declarations.add("Rayleigh beta", material.rayleigh_beta, "s",
-                       "Damping in proportion to the stiffness of the material, mounts excluded: modes of omega are damped by the ratio "
-                       "beta omega / 2.",
-                       {0.});
+      declarations.add(
+        "Rayleigh beta", material.rayleigh_beta, "s",
+        "Stiffness-proportional damping of the material, without mounts: the damping ratio of a mode at omega is beta omega / 2.", {0.});
     }
 
-    /// The compliance of an orthotropic material is positive definite.
+    /// Checks that the compliance of an orthotropic material is positive definite.
     void check_constants(const std::string &where, const Material &material)
     {
       const Orthotropy &o  = *material.orthotropy;
@@ -80,8 +80,8 @@ namespace Squeal
       for (const auto &[name, value] : {std::pair("E1", E1), {"E2", o.E2}, {"E3", o.E3}, {"G12", o.G12}, {"G13", o.G13}, {"G23", o.G23}})
         if (!(value > 0.))
           refuse(text(name, " is ", exact_text(value), " Pa"), "give positive moduli");
-      const std::string convention  = "nu12 = -eps2/eps1 under stress along axis 1, so that nu12/E1 = nu21/E2: exchange nu_ij and nu_ji if "
-                                      "they are those of another convention";
+      const std::string convention  = "nu12 = -eps2/eps1 under stress along axis 1, so that nu12/E1 = nu21/E2: exchange nu_ij and nu_ji "
+                                      "if yours follow the other convention";
       const auto        check_ratio = [&](const char *axes, const double nu, const double E_i, const double E_j) {
         if (!(nu * nu < E_i / E_j))
           refuse(text("the strain energy is not positive: nu", axes, "^2 is ", nu * nu, ", not below E", axes[0], "/E", axes[1], " = ",
@@ -94,7 +94,7 @@ namespace Squeal
       const double determinant = 1. - nu12 * nu12 * o.E2 / E1 - o.nu13 * o.nu13 * o.E3 / E1 - o.nu23 * o.nu23 * o.E3 / o.E2 -
                                  2. * nu12 * o.nu13 * o.nu23 * o.E3 / E1;
       if (!(determinant >= least_determinant))
-        refuse(text("the strain energy is not positive, or the material almost incompressible: 1 - nu12^2 E2/E1 - nu13^2 E3/E1 - nu23^2 "
+        refuse(text("the strain energy is not positive, or the material is almost incompressible: 1 - nu12^2 E2/E1 - nu13^2 E3/E1 - nu23^2 "
                     "E3/E2 - 2 nu12 nu13 nu23 E3/E1 is ",
                     determinant, ", not at least ", least_determinant),
                "give smaller Poisson's ratios; " + convention);
@@ -107,7 +107,7 @@ namespace Squeal
       const double      sizes = std::hypot(v[0], v[1], v[2]) * std::hypot(v[3], v[4], v[5]);
       const std::string where = "parameter Materials/Axes, volume " + legible(axes.volume);
       if (!(sizes > 0.))
-        throw ParameterError("a vector is zero", where, "give two vectors with a length");
+        throw ParameterError("a vector is zero", where, "give two nonzero vectors");
       if (!(cross > least_sine * sizes))
         throw ParameterError("the two vectors are parallel", where, "give two vectors that span the plane of axes 1 and 2");
     }
@@ -136,10 +136,10 @@ namespace Squeal
               "give a value above -1 and up to 0.4999 (the stiffness of an incompressible material is infinite)");
       require(material.density > 0., "the density is " + exact_text(material.density) + " kg/m^3", "Density", "give a positive value");
       require(material.rayleigh_alpha >= 0. && std::isfinite(material.rayleigh_alpha),
-              "the damping in proportion to the mass is " + exact_text(material.rayleigh_alpha) + " 1/s", "Rayleigh alpha",
+              "the mass-proportional damping is " + exact_text(material.rayleigh_alpha) + " 1/s", "Rayleigh alpha",
               "give a finite value >= 0");
       require(material.rayleigh_beta >= 0. && std::isfinite(material.rayleigh_beta),
-              "the damping in proportion to the stiffness is " + exact_text(material.rayleigh_beta) + " s", "Rayleigh beta",
+              "the stiffness-proportional damping is " + exact_text(material.rayleigh_beta) + " s", "Rayleigh beta",
               "give a finite value >= 0");
     }
   } // namespace
@@ -175,47 +175,49 @@ namespace Squeal
     declare_material(declarations, "Pin material", pin);
 
     declarations.enter("Materials");
-    declare_list(declarations, "Volumes", volumes,
-                 "Volumes of other materials, such as a single pin, or the backplate of a pad, as a list `volume: Young modulus, Poisson "
-                 "ratio, density, Rayleigh alpha, Rayleigh beta; ...`; without the last two they are not damped. Units: Pa, none, kg/m^3, "
-                 "1/s, s.",
-                 volume_list,
-                 {&VolumeMaterial::young_modulus, &VolumeMaterial::poisson_ratio, &VolumeMaterial::density, &VolumeMaterial::rayleigh_alpha,
-                  &VolumeMaterial::rayleigh_beta},
-                 &VolumeMaterial::volume);
-    declare_list(declarations, "Orthotropic", orthotropic,
-                 "Volumes of orthotropic materials, such as brake linings, as a list `volume: E1, E2, E3, nu12, nu13, nu23, G12, G13, G23, "
-                 "density, Rayleigh alpha, Rayleigh beta; ...`; without the last two they are not damped. Axes: 1 radial, 2 tangential, 3 "
-                 "axial about the z axis, or those of Axes. nu12 = -eps2/eps1 under stress along axis 1, and so on: nu_ij/E_i = nu_ji/E_j. "
-                 "Units: Pa, none, Pa, kg/m^3, 1/s, s.",
-                 orthotropic_list,
-                 {&VolumeMaterial::young_modulus, orthotropic_number(&Orthotropy::E2), orthotropic_number(&Orthotropy::E3),
-                  &VolumeMaterial::poisson_ratio, orthotropic_number(&Orthotropy::nu13), orthotropic_number(&Orthotropy::nu23),
-                  orthotropic_number(&Orthotropy::G12), orthotropic_number(&Orthotropy::G13), orthotropic_number(&Orthotropy::G23),
-                  &VolumeMaterial::density, &VolumeMaterial::rayleigh_alpha, &VolumeMaterial::rayleigh_beta},
-                 &VolumeMaterial::volume);
+    declare_list(
+      declarations, "Volumes", volumes,
+      "Volumes of other materials, such as a single pin or the backplate of a pad, as a list `volume: Young modulus, Poisson ratio, "
+      "density, Rayleigh alpha, Rayleigh beta; ...`; undamped without the last two. Units: Pa, none, kg/m^3, 1/s, s.",
+      volume_list,
+      {&VolumeMaterial::young_modulus, &VolumeMaterial::poisson_ratio, &VolumeMaterial::density, &VolumeMaterial::rayleigh_alpha,
+       &VolumeMaterial::rayleigh_beta},
+      &VolumeMaterial::volume);
+    declare_list(
+      declarations, "Orthotropic", orthotropic,
+      "Volumes of orthotropic materials, such as brake linings, as a list `volume: E1, E2, E3, nu12, nu13, nu23, G12, G13, G23, density, "
+      "Rayleigh alpha, Rayleigh beta; ...`; undamped without the last two. Axes: 1 radial, 2 tangential, 3 axial about the z axis, or "
+      "those of Axes. nu12 = -eps2/eps1 under stress along axis 1, and so on: nu_ij/E_i = nu_ji/E_j. Units: Pa, none, Pa, kg/m^3, 1/s, s.",
+      orthotropic_list,
+      {&VolumeMaterial::young_modulus, orthotropic_number(&Orthotropy::E2), orthotropic_number(&Orthotropy::E3),
+       &VolumeMaterial::poisson_ratio, orthotropic_number(&Orthotropy::nu13), orthotropic_number(&Orthotropy::nu23),
+       orthotropic_number(&Orthotropy::G12), orthotropic_number(&Orthotropy::G13), orthotropic_number(&Orthotropy::G23),
+       &VolumeMaterial::density, &VolumeMaterial::rayleigh_alpha, &VolumeMaterial::rayleigh_beta},
+      &VolumeMaterial::volume);
     std::vector<std::function<double &(MaterialAxes &)>> components;
     for (std::size_t i = 0; i < 6; ++i)
       components.emplace_back([i](MaterialAxes &entry) -> double & { return entry.vectors[i]; });
     declare_list(
       declarations, "Axes", axes,
-      "Fixed axes of orthotropic volumes as a list `volume: x, y, z, x, y, z; ...`: a vector along axis 1 and another one in the "
-      "plane of axes 1 and 2, of any length. Units: none.",
+      "Fixed axes of orthotropic volumes as a list `volume: x, y, z, x, y, z; ...`: a vector along axis 1 and a second one in the plane "
+      "of axes 1 and 2, of any length. Units: none.",
       axes_list, components, &MaterialAxes::volume);
 
     declarations.enter("Mounts");
     declare_list(declarations, "Elastic mounts", mounts,
-                 "Elastic foundations as a list `surface: radial, tangential, axial; ...`: named surface and its stiffness per "
-                 "area in the directions of the disc's axis. Empty: the disc turns freely. Units: N/m^3.",
+                 "Elastic foundations as a list `surface: radial, tangential, axial; ...`: named surface and its stiffness per area in the "
+                 "directions of the disc axis. Empty: the disc turns freely. Units: N/m^3.",
                  mount_list, {&Mount::radial, &Mount::tangential, &Mount::axial}, &Mount::surface);
-    declare_list(declarations, "Dashpots", dashpots,
-                 "Viscous dampers between surfaces and the ground as a list `surface: radial, tangential, axial; ...`: named surface "
-                 "and its damping coefficient per area in the directions of the disc's axis. They hold nothing at rest. Units: N s/m^3.",
-                 dashpot_list, {&Mount::radial, &Mount::tangential, &Mount::axial}, &Mount::surface);
-    declare_list(declarations, "Added masses", masses,
-                 "Masses that move with surfaces, such as those of shims, clips or a piston, as a list `surface: mass; ...`: named surface "
-                 "and mass per area. Units: kg/m^2.",
-                 mass_list, {&SurfaceMass::mass}, &SurfaceMass::surface);
+    declare_list(
+      declarations, "Dashpots", dashpots,
+      "Viscous dampers between surfaces and the ground as a list `surface: radial, tangential, axial; ...`: named surface and its "
+      "damping coefficient per area in the directions of the disc axis. They carry no static load. Units: N s/m^3.",
+      dashpot_list, {&Mount::radial, &Mount::tangential, &Mount::axial}, &Mount::surface);
+    declare_list(
+      declarations, "Added masses", masses,
+      "Masses that move with surfaces, such as shims, clips or a piston, as a list `surface: mass; ...`: named surface and mass per "
+      "area. Units: kg/m^2.",
+      mass_list, {&SurfaceMass::mass}, &SurfaceMass::surface);
   }
 
   void MaterialParameters::check() const
@@ -231,7 +233,7 @@ namespace Squeal
       {
         if (std::none_of(orthotropic.begin(), orthotropic.end(), names(entry.volume)))
           throw ParameterError("volume " + in_quotes(entry.volume) + " has axes, but no orthotropic material", "parameter Materials/Axes",
-                               "give its constants in Materials/Orthotropic, or leave its axes out");
+                               "give its constants in Materials/Orthotropic, or remove its axes");
         check_axes(entry);
       }
     const auto check_mounts = [](const std::vector<Mount> &list, const std::string &name, const std::string &quantity, const char *unit) {
@@ -362,10 +364,11 @@ namespace Squeal
   void DampingParameters::declare(Declarations &declarations)
   {
     declarations.enter("Damping");
-    declare_list(declarations, "Modal damping ratio", modal_ratios,
-                 "Damping ratios of the real coupled modes as a list `frequency: ratio, ...` over ascending frequencies, linear in "
-                 "between and constant beyond the ends. Empty: none. Units: Hz and none.",
-                 ratio_list, {&ModalDampingRatio::frequency, &ModalDampingRatio::ratio});
+    declare_list(
+      declarations, "Modal damping ratio", modal_ratios,
+      "Damping ratios of the real coupled modes as a list `frequency: ratio, ...` over ascending frequencies, interpolated linearly and "
+      "constant beyond the ends. Empty: none. Units: Hz and none.",
+      ratio_list, {&ModalDampingRatio::frequency, &ModalDampingRatio::ratio});
   }
 
   void DampingParameters::check() const
@@ -375,13 +378,13 @@ namespace Squeal
       {
         if (!(entry.frequency >= 0.) || !std::isfinite(entry.frequency))
           throw ParameterError("the frequency " + exact_text(entry.frequency) + " Hz is not a finite value >= 0", where,
-                               "give frequencies that are not negative");
+                               "give frequencies >= 0");
         if (!(entry.ratio >= 0. && entry.ratio < 1.))
           throw ParameterError("the damping ratio " + exact_text(entry.ratio) + " at " + exact_text(entry.frequency) +
                                  " Hz is not in [0, 1)",
-                               where, "give a ratio of the critical damping, 0.01 for one per cent");
+                               where, "give a fraction of critical damping, 0.01 for one per cent");
         if (&entry != &modal_ratios.front() && !(entry.frequency > (&entry - 1)->frequency))
-          throw ParameterError("the frequency " + exact_text(entry.frequency) + " Hz does not exceed the one before it, " +
+          throw ParameterError("the frequency " + exact_text(entry.frequency) + " Hz does not exceed the previous one, " +
                                  exact_text((&entry - 1)->frequency) + " Hz",
                                where, "give each frequency once, in ascending order");
       }

@@ -16,10 +16,10 @@ namespace Squeal
 
   namespace
   {
-    /// Two groups of digits that a comma joins and nothing else continues: "0,4", also in "pin: 0,4; ..."; not in "1,2,3".
+    /// Two groups of digits joined by a single comma: "0,4", also in "pin: 0,4; ..."; not in "1,2,3".
     struct JoinedDigits
     {
-      std::string before, after; ///< of the comma
+      std::string before, after; ///< the comma
 
       bool is_fraction() const
       {
@@ -40,15 +40,15 @@ namespace Squeal
       return result;
     }
 
-    /// Commas with a blank on some side.
+    /// Number of commas with a blank on either side.
     std::ptrdiff_t n_spaced_commas(const std::string &text)
     {
       static const std::regex spaced(R"(\s,|,\s)");
       return std::distance(std::sregex_iterator(text.begin(), text.end(), spaced), std::sregex_iterator());
     }
 
-    /// Whether commas look like decimal ones: digits behind one begin with zero; semicolons separate the numbers; or some commas have a
-    /// blank on some side and all others join digits, several of them or behind a zero.
+    /// True if commas look like decimal commas: digits after one begin with zero; semicolons separate the numbers; or some commas have a
+    /// blank on either side and all others join digits, several of them or after a zero.
     bool has_decimal_commas(const std::string &list, const std::vector<JoinedDigits> &joined)
     {
       if (joined.empty())
@@ -64,9 +64,9 @@ namespace Squeal
   std::vector<std::string> split_numbers(const std::string &list, const std::string &what, const std::string &where)
   {
     if (const auto joined = joined_digits(list); has_decimal_commas(list, joined))
-      throw ParameterError(what + " has commas that look like decimal ones: " + in_quotes(list), where,
+      throw ParameterError(what + " has commas that look like decimal commas: " + in_quotes(list), where,
                            "write decimal points, " + joined.front().before + "." + joined.front().after +
-                             "; in a list of integers put a blank behind every comma");
+                             "; in a list of integers put a blank after every comma");
     return split_string_list(list, ',');
   }
 
@@ -81,7 +81,7 @@ namespace Squeal
     for (auto number = numbers.begin(); number != numbers.end(); ++number)
       if (std::find(numbers.begin(), number, *number) != number)
         throw ParameterError(exact_text(*number) + " is given twice in " + in_quotes(exact_text(numbers)),
-                             std::string("parameter ") + parameter, "give each value once; decimals have a point, not a comma");
+                             std::string("parameter ") + parameter, "give each value once; write decimals with a point, not a comma");
   }
 
   void ListFormat::refuse(const std::string &what, const std::string &list) const
@@ -107,7 +107,7 @@ namespace Squeal
           format.refuse(in_quotes(part) + " is " + format.refusal, text);
         ListEntry entry{part, halves[0], {}};
         if (has_key && entry.key.empty())
-          format.refuse(in_quotes(part) + " is " + format.refusal + ": it names no " + format.key);
+          format.refuse(in_quotes(part) + " is " + format.refusal + ": it lacks the name of a " + format.key);
         if (has_key && !seen.insert(entry.key).second)
           throw ParameterError(format.key + (" " + in_quotes(entry.key)) + " is given twice", where,
                                std::string("give each ") + format.key + " once");

@@ -24,7 +24,7 @@ namespace Squeal
 
     constexpr const char *blanks = " \t\r\n\v\f";
 
-    // Far more than a run needs; devices have no end, and files that include others twice each multiply.
+    // Far more than a run needs; devices have no end, and nested double includes multiply
     constexpr std::streamsize largest_file       = 1 << 24; // [byte]
     constexpr unsigned int    most_files         = 1000;
     constexpr std::size_t     most_open_sections = 100;
@@ -34,7 +34,7 @@ namespace Squeal
       return "file " + legible(file) + ", line " + std::to_string(line);
     }
 
-    /// The text of a file without its byte order mark; @p where names it in messages.
+    /// Text of a file without its byte order mark; @p where is its name in messages.
     std::string read_text(const std::string &file, const std::string &where)
     {
       std::error_code ignored;
@@ -46,7 +46,7 @@ namespace Squeal
       std::string text(largest_file + 1, '\0');
       stream.read(text.data(), largest_file + 1);
       if (stream.bad())
-        throw FileError("the parameter file cannot be read to its end", where, "check the disk that it is on");
+        throw FileError("the parameter file cannot be read completely", where, "check the disk that it is on");
       if (stream.gcount() > largest_file)
         throw FileError("the parameter file is larger than " + std::to_string(largest_file) + " bytes", where, "name a parameter file");
       text.resize(stream.gcount());
@@ -54,7 +54,7 @@ namespace Squeal
       if (starts_with(text, "\xFF\xFE") || starts_with(text, "\xFE\xFF"))
         throw ParameterError("the parameter file is encoded as UTF-16", where, "save it as UTF-8");
       if (const auto zero = text.find('\0'); zero != std::string::npos)
-        throw ParameterError("the parameter file is no text: it holds a zero byte",
+        throw ParameterError("the parameter file is not a text: it contains a zero byte",
                              place(file, 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(zero), '\n')),
                              "give a text file in UTF-8");
       constexpr const char *byte_order_mark = "\xEF\xBB\xBF";
@@ -64,7 +64,7 @@ namespace Squeal
     constexpr const char *how_to_quote =
       R"(write it between double quotes, with \" for a quote in it, \\ for a backslash, \n for a line break)";
 
-    /// Position of the quote that closes a text which begins with one; the end of the text where there is none.
+    /// Position of the closing quote of a text that begins with one; the end of the text if there is none.
     std::size_t closing_quote(const std::string &text)
     {
       std::size_t i = 1;
@@ -73,25 +73,25 @@ namespace Squeal
       return std::min(i, text.size());
     }
 
-    /// The value on a line, whose comment begins at the first `#` outside quotes.
+    /// Value on a line, up to the first `#` outside quotes.
     std::string value_before_comment(const std::string &text, const std::string &where)
     {
       const std::string whole   = trim_copy(text);
       const std::size_t comment = whole.find('#', starts_with(whole, "\"") ? closing_quote(whole) : 0);
       const auto        is_word = [&](const std::size_t i) { return i < whole.size() && std::strchr(blanks, whole[i]) == nullptr; };
       if (comment != std::string::npos && comment > 0 && whole[0] != '"' && is_word(comment - 1) && is_word(comment + 1))
-        throw ParameterError("`#` begins a comment, and cuts the value " + in_quotes(whole) + " short", where,
+        throw ParameterError("`#` begins a comment and truncates the value " + in_quotes(whole) + " ", where,
                              "put the value between double quotes, or a blank before the comment");
       return read_value(whole.substr(0, comment), where);
     }
 
-    /// Reads a file and those that it includes.
+    /// Reads a file and its includes.
     class Reader
     {
     public:
       std::vector<ParameterStatement> statements;
 
-      /// @p where names the file, or the line that includes it.
+      /// @p where is the file, or the line that includes it.
       void read(const std::string &file, const std::string &where)
       {
         refuse_cycle(file, where);
@@ -129,7 +129,7 @@ namespace Squeal
         std::string name, where;
       };
 
-      /// Throws ParameterError if the file is among those that are being read.
+      /// Throws ParameterError if the file is already being read.
       void refuse_cycle(const std::string &file, const std::string &where) const
       {
         std::error_code ignored;
@@ -162,7 +162,7 @@ namespace Squeal
         if (key == "subsection" || key == "SUBSECTION")
           {
             if (sections.size() == most_open_sections)
-              throw ParameterError("more than " + std::to_string(most_open_sections) + " sections are open, one in the other", where,
+              throw ParameterError("more than " + std::to_string(most_open_sections) + " sections are nested", where,
                                    "close each section by a line `end`");
             sections.push_back({single_spaced(rest), where});
             statements.push_back({path(""), "", where});
@@ -170,7 +170,7 @@ namespace Squeal
         else if ((key == "end" || key == "END") && rest.empty())
           {
             if (sections.size() == outer_depth)
-              throw ParameterError("`end` closes no section", where, "remove it, or add the `subsection` that it belongs to");
+              throw ParameterError("`end` closes no section", where, "remove it, or add the matching `subsection`");
             sections.pop_back();
           }
         else if (key == "set" || key == "SET")
@@ -189,12 +189,12 @@ namespace Squeal
             read(fs::exists(beside, ignored) ? beside.string() : name, where + ", which includes " + in_quotes(name));
           }
         else
-          throw ParameterError(in_quotes(text) + " is no line of a parameter file", where,
+          throw ParameterError(in_quotes(text) + " is not a valid line of a parameter file", where,
                                "write `subsection NAME`, `end`, `set NAME = VALUE`, `include FILE`, or a comment after `#`");
       }
 
       unsigned int             n_files = 0;
-      std::vector<std::string> open_files; ///< from the outermost to the one that is read
+      std::vector<std::string> open_files; ///< from the outermost to the current one
       std::vector<Section>     sections;
     };
   } // namespace
@@ -230,10 +230,9 @@ namespace Squeal
       return whole;
     const std::size_t end = closing_quote(whole);
     if (end + 1 != whole.size())
-      throw ParameterError(
-        "the value " + in_quotes(whole) +
-          (end == whole.size() ? " does not end with the quote that it begins with" : " goes on behind its closing quote"),
-        where, how_to_quote);
+      throw ParameterError("the value " + in_quotes(whole) +
+                             (end == whole.size() ? " lacks its closing quote" : " continues after its closing quote"),
+                           where, how_to_quote);
     std::string result;
     for (std::size_t i = 1; i < end; ++i)
       if (whole[i] != '\\')
@@ -241,7 +240,8 @@ namespace Squeal
       else if (const char escaped = whole[++i]; std::strchr(R"("\n)", escaped) != nullptr)
         result += escaped == 'n' ? '\n' : escaped;
       else
-        throw ParameterError("the value " + in_quotes(whole) + " holds " + in_quotes(whole.substr(i - 1, 2)), where, how_to_quote);
+        throw ParameterError("the value " + in_quotes(whole) + " contains the invalid escape " + in_quotes(whole.substr(i - 1, 2)), where,
+                             how_to_quote);
     return result;
   }
 } // namespace Squeal

@@ -20,16 +20,17 @@ namespace Squeal
 {
   namespace
   {
-    /// Distance of -1/β from zero over the radius of the band from which the search for eigenvalues does not meet them [-].
+    /// Distance of -1/β from zero relative to the radius of the band, above which the eigenvalues gathered there do not affect the search
+    /// [-].
     constexpr double clear_of_accumulation = 1.2;
 
-    /// Characters of an unknown name that are held against the known ones: no known one is as long.
+    /// Characters of an unknown name that are compared with known ones, which are all shorter.
     constexpr std::size_t longest_name = 200;
 
-    /// α over the reach of the band up to which eigenvalues of waves not much faster than those of the band lie in it [-].
+    /// α relative to the radius of the band, above which eigenvalues of waves far above the band may be in it [-].
     constexpr double most_damping_by_mass = 4.;
 
-    /// Levenshtein distance without regard to case.
+    /// Case-insensitive Levenshtein distance.
     unsigned int edit_distance(const std::string &a, const std::string &b)
     {
       const auto                small = [](const char c) { return std::tolower(static_cast<unsigned char>(c)); };
@@ -49,8 +50,7 @@ namespace Squeal
       return row[b.size()];
     }
 
-    /// Edits that lead from one name to another, words compared with their best counterparts: words may be left out, exchanged or cut
-    /// short, each at the price of one edit.
+    /// Edit distance between two names, word by word with the best match: omitting, exchanging or abbreviating a word counts as one edit.
     unsigned int word_distance(const std::string &written, const std::string &name)
     {
       using dealii::Utilities::split_string_list;
@@ -70,7 +70,7 @@ namespace Squeal
       return sum;
     }
 
-    /// Edits between two paths; a wrong section counts little, so that the right name in the wrong section is found.
+    /// Edit distance between two paths; a wrong section counts little, so that the right name in the wrong section is found.
     unsigned int path_distance(const std::string &written, const std::string &candidate)
     {
       const auto split = [](const std::string &path) {
@@ -85,7 +85,7 @@ namespace Squeal
       return wrong_section * distance(written_name, candidate_name) + std::min(distance(written_section, candidate_section), wrong_section);
     }
 
-    /// Refuses a name that was not declared.
+    /// Rejects an undeclared name.
     void check_name(const ParameterStatement &statement, const std::vector<std::string> &known)
     {
       if (std::find(known.begin(), known.end(), statement.path) != known.end())
@@ -106,7 +106,7 @@ namespace Squeal
                            "the nearest known name is `" + nearest + "`; squeal --print-parameters lists all");
     }
 
-    /// Paths of all parameters, and of the sections that they are in.
+    /// Paths of all parameters and their sections.
     std::vector<std::string> known_names(const Declarations &declarations)
     {
       std::vector<std::string> names;
@@ -120,7 +120,7 @@ namespace Squeal
       return names;
     }
 
-    /// Sets a parameter to what a statement says.
+    /// Sets a parameter from a statement.
     void assign(const DeclaredParameter &parameter, const ParameterStatement &statement)
     {
       try
@@ -143,20 +143,20 @@ namespace Squeal
       return {single_spaced(text.substr(0, equal)), read_value(text.substr(equal + 1), where), where};
     }
 
-    /// Declares the parameter that names the study.
+    /// Declares the parameter that selects the study.
     void declare_study(Declarations &declarations, const Study *&study)
     {
       std::vector<std::string> names;
       for (const Study *known : studies())
         names.emplace_back(known->name);
       declarations.add_choice(
-        "Study", names, "The question that the run answers.", [&study] { return study->name; },
+        "Study", names, "Study to be run.", [&study] { return study->name; },
         [&study](const std::string &name) {
           study = *std::find_if(studies().begin(), studies().end(), [&](const Study *known) { return known->name == name; });
         });
     }
 
-    /// Geometry/File as the last statement about it says.
+    /// Geometry/File from the last statement that sets it.
     std::string geometry_file(const std::vector<ParameterStatement> &statements)
     {
       std::string result = GeometryParameters().file;
@@ -172,9 +172,9 @@ namespace Squeal
     declare_study(declarations, study);
     declarations.add(
       "Accuracy", goal,
-      "How accurate frequencies shall be; divergence rates in percentage points to a tenth of that. Chooses elements, mesh, solver and "
-      "tolerances in place of those below; Study = stability estimates what is achieved, mode by mode, with a second, coarser mesh. as "
-      "given: parameters below hold, and the error of the mesh is estimated only with Discretization/Coarser mesh.");
+      "Required accuracy of frequencies; a tenth of it, in percentage points, for divergence rates. Chooses elements, mesh, solver and "
+      "tolerances instead of those below; Study = stability estimates the achieved accuracy of each mode with a second, coarser mesh. as "
+      "given: the parameters below are used, and the discretisation error is estimated only with Discretization/Coarser mesh.");
     system.declare(declarations);
     geometry.declare(declarations);
     materials.declare(declarations);
@@ -305,7 +305,7 @@ namespace Squeal
                            "give a positive load; or set Operation/Radial dissipation = none, Operation/Friction slope = 0 and "
                            "Steady sliding/Contact state = equal load");
     if ((is_steady || has_contact_damping()) && !(operation.rotation_speed > 0.))
-      throw ParameterError("the disc does not turn: nothing slides steadily, and contact damping has no sliding speed",
+      throw ParameterError("the disc does not turn: steady sliding and contact damping need a sliding speed",
                            "parameter Operation/Rotation speed",
                            "give a positive speed; or set Operation/Radial dissipation = none, Operation/Friction slope = 0 and "
                            "Steady sliding/Contact state = equal load");
@@ -313,25 +313,25 @@ namespace Squeal
 
   void Parameters::check_damping_in_band() const
   {
-    // Waves with β ω > 2 are overdamped, and one of their two real λ tends to −1/β the faster they are: the finer the mesh, the
-    // more eigenvalues lie there. The list of eigenvalues must end before.
+    // Waves with β ω > 2 are overdamped, and one of their two real λ tends to −1/β for fast waves: the finer the mesh, the more eigenvalues
+    // accumulate there. The list of eigenvalues must end before
     const double radius = clear_of_accumulation * discretization.band().radius();
     for (const auto &[section, material] : materials.all())
       if (const double beta = material.rayleigh_beta; beta * radius >= 1.)
-        throw ParameterError("the damping in proportion to the stiffness, " + exact_text(beta) +
-                               " s, gathers the real eigenvalues of all overdamped waves at -1/beta = " + exact_text(-1. / beta) +
+        throw ParameterError("the stiffness-proportional damping, " + exact_text(beta) +
+                               " s, makes the real eigenvalues of all overdamped waves accumulate at -1/beta = " + exact_text(-1. / beta) +
                                " 1/s, within reach of the band",
                              "parameter " + section + "/Rayleigh beta",
-                             text("give less than ", 1. / radius, " s, let the band end below ",
+                             text("give less than ", 1. / radius, " s, lower the end of the band below ",
                                   hertz(circular_frequency(discretization.maximum_frequency) / (beta * radius)),
                                   " Hz, or give Damping/Modal damping ratio instead"));
 
-    // Waves with α > 2 ω are overdamped, and one of their two real λ tends to −ω²/α: the stronger the damping, the faster the waves,
-    // beyond what the mesh resolves, whose eigenvalues come within reach of the band.
+    // Waves with α > 2 ω are overdamped, and one of their two real λ is about −ω²/α: strong damping moves eigenvalues of fast waves, which
+    // the mesh does not resolve, into the band
     for (const auto &[section, material] : materials.all())
       if (const double alpha = material.rayleigh_alpha; alpha > most_damping_by_mass * radius)
-        throw ParameterError("the damping in proportion to the mass, " + exact_text(alpha) +
-                               " 1/s, brings slow real eigenvalues -omega^2/alpha of waves far beyond the band into it",
+        throw ParameterError("the mass-proportional damping, " + exact_text(alpha) +
+                               " 1/s, moves real eigenvalues -omega^2/alpha of waves far above the band into it",
                              "parameter " + section + "/Rayleigh alpha",
                              text("give at most ", most_damping_by_mass * radius, " 1/s, or give Damping/Modal damping ratio instead"));
   }

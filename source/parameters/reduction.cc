@@ -44,10 +44,10 @@ namespace Squeal
     declarations.enter("Reduction");
     declarations.add(
       "Problem", problem,
-      "What the bases are measured on: frictionless, real coupled modes (section 5 of the paper); friction, complex modes at "
+      "Eigenproblem of the comparison: frictionless, real coupled modes (section 5 of the paper); friction, complex modes at "
       "Operation/Friction coefficient (section 6).");
     declarations.add_text(
-      "Bases", "Names of reduced bases, separated by commas; empty: all that fit the problem.",
+      "Bases", "Names of reduced bases, separated by commas; empty: all bases for the problem.",
       [this] { return boost::algorithm::join(bases, ", "); },
       [this](const std::string &text) {
         bases.clear();
@@ -57,8 +57,8 @@ namespace Squeal
       });
     declarations.add_text(
       "Component modes",
-      "Truncations of the component modes, separated by semicolons: a frequency (all modes below it) or three numbers of "
-      "modes `disc, pins free, pins sliding`, those of all pins together. Units: Hz.",
+      "Truncations of the component modes, separated by semicolons: a frequency (all modes below it) or three numbers of modes `disc, "
+      "pins free, pins sliding`, for all pins together. Units: Hz.",
       [this] {
         std::vector<std::string> texts;
         for (const ModeTruncation &t : truncations)
@@ -72,16 +72,17 @@ namespace Squeal
           truncations.push_back(parse_truncation(entry));
       });
     declarations.add("Coupled frequency", coupled_frequencies, "Hz",
-                     "Real coupled modes below each of these frequencies make the bases `real ...`; 0: those of the band.", {0.});
+                     "Upper frequencies of the real coupled modes in the bases `real ...`, one basis for each; 0: end of the band.", {0.});
     declarations.add("Rank tolerance", rank_tolerance, "none",
-                     "Directions of a basis whose M-norm is below this part of the largest are dropped.", {1e-14, 1e-2});
+                     "Directions of a basis with an M-norm below this fraction of the largest are dropped.", {1e-14, 1e-2});
     declarations.add("Grown tolerances", grown_tolerances, "none",
-                     "Bases `residual-grown`: grown until the estimated relative error of every lambda is below each of these.");
+                     "Estimated relative errors of every lambda at which `residual-grown` bases are complete, one basis for each.");
     declarations.add(
       "Snapshots", snapshots, "none",
-      "Friction coefficients whose complex modes make the basis `POD`; of a system file, values of the parameter mu or else its first.");
-    declarations.add("POD tolerance", pod_tolerance, "none", "Principal axes of the snapshots below this part of the largest are left out.",
-                     {1e-13, 1.});
+      "Friction coefficients of the complex modes in the basis `POD`; for a system file, values of the parameter mu, or else of its "
+      "first parameter.");
+    declarations.add("POD tolerance", pod_tolerance, "none",
+                     "Principal axes of the snapshots below this fraction of the largest are dropped.", {1e-13, 1.});
   }
 
   void ReductionParameters::check() const
@@ -102,14 +103,14 @@ namespace Squeal
   void ReductionParameters::check_of_system() const
   {
     if (coupled_frequencies.empty())
-      throw ParameterError("no frequency up to which real coupled modes make bases", "parameter Reduction/Coupled frequency",
+      throw ParameterError("the list of upper frequencies of real coupled modes is empty", "parameter Reduction/Coupled frequency",
                            "give at least one; 0 means the end of the band");
     check_distinct(coupled_frequencies, "Reduction/Coupled frequency");
     check_distinct(grown_tolerances, "Reduction/Grown tolerances");
     check_distinct(snapshots, "Reduction/Snapshots");
     for (const double tolerance : grown_tolerances)
       if (!(tolerance >= 1e-11 && tolerance <= 1e-1))
-        throw ParameterError("the tolerance " + exact_text(tolerance) + " is out of reach or no accuracy at all",
+        throw ParameterError("the tolerance " + exact_text(tolerance) + " is outside the useful range",
                              "parameter Reduction/Grown tolerances", "give values between 1e-11 and 0.1");
   }
 } // namespace Squeal

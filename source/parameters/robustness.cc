@@ -24,7 +24,7 @@ namespace Squeal
       throw ParameterError(what, where_distributions, change);
     }
 
-    /// Entries between semicolons, each divided at its `=`.
+    /// Entries separated by semicolons, each divided at its `=`.
     std::vector<std::pair<std::string, std::string>> entries_of(const std::string &given, const char *where, const std::string &change)
     {
       std::vector<std::pair<std::string, std::string>> result;
@@ -44,7 +44,7 @@ namespace Squeal
       return result;
     }
 
-    /// Numbers between commas and ` to `, all or none of them with a percent sign.
+    /// Numbers separated by commas and ` to `, all or none with a percent sign.
     std::vector<double> numbers_of(std::string list, const std::string &entry, bool &is_relative)
     {
       boost::replace_all(list, " to ", ",");
@@ -121,10 +121,11 @@ namespace Squeal
                      "samples. Not computed if parameters are correlated.");
     declarations.add("Frequency bands", frequency_bands, "Hz",
                      "Band limits in ascending order: the probability of squeal is also reported for each band between two limits.", {0.});
-    declarations.add("Samples with onsets", n_onsets, "none",
-                     "Number of samples, the first ones, whose modes are followed over the friction coefficients of the section Sweep, to "
-                     "its tolerance: where they begin to grow.",
-                     {0., 1e5});
+    declarations.add(
+      "Samples with onsets", n_onsets, "none",
+      "Number of samples, the first ones, whose modes are followed over the friction coefficients of the section Sweep, to its "
+      "tolerance, to find their onsets of growth.",
+      {0., 1e5});
     declarations.add("Worst samples", n_worst, "none",
                      "Number of samples, those with the largest divergence rates, written as parameter files of full-order runs.",
                      {0., 1000.});
@@ -142,7 +143,7 @@ namespace Squeal
         UncertainParameter parameter{name, {enum_value<DistributionKind>(parts[1]), {}}};
         parameter.for_each_pin = parts[4].matched;
         if (parts[3].matched && parameter.distribution.kind != DistributionKind::normal)
-          refuse_distribution("only a normal distribution is cut off by `in`, not " + in_quotes(given));
+          refuse_distribution("only a normal distribution is truncated by `in`, not " + in_quotes(given));
         parameter.distribution.numbers =
           numbers_of(parts[2].str() + (parts[3].matched ? "," + parts[3].str() : ""), given, parameter.is_relative);
         check_numbers(parameter.distribution, given);

@@ -11,19 +11,19 @@ namespace Squeal
   void SensitivityParameters::declare(Declarations &declarations)
   {
     declarations.enter("Sensitivity");
-    declarations.add("Largest number of modes", modes, "none",
-                     "Modes whose derivatives are found at Operation/Friction coefficient: growing ones, those of the largest "
-                     "divergence rate first; where none grows, the least damped.",
-                     {1, 1000});
+    declarations.add(
+      "Largest number of modes", modes, "none",
+      "Number of modes with derivatives at Operation/Friction coefficient: growing modes by descending divergence rate; if none grows, "
+      "the least damped ones.",
+      {1, 1000});
     declarations.add("Thresholds", thresholds,
-                     "Find the thresholds between Sweep/First and Sweep/Last friction coefficient, and their derivatives.");
+                     "Computes the thresholds between Sweep/First and Sweep/Last friction coefficient, and their derivatives.");
     declarations.add(
       "Geometry", geometry,
-      "Derivatives with respect to lengths of the built-in geometry, disc_pins.geo, and to the place of each pin; they take two "
-      "assemblies each.");
+      "Derivatives with respect to lengths of the built-in geometry, disc_pins.geo, and to the position of each pin; each takes two "
+      "assemblies.");
     declarations.add("Tolerance", tolerance, "none",
-                     "Change of the derivatives of a mode by the last growth of the basis, relative to the largest of them, up to "
-                     "which the basis grows.",
+                     "The basis is extended until the derivatives of a mode change by less than this, relative to the largest of them.",
                      {1e-10, 1e-1});
   }
 
@@ -31,25 +31,24 @@ namespace Squeal
   {
     declarations.enter("Ingredients");
     declarations.add("Frequency tolerance", frequency_tolerance, "%",
-                     "Largest change of a frequency that the cheapest model may make beside the scene as it is given.", {0., 100.});
+                     "Largest acceptable change of a frequency in the cheapest model, relative to the given model.", {0., 100.});
     declarations.add("Divergence tolerance", divergence_tolerance, "percentage points",
-                     "Largest change of a divergence rate that the cheapest model may make beside the scene as it is given.", {0., 100.});
+                     "Largest acceptable change of a divergence rate in the cheapest model, relative to the given model.", {0., 100.});
     declarations.add("Trial friction slope", trial_slope, "s/m",
-                     "Slope of the friction coefficient that is tried where the scene has Operation/Friction slope = 0; 0: none is "
+                     "Trial slope of the friction coefficient if the model has Operation/Friction slope = 0; 0: not "
                      "tried.",
                      {-1e3, 1e3});
     declarations.add("Trial damping ratio", trial_damping_ratio, "none",
-                     "Damping ratio of all modes that is tried where the scene has no Damping/Modal damping ratio; 0: none is tried.",
-                     {0., 0.99});
+                     "Trial damping ratio of all modes if the model has no Damping/Modal damping ratio; 0: not tried.", {0., 0.99});
   }
 
   void IngredientsParameters::check() const
   {
-    // A tolerance of zero refuses models that differ by rounding, and so all of them
+    // Zero would reject all models, because they differ by rounding
     for (const auto &[name, value, unit] : {std::tuple{"Frequency tolerance", frequency_tolerance, " %"},
                                             std::tuple{"Divergence tolerance", divergence_tolerance, " percentage points"}})
       if (!(value > 0.))
-        throw ParameterError("the accuracy asked for is " + exact_text(value) + unit, std::string("parameter Ingredients/") + name,
+        throw ParameterError("the required accuracy is " + exact_text(value) + unit, std::string("parameter Ingredients/") + name,
                              "give a positive change that is still acceptable");
   }
 } // namespace Squeal

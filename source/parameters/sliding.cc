@@ -26,35 +26,39 @@ namespace Squeal
   void SlidingParameters::declare(Declarations &declarations)
   {
     declarations.enter("Steady sliding");
-    declarations.add("Contact state", state,
-                     "State about which the system is linearised: equal load, every contact node is closed and carries the same share "
-                     "of the load of its side; steady sliding, the quasi-static solution with unilateral contact and friction, in "
-                     "which nodes may lift off. All other parameters of this section belong to steady sliding.");
+    declarations.add(
+      "Contact state", state,
+      "Contact state for the linearisation: equal load, all contact nodes are closed and carry equal shares of the load of their side; "
+      "steady sliding, the quasi-static solution with unilateral contact and friction, in which nodes may lift off. All other parameters "
+      "of this section apply to steady sliding only.");
     declarations.add(
       "Control", control,
-      "What is given: load per side, the force Operation/Load per side on the rigid backplate of each side; "
-      "displacement, the travel of every backplate; load per pin, a force on each pin; pressure, that on Pressed faces: bodies are "
-      "held by their mounts alone, and may tilt and bend.");
-    declarations.add("Displacement", displacement, "m",
-                     "Travel of each backplate towards the disc, along the axis (a shoe on a rim: along its mean contact normal), from "
-                     "where a pin without gap touches the disc, for Control = displacement.",
-                     {0.});
-    declare_list(declarations, "Loads", pin_loads,
-                 "Forces on the pins for Control = load per pin, as a list `pin: load; ...`; a pin that is not listed gets an equal "
-                 "share of Operation/Load per side, a shoe on a rim all of it. Units: N.",
-                 load_list, {&PinLoad::load}, &PinLoad::pin);
+      "Prescribed quantity: load per side, the force Operation/Load per side on the rigid backplate of each side; displacement, the "
+      "travel of every backplate; load per pin, a force on each pin; pressure, on Pressed faces: bodies are held by their mounts alone, "
+      "and may tilt and bend.");
+    declarations.add(
+      "Displacement", displacement, "m",
+      "Travel of each backplate towards the disc for Control = displacement, along the axis (a shoe on a rim: along its mean contact "
+      "normal), from the position where a pin without gap touches the disc.",
+      {0.});
+    declare_list(
+      declarations, "Loads", pin_loads,
+      "Forces on the pins for Control = load per pin, as a list `pin: load; ...`; each pin not in the list gets an equal share of "
+      "Operation/Load per side, a shoe on a rim the whole load. Units: N.",
+      load_list, {&PinLoad::load}, &PinLoad::pin);
     declarations.add_text(
       "Pressed faces",
-      "Surfaces on which a uniform pressure acts for Control = pressure, separated by commas, such as pad_outer_back, pad_inner_back. The "
-      "resultant on each is Operation/Load per side: the pressure is that load over the area of a flat face, over the size of the mean "
-      "normal times the area of a curved one.",
+      "Surfaces with a uniform pressure for Control = pressure, separated by commas, such as pad_outer_back, pad_inner_back. The "
+      "resultant on each is Operation/Load per side: on a flat face the pressure is load / area, on a curved one load / |area integral "
+      "of the normal|.",
       [this] { return boost::algorithm::join(pressed_faces, ", "); },
       [this](const std::string &text) { pressed_faces = dealii::Utilities::split_string_list(text, ','); });
     declare_list(
       declarations, "Gaps", gaps,
-      "Initial gaps of pins (height tolerance, wear), as a list `pin: gap; pin: gap, sliding taper, radial taper; ...`, "
-      "along the travel of the backplate, positive where the pin does not touch. The gap grows by the tapers per distance from the "
-      "centre of the face along the sliding direction and outwards (a shoe on a rim: along the axis; where the disc does not turn about z: along b). Units: m, none, none.",
+      "Initial gaps of pins (height tolerance, wear), as a list `pin: gap; pin: gap, sliding taper, radial taper; ...`, along the travel "
+      "of the backplate, positive if the pin does not touch. The tapers increase the gap per distance from the centre of the face along "
+      "the sliding direction and outwards (a shoe on a rim: along the axis; if the disc does not turn about z: along b). Units: m, none, "
+      "none.",
       gap_list, {&PinGap::gap, &PinGap::sliding_taper, &PinGap::radial_taper}, &PinGap::pin);
   }
 
@@ -63,7 +67,7 @@ namespace Squeal
     for (const PinLoad &entry : pin_loads)
       if (!(entry.load > 0.))
         throw ParameterError("the load is " + exact_text(entry.load) + " N", "parameter Steady sliding/Loads, pin " + entry.pin,
-                             "give a positive force; a pin that shall not touch gets a gap and no actuator of its own");
+                             "give a positive force; for a pin without contact, give a gap and no load");
     if (control == BackplateControl::displacement && !(displacement > 0.) && gaps.empty())
       throw ParameterError("the backplates do not move", "parameter Steady sliding/Displacement",
                            "give a positive travel, or set Steady sliding/Control = load per side");

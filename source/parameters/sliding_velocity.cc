@@ -15,10 +15,10 @@ namespace Squeal
 {
   namespace
   {
-    /// Deviation of v from a rigid-body motion, over its size, up to which it is rounding [-].
+    /// Relative deviation of v from a rigid-body motion that counts as rounding [-].
     constexpr double rigid_velocity = 1e-12;
 
-    /// Parts of a list between commas that are not in parentheses.
+    /// Parts of a list separated by commas outside parentheses.
     std::vector<std::string> outer_parts(const std::string &list)
     {
       std::vector<std::string> parts(1);
@@ -34,19 +34,19 @@ namespace Squeal
       return parts;
     }
 
-    /// Null if there are not three expressions, or one cannot be understood.
+    /// Null unless there are three valid expressions.
     std::shared_ptr<const dealii::FunctionParser<3>> parsed(const std::string &expressions)
     {
       const std::vector<std::string> parts = outer_parts(expressions);
       if (parts.size() != 3)
         return nullptr;
       auto               function = std::make_shared<dealii::FunctionParser<3>>(3);
-      std::ostringstream unread; // deal.II prints what it throws
+      std::ostringstream unread; // deal.II prints the exceptions it throws
       std::streambuf    *shown = std::cerr.rdbuf(unread.rdbuf());
       try
         {
           function->initialize("x,y,z", parts, {{"pi", M_PI}});
-          for (const unsigned int component : {0, 1, 2}) // parsed when it is first evaluated
+          for (const unsigned int component : {0, 1, 2}) // parsed on first evaluation
             function->value(dealii::Point<3>(1., 1., 1.), component);
         }
       catch (const std::exception &)

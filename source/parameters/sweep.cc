@@ -25,18 +25,18 @@ namespace Squeal
     void check_range(const ValueRange &range, const std::string &what, const std::string &parameters)
     {
       if (range.number == 0)
-        throw ParameterError("no " + what + " is asked for", "parameters " + parameters, "give at least one");
+        throw ParameterError("no " + what + " is given", "parameters " + parameters, "give at least one");
       if (range.number > 1 && !(range.first < range.last))
         throw ParameterError("the range of the " + what + " from " + exact_text(range.first) + " to " + exact_text(range.last) +
                                " does not ascend",
-                             "parameters " + parameters, "give a last value above the first, or ask for one value");
+                             "parameters " + parameters, "give a last value above the first, or one value only");
     }
 
     void check_inside(const std::vector<double> &values, const ValueRange &range, const char *name)
     {
       for (const double value : values)
         if (value < range.first || value > (range.number > 1 ? range.last : range.first))
-          throw ParameterError("the value " + exact_text(value) + " is outside of the sweep", std::string("parameter Sweep/") + name,
+          throw ParameterError("the value " + exact_text(value) + " is outside the sweep", std::string("parameter Sweep/") + name,
                                "give values from " + exact_text(range.first) + " to " + exact_text(range.last) + ", with decimal points");
     }
   } // namespace
@@ -61,37 +61,44 @@ namespace Squeal
     constexpr Range       coefficients      = {0., 10.};
     constexpr std::size_t most_coefficients = 1000;
     declarations.enter("Sweep");
-    declarations.add("First friction coefficient", friction_coefficients.first, "none", "Where the sweep begins.", coefficients);
+    declarations.add("First friction coefficient", friction_coefficients.first, "none", "Start of the sweep.", coefficients);
     declarations.add("Last friction coefficient", friction_coefficients.last, "none", "End of the sweep.", coefficients);
     declarations.add("Number of friction coefficients", friction_coefficients.number, "none",
-                     "Values of the sweep, equally spaced; steps in which modes meet are refined.", {1, 100000});
+                     "Values of the sweep, equally spaced; steps in which modes coalesce are refined.", {1, 100000});
     declarations.add("Tolerance", tolerance, "none",
-                     "Largest estimated relative error of lambda of every mode at every value of the sweep.", {1e-10, 1e-2});
-    declarations.add("Maximum basis", maximum_basis, "vectors",
-                     "Largest reduced basis, at least the real modes; a sweep that would need more keeps what meets the tolerance.", {1});
+                     "Largest estimated relative error of lambda, for every mode at every value of the sweep.", {1e-10, 1e-2});
+    declarations.add(
+      "Maximum basis", maximum_basis, "vectors",
+      "Maximum size of the reduced basis, at least the number of real modes; if a sweep needs more, only values within the tolerance are "
+      "kept.",
+      {1});
     declarations.add("Threshold tolerance", threshold_tolerance, "none",
-                     "Width of the interval of the friction coefficient to which a threshold is located.", {1e-13, 1e-2});
-    declarations.add("Compare dissipation", compare_dissipation, "With radial dissipation, sweep also without it and show both.");
+                     "Largest interval of the friction coefficient in which a threshold is located.", {1e-13, 1e-2});
+    declarations.add("Compare dissipation", compare_dissipation, "With radial dissipation, repeats the sweep without it and shows both.");
     declarations.add("Mode shapes at", mode_shapes, "none",
                      "Friction coefficients at which the leading mode is written as a field, separated by commas.", coefficients,
                      most_coefficients);
-    declarations.add("Complex plane at", planes, "none",
-                     "Friction coefficients at which all modes of the band are written, as in a run at one friction coefficient, and "
-                     "drawn in the complex plane, separated by commas; empty: those of Mode shapes at.",
-                     {}, most_coefficients);
-    declarations.add("Count modes at", counts, "none",
-                     "Friction coefficients at which the modes of the band are counted by the argument principle, which takes no part "
-                     "in finding them, separated by commas.",
-                     {}, most_coefficients);
-    declarations.add("Map parameter", map_parameter,
-                     "Second parameter of a stability map beside the friction coefficient: the load per side or the rotation speed.");
+    declarations.add(
+      "Complex plane at", planes, "none",
+      "Friction coefficients at which all modes of the band are written, as in a run at one friction coefficient, and drawn in the "
+      "complex plane, separated by commas; empty: those of Mode shapes at.",
+      {}, most_coefficients);
+    declarations.add(
+      "Count modes at", counts, "none",
+      "Friction coefficients at which the modes of the band are counted by the argument principle, independently of the eigensolvers, "
+      "separated by commas.",
+      {}, most_coefficients);
+    declarations.add(
+      "Map parameter", map_parameter,
+      "Second parameter of a stability map, in addition to the friction coefficient: the load per side or the rotation speed.");
     declarations.add("First map value", map_values.first, "N or rad/s", "Smallest load or speed of the map.", {0.});
     declarations.add("Last map value", map_values.last, "N or rad/s", "Largest load or speed of the map.", {0.});
-    declarations.add("Number of map values", map_values.number, "none", "Loads or speeds of the map, of equal ratio.", {1, 10000});
+    declarations.add("Number of map values", map_values.number, "none", "Number of loads or speeds in the map, with a constant ratio.",
+                     {1, 10000});
     declarations.add("Map friction coefficients", map_friction_coefficients, "none",
-                     "Friction coefficients of the map, equally spaced over the sweep.", {1, 10000});
+                     "Number of friction coefficients in the map, equally spaced over the sweep.", {1, 10000});
     declarations.add("Parameter", parameter,
-                     "With System: the parameter that varies, its first and last value and their number, such as omega, 6.28, 25.1, 31. "
+                     "With System: the varied parameter, its first and last value and the number of values, such as omega, 6.28, 25.1, 31. "
                      "Empty: mu, from First to Last friction coefficient.");
     declarations.add("Second parameter", second_parameter, "With System: a second parameter of a stability map, likewise. Empty: no map.");
   }
@@ -113,7 +120,7 @@ namespace Squeal
                 parameter.empty() ? "Sweep/First friction coefficient, Last friction coefficient and Number of friction coefficients" :
                                     "Sweep/Parameter");
     if (const auto second = second_varied_parameter(); second && second->name == varied.name)
-      throw ParameterError(in_quotes(second->name) + " is both parameters of the map", "parameter Sweep/Second parameter",
+      throw ParameterError(in_quotes(second->name) + " is used for both parameters of the map", "parameter Sweep/Second parameter",
                            "name another parameter");
     check_distinct(planes, "Sweep/Complex plane at");
     check_distinct(counts, "Sweep/Count modes at");
@@ -136,7 +143,7 @@ namespace Squeal
     check_range(map_values, "map values", "Sweep/First map value, Last map value and Number of map values");
     if (!(map_values.first > 0.))
       throw ParameterError("the map begins at zero", "parameter Sweep/First map value", "give a positive load or speed");
-    // A sweep of one value does not ask for an ascending range
+    // A sweep with one value needs no ascending range
     check_range({friction_coefficients.first, friction_coefficients.last, map_friction_coefficients}, "friction coefficients of the map",
                 "Sweep/First friction coefficient, Last friction coefficient and Map friction coefficients");
   }

@@ -9,7 +9,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Extends a matrix with Aᵀ = sign A, symmetric or skew, to the size of its new last columns, r × k.
+    /// Extends a matrix with Aᵀ = sign A, symmetric or skew, by its new last columns, r × k.
     void border(DenseMatrix &matrix, const DenseMatrix &new_columns, const double sign)
     {
       const Eigen::Index r = new_columns.rows(), old = r - new_columns.cols();
@@ -30,14 +30,14 @@ namespace Squeal
   void ReducedModel::extend(MultiVector given)
   {
     const int old = size();
-    modes.reset(); // which refer to the basis
+    modes.reset(); // they refer to the old basis
     if (old == 0)
       T = std::make_shared<MultiVector>(std::move(given));
     else if (T.use_count() == 1)
       T->append(given);
     else
       T = std::make_shared<MultiVector>(join({&basis(), &given}));
-    // Where they are now
+    // View after a possible reallocation
     const MultiVector vectors = view(*T, old, T->n_columns() - old);
 
     std::map<const LowRankFactor *, bool> is_extended;
@@ -90,10 +90,10 @@ namespace Squeal
     if (!modes)
       {
         auto [squares, V] = symmetric_eigenpairs(stiffness(), mass());
-        // Orthonormal to the last digits: V (3 I − VᵀMV) / 2
+        // Restore orthonormality to the last digits: V (3 I − VᵀMV) / 2
         V = 1.5 * V - 0.5 * V * (V.transpose() * mass() * V).eval();
         Modal result{std::move(squares), V, restricted(V)};
-        // What they are but for rounding errors
+        // Exact values without rounding errors
         result.model.mass_matrix      = DenseMatrix::Identity(size(), size());
         result.model.stiffness_matrix = as_column(result.squares).asDiagonal();
         modes                         = std::make_shared<const Modal>(std::move(result));

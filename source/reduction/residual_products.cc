@@ -13,7 +13,7 @@ namespace Squeal
   {
     using Complex = std::complex<double>;
 
-    /// Diagonal of Xᴴ Y for matrices of real and imaginary halves; rounding may leave the square of a vanishing residual negative.
+    /// Diagonal of Xᴴ Y for matrices of real and imaginary halves, at least zero despite rounding.
     std::vector<double> hermitian_products(const DenseMatrix &X, const DenseMatrix &Y)
     {
       const Eigen::Index    k        = X.cols() / 2;
@@ -27,7 +27,7 @@ namespace Squeal
       return as_column(lambda).unaryExpr([exponent](const Complex &l) { return exponent == 0 ? 1. : exponent == 1 ? l : l * l; });
     }
 
-    /// Of the stiffness (power 0) or the mass (2).
+    /// True for symmetric terms of the stiffness (power 0) or the mass (2).
     bool is_symmetric(const Term &term, const int power)
     {
       return term.matrix && term.is_frictionless() && term.power == power;
@@ -44,7 +44,7 @@ namespace Squeal
   {
     const ParameterValues with_friction = system.at(1., values);
     for (std::size_t k = 0; k < system.terms.size(); ++k)
-      // A coefficient that vanishes here may not vanish elsewhere, but for weights, which the caller answers for
+      // Keep terms that vanish only at these values, except weights, for which the caller is responsible
       if (const Term &term = system.terms[k]; term.vanishes(with_friction) && (!term.weights.empty() || term.coefficient.is_constant()))
         continue;
       else if (term.matrix)
@@ -59,7 +59,7 @@ namespace Squeal
                 n_factor_columns += factor->rank();
               }
         }
-    // What S has of a term whose coefficient is a number leaves nothing
+    // Constant terms of S leave no residual
     sparse.erase(std::remove_if(sparse.begin(), sparse.end(),
                                 [](const Sparse &part) { return is_symmetric(*part.term, 0) && part.term->coefficient.is_constant(); }),
                  sparse.end());
@@ -222,7 +222,7 @@ namespace Squeal
           }
       }
 
-    // Every vector by its own energy: those of motions of light bodies may be many powers of ten beyond those of modes of the band
+    // Scale every vector by its energy: motions of light bodies may exceed modes of the band by many orders of magnitude
     const Eigen::VectorXd scale = pencil.diagonal().cwiseSqrt().cwiseInverse();
     const RealLU          lu    = regular_lu(scale.asDiagonal() * pencil * scale.asDiagonal(), "stiffness of a reduced model");
     H                           = scale.asDiagonal() * H;
@@ -236,7 +236,7 @@ namespace Squeal
   std::vector<ProjectedResiduals::Group> ProjectedResiduals::groups(const ParameterValues &values, const bool transposed) const
   {
     std::vector<Group> result;
-    // Blocks that have the same rows but for a factor, by the number of the factor of low rank that reads φ_r, or -1, and the power
+    // Blocks with equal rows up to a factor, by the index of the low-rank factor applied to φ_r, or -1, and the power
     std::map<std::pair<int, int>, std::vector<std::pair<const Block *, double>>> alike;
     const auto add = [&](const Block &block, const double scale, const int reader, const int power) {
       if (scale != 0.)
@@ -397,7 +397,7 @@ namespace Squeal
 
   DenseMatrix ProjectedResiduals::coordinates(const ModesAt &modes) const
   {
-    // In an M-orthonormal basis
+    // Coordinates in an M-orthonormal basis
     const auto scaled = [&](const ComplexDenseMatrix &X) -> ComplexDenseMatrix {
       const Eigen::VectorXcd factors =
         (X.colwise().norm().transpose().array() * as_column(modes.lambda).array().abs()).inverse().matrix().cast<Complex>();

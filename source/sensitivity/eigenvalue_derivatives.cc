@@ -22,7 +22,7 @@ namespace Squeal
   TermProducts::TermProducts(const std::vector<Term> &terms, const Eigentriples &modes)
     : lambda(modes.lambda)
   {
-    std::map<const SparseMatrix *, ComplexDenseMatrix> of_matrices; // the stiffness of a body is its damping, too
+    std::map<const SparseMatrix *, ComplexDenseMatrix> of_matrices; // the stiffness matrix of a body is also used for its damping
     for (const Term &term : terms)
       {
         Product product{{term.name, term.power, term.coefficient, {}, term.symmetry, {}, {}, term.weights}, {}, {}, {}};
@@ -118,7 +118,7 @@ namespace Squeal
 
   ValueAtCentre value_at_centre(const std::array<Complex, 3> &means)
   {
-    // Richardson's extrapolation to h = 0 of powers h² and h⁴
+    // Richardson extrapolation to h = 0 with powers h² and h⁴
     const Complex of_two   = (4. * means[0] - means[1]) / 3.;
     const Complex of_three = 1.5 * means[0] - 0.6 * means[1] + 0.1 * means[2];
     return {of_three, std::abs(of_three - of_two)};

@@ -13,10 +13,11 @@ namespace Squeal
   {
     using Point = Mesh::Point;
 
-    /// Largest difference of the mesh from the parameters, over the outer radius: polygons of true area are somewhat larger than circles.
+    /// Largest difference of the mesh from the parameters, relative to the outer radius: polygons of true area are slightly larger than
+    /// circles [-].
     constexpr double resemblance = 0.02;
 
-    /// Radii that are equal but for rounding, over the outer radius.
+    /// Difference of equal radii due to rounding, relative to the outer radius [-].
     constexpr double rounding = 1e-9;
 
     /// A pin in the plane of the disc.
@@ -27,11 +28,11 @@ namespace Squeal
       int          side;                 ///< ±1
       double       x, y;                 ///< of its axis [m]
       double       radius;               ///< of its outermost node [m]
-      double       gap = 0.;             ///< to the nearest other pin of its side, or rim [m]
-      double       axis_distance, angle; ///< as the parameters say [m], [degree]
+      double       gap = 0.;             ///< to the nearest other pin on its side, or to a rim [m]
+      double       axis_distance, angle; ///< from the parameters [m], [degree]
     };
 
-    /// The pins with the places that the parameters give them; empty if they are others.
+    /// Pins with positions from the parameters; empty if the mesh has other pins.
     std::vector<PinPlace> places(const Mesh &mesh, const std::vector<unsigned int> &component, const GeometryParameters &parameters)
     {
       std::vector<PinPlace> pins;
@@ -63,7 +64,7 @@ namespace Squeal
       return pins;
     }
 
-    /// What the mesh tells of its size, from the nodes of the disc and of the pins.
+    /// Extent of the mesh, from the nodes of the disc and of the pins.
     struct Extent
     {
       double inner = std::numeric_limits<double>::infinity(), outer = 0., highest = 0.;
@@ -87,7 +88,7 @@ namespace Squeal
       return found;
     }
 
-    /// The pins with what is free around them; empty where the mesh is not that of the parameters.
+    /// Pins and the free space around them; empty if the mesh is not that of the parameters.
     std::vector<PinPlace> pins_of(const Mesh                      &mesh,
                                   const std::vector<unsigned int> &component,
                                   const Extent                    &extent,
@@ -114,7 +115,7 @@ namespace Squeal
       return pins;
     }
 
-    /// ρ of a pin: 1 within, 0 from the nearest other thing on.
+    /// ρ of a pin: 1 inside it, 0 at the nearest other pin or rim and beyond.
     double weight(const PinPlace &pin, const Point &x)
     {
       const double outside = std::hypot(x[0] - pin.x, x[1] - pin.y) - pin.radius;
@@ -139,9 +140,9 @@ namespace Squeal
         motion.velocity.push_back(velocity(mesh.points[n], component[n]));
       result.push_back(std::move(motion));
     };
-    // Linear from the face of the pins to the other one
+    // Linear from the face of the pins to the opposite face
     const auto through_disc = [&](const PinPlace &pin, const Point &x) { return std::clamp(0.5 + pin.side * x[2] / t, 0., 1.); };
-    // In-plane velocity of a node that a pin takes along: its own nodes, and those of the disc
+    // In-plane velocity of a node that moves with a pin: its own nodes, and those of the disc
     const auto taken_along = [&](const PinPlace &pin, const Point &x, const unsigned int k, const auto &inside) {
       if (k != 0 && k != pin.component)
         return Point();
@@ -171,7 +172,7 @@ namespace Squeal
       for (const PinPlace &pin : pins)
         sum += taken_along(pin, x, k,
                            [&](const PinPlace &p, const Point &at) {
-                             // On the way outwards no faster than the outline
+                             // Outside the pin, the velocity is at most that of the outline
                              const double s = std::hypot(at[0] - p.x, at[1] - p.y), slow = s > p.radius ? p.radius / s : 1.;
                              return Point(slow * (at[0] - p.x) / d, slow * (at[1] - p.y) / d, 0.);
                            }) -

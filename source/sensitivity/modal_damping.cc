@@ -13,13 +13,13 @@ namespace Squeal
 {
   namespace
   {
-    /// Difference of two frequencies, over them, below which g' takes the place of a difference: between its error and that by rounding.
+    /// Relative difference of two frequencies below which g' replaces the divided difference: balances its error and rounding [-].
     constexpr double equal_frequencies = 1e-6;
 
-    /// Powers of (K_c + s² M_c)⁻¹ M_c beside that of zero.
+    /// Highest power of (K_c + s² M_c)⁻¹ M_c.
     constexpr int krylov_steps = 3;
 
-    /// Part of a vector outside of others below which it is one of them.
+    /// Component of a unit vector outside a span, below which it is dependent [-].
     constexpr double dependent = 1e-11;
 
     bool is_rate(const Term &term)
@@ -66,7 +66,7 @@ namespace Squeal
       if (const double last = std::sqrt(modes.eigenvalues[n_damped - 1]), next = std::sqrt(modes.eigenvalues[n_damped]);
           next - last <= equal_frequencies * next)
         throw SolverError(text("the band ends between modes of equal frequency, ", hertz(last), " Hz, of which one is damped"),
-                          "derivatives of modal damping", "change Band/Maximum frequency a little");
+                          "derivatives of modal damping", "change Band/Maximum frequency slightly");
     const auto divided_difference = [&](const int i, const int j) {
       const double a = std::sqrt(modes.eigenvalues[i]), b = std::sqrt(modes.eigenvalues[j]), mean = 0.5 * (a + b);
       if (std::abs(a - b) > equal_frequencies * mean)
@@ -121,7 +121,7 @@ namespace Squeal
     const DenseMatrix Y   = gram(M_modes, all);
     const auto        n   = static_cast<Eigen::Index>(modes.eigenvalues.size());
 
-    // Vectors outside of the modes: what ψ and φ have there, and what that responds with
+    // Components of ψ and φ outside the modes, and the responses to them
     std::vector<MultiVector> powers = {all - *modes.vectors * Y};
     for (int step = 0; step < krylov_steps; ++step)
       {
@@ -132,7 +132,7 @@ namespace Squeal
       }
     const auto rest = orthonormalize_if_any(*system.mass, modes.vectors.get(), join_all(powers), dependent);
 
-    // Coordinates of ψ and φ in modes and Ritz vectors of the rest
+    // Coordinates of ψ and φ in modes, and in Ritz vectors of the remainder
     std::vector<double>          squares;
     DenseMatrix                  Z = Y;
     std::unique_ptr<MultiVector> ritz;

@@ -17,25 +17,27 @@ namespace Squeal
 {
   namespace
   {
-    /// Tension of a closed node over the largest reaction, and overlap of an open one over the largest gap, that are rounding errors.
+    /// Tension of a closed node relative to the largest reaction, and overlap of an open one relative to the largest gap, that count as
+    /// rounding errors [-].
     constexpr double rounding_of_contact = 1e-13;
-    /// Difference of balance and gaps of the motions over the gaps, up to which it is rounding and the condition of uniqueness applies.
+    /// Difference between the balance and the gaps of the motions, relative to the gaps, below which it is rounding and the uniqueness
+    /// condition applies [-].
     constexpr double symmetric_motions = 1e-10;
-    /// Difference of the reactions of two solutions over the largest one, up to which they are the same: nodes may just touch.
+    /// Difference of the reactions of two solutions relative to the largest one, below which they are equal: nodes may just touch [-].
     constexpr double same_reactions = 1e-8;
 
-    /// Block steps that may pass without fewer violations before single nodes are flipped.
+    /// Block steps without fewer violations before single nodes are toggled.
     constexpr int patience = 8;
 
-    /// Friction coefficients on the way from 0 to μ, and random active sets, where a direct attempt fails.
+    /// Number of friction coefficients from 0 to μ, and of random active sets, if a direct attempt fails.
     constexpr int n_continuation_steps = 10;
     constexpr int n_random_starts      = 40;
 
-    /// One linear problem with a given active set, and what it violates.
+    /// Solution of the linear problem for a given active set, and its violations.
     struct Iterate
     {
       ContactSolution  solution;
-      std::vector<int> violated;      ///< closed nodes that pull, open nodes that overlap
+      std::vector<int> violated;      ///< closed nodes in tension, open nodes with overlap
       double           pull, overlap; ///< largest of each [N], [m]
     };
 
@@ -54,12 +56,12 @@ namespace Squeal
       }
 
       /**
-       * Reactions, zero at open nodes, and motions below them, (n_c + n_z) × k, with which the closed nodes have no gap and the motions balance.
+       * Reactions, zero at open nodes, and motions below them, (n_c + n_z) × k, with zero gaps at closed nodes and motions in equilibrium.
        *
        * @param initial_gap n_c × k
        * @param forces      n_z × k
        *
-       * Throws SolverError if the active set leaves the reactions undetermined.
+       * Throws SolverError if the closed nodes do not determine the reactions.
        */
       DenseMatrix reactions_and_motions(const std::vector<bool> &closed, const DenseMatrix &initial_gap, const DenseMatrix &forces) const
       {
@@ -82,7 +84,7 @@ namespace Squeal
           }
         const RealLU lu = regular_lu(A, "steady sliding, equations of the closed contact nodes");
         DenseMatrix  x  = lu.solve(b);
-        // One step of refinement: the reactions are to balance the load to rounding.
+        // One step of refinement, so that the reactions balance the load to rounding
         x += lu.solve(b - A * x);
 
         DenseMatrix result        = DenseMatrix::Zero(G.rows() + n_z, k);
@@ -91,7 +93,7 @@ namespace Squeal
         return result;
       }
 
-      /// Throws SolverError if the active set leaves the reactions undetermined.
+      /// Throws SolverError if the closed nodes do not determine the reactions.
       Iterate solve(std::vector<bool> closed) const
       {
         const DenseMatrix     x = reactions_and_motions(closed, as_column(problem.initial_gap), as_column(problem.forces));
@@ -105,7 +107,7 @@ namespace Squeal
         Iterate      result{{}, {}, 0., 0.};
         for (int c = 0; c < G.rows(); ++c)
           {
-            // Without any reaction or gap there is no violation: NaN does not exceed
+            // Without any reaction or gap there is no violation: comparisons with NaN are false
             const bool pulls    = closed[c] && r[c] / largest_reaction > rounding_of_contact;
             const bool overlaps = !closed[c] && g[c] / largest_gap > rounding_of_contact;
             if (pulls || overlaps)
@@ -119,7 +121,7 @@ namespace Squeal
         return result;
       }
 
-      /// A backplate without a closed node has nothing to press on: its node nearest to the disc is closed.
+      /// Closes the node nearest to the disc for a backplate without closed nodes.
       void support_backplates(std::vector<bool> &closed, const std::vector<double> &gaps) const
       {
         for (int k = 0; k < problem.balance.rows(); ++k)
@@ -153,7 +155,7 @@ namespace Squeal
       Eigen::VectorXd       motion_sizes, balance_sizes; ///< largest entries of columns of B, rows of L
     };
 
-    /// The best iterate of an attempt; a solution if it violates nothing.
+    /// Best iterate of an attempt; a solution if it violates nothing.
     using Attempt = std::optional<Iterate>;
 
     bool is_better(const Iterate &a, const Iterate &b, const double unit)
@@ -167,7 +169,7 @@ namespace Squeal
       Attempt                     best;
       std::size_t                 fewest = closed.size() + 1;
       int                         left   = patience;
-      std::set<std::vector<bool>> seen; // by single flips: one of them twice is a cycle
+      std::set<std::vector<bool>> seen; // active sets of single toggles: a repeated set means a cycle
       solver.support_backplates(closed, initial_gap);
       for (int step = 0; step <= most_steps; ++step)
         {
@@ -207,7 +209,7 @@ namespace Squeal
 
     std::vector<bool> random_set(std::mt19937 &generator, const std::size_t size)
     {
-      // Raw bits of the generator, so that every standard library gives the same sets
+      // Raw bits of the generator give the same sets with every standard library
       const auto        threshold = generator();
       std::vector<bool> closed(size);
       for (std::size_t c = 0; c < size; ++c)
@@ -251,8 +253,8 @@ namespace Squeal
         return best->solution;
 
     throw SolverError(
-      text("no state of steady sliding was found at friction coefficient ", mu, ": ",
-           best ? text("of the best iterate ", best->violated.size(), " of ", n, " contact nodes violate the contact conditions, by ",
+      text("no steady sliding state was found at friction coefficient ", mu, ": ",
+           best ? text("in the best iterate ", best->violated.size(), " of ", n, " contact nodes violate the contact conditions, by ",
                        best->pull, " N of tension and ", best->overlap, " m of overlap") :
                   "with all nodes closed, the reactions are not determined"),
       "steady sliding", "lower the friction coefficient or the gaps, or set Steady sliding/Contact state = equal load");
@@ -291,7 +293,7 @@ namespace Squeal
         const Attempt attempt = pivot(solver, random_set(generator, n), problem.initial_gap);
         if (attempt && attempt->violated.empty() && attempt->solution.closed != solution.closed)
           {
-            // Nodes that just touch may count as closed or open: only other reactions are another solution.
+            // Nodes that just touch may count as closed or open: only different reactions are another solution
             const auto r       = as_column(solution.reactions);
             result.found_other = max_norm(as_column(attempt->solution.reactions) - r) / max_norm(r) > same_reactions;
             result.other       = attempt->solution;

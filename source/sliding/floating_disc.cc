@@ -16,27 +16,29 @@ namespace Squeal
 {
   namespace
   {
-    /// Energy of the sliding motion outside of the free motions of the disc, up to which it is one of them: rounding errors of M-orthonormal vectors.
+    /// Energy of the sliding motion outside the free motions of the disc, below which it is one of them up to rounding [-].
     constexpr double free_to_turn = 1e-6;
-    /// Slip of the contact by a free motion, and force of a pressure on it over its size, over the largest displacement, that are rounding.
+    /// Slip due to a free motion, relative to its largest displacement, and relative force of a pressure on it, that count as rounding [-].
     constexpr double no_slip = 1e-6;
-    /// Smallest over largest singular value of the gaps of all motions, up to which one changes no gap: rounding leaves 1e-15.
+    /// Ratio of the smallest to the largest singular value of the gaps of all motions, below which a motion changes no gap; rounding gives
+    /// 1e-15 [-].
     constexpr double unchanged_gaps = 1e-8;
-    /// Difference over sum of the loads on a floating disc, up to which they are equal: decimal numbers are off by rounding.
+    /// Difference relative to the sum of the loads on a floating disc, below which they are equal up to rounding [-].
     constexpr double equal_loads = 1e-10;
 
-    /// Motion of the disc with the sliding velocity, n × 1, of unit modal mass.
+    /// Motion of the disc with the sliding velocity, n × 1, with unit modal mass.
     MultiVector sliding_motion(const Model &model, const SecondOrderSystem &system, const SlidingVelocity &velocity)
     {
       const auto rigid = velocity.rigid_motion();
       if (!rigid)
-        throw SolverError("the disc moves freely, and its sliding velocity is no rigid-body motion, the force of which a drive could take",
+        throw SolverError("the disc moves freely, but its sliding velocity is not a rigid-body motion that a drive could prescribe",
                           "steady sliding, parameter Operation/Sliding direction", "hold the disc by a mount (Mounts/Elastic mounts)");
       const MultiVector motion = rigid_motions(model, 0) * DenseMatrix(*rigid);
       return motion * DenseMatrix::Constant(1, 1, 1. / std::sqrt(column_products(motion, *system.mass * motion)[0]));
     }
 
-    /// Free motions @p N of the disc but the sliding one, @p turning, whose moment the drive takes even where it changes gaps, as on a polygon for a rim.
+    /// Free motions @p N of the disc without the sliding motion @p turning: the drive balances its moment even if it changes gaps, as on a
+    /// polygonal rim.
     std::optional<MultiVector> without_turning(const MultiVector &N, const MultiVector &turning, const SecondOrderSystem &system)
     {
       const DenseMatrix part = gram(N, *system.mass * turning);
@@ -48,7 +50,7 @@ namespace Squeal
       return N * DenseMatrix(Q.rightCols(N.n_columns() - 1));
     }
 
-    /// Throws SolverError if friction or a pressure acts on @p motions of a body, which leave the gaps as they are.
+    /// Throws SolverError if friction or pressure acts on @p motions of a body that change no gap.
     void refuse_forces_on(const MultiVector      &motions,
                           const ContactOperators &contact,
                           const std::string      &body,
@@ -71,16 +73,17 @@ namespace Squeal
         }
     }
 
-    /// Throws SolverError if loads, or friction, whose work is @p of_contact for unit reactions, do work on a motion @p y that changes no gap.
+    /// Throws SolverError if loads or friction, with the work @p of_contact for unit reactions, do work on a motion @p y that changes no
+    /// gap.
     void refuse_unbalanced(const Eigen::VectorXd &y, const Eigen::VectorXd &forces, const DenseMatrix &of_contact)
     {
       if (max_norm(of_contact.transpose() * y) > no_slip * max_norm(of_contact.cwiseAbs().transpose() * y.cwiseAbs()))
-        throw SolverError("nothing holds the disc and the bodies on it against friction: they can tilt together", "steady sliding",
+        throw SolverError("the disc and the bodies on it can tilt together, and friction is not balanced", "steady sliding",
                           "hold the disc against tilting (Mounts/Elastic mounts)");
       const Eigen::VectorXd work         = y.cwiseProduct(forces);
       const double          sum_of_sizes = work.lpNorm<1>();
       if (sum_of_sizes > 0. && std::abs(work.sum()) / sum_of_sizes > equal_loads)
-        throw SolverError("the disc floats between its backplates, and the loads on them are not in balance", "steady sliding",
+        throw SolverError("the disc floats between its backplates, and the loads on them are not in equilibrium", "steady sliding",
                           "give loads that balance each other, or a mount that holds the disc along them (Mounts/Elastic mounts)");
     }
   } // namespace
@@ -133,7 +136,7 @@ namespace Squeal
         Eigen::Index held;
         y.tail(n - n_plates).cwiseAbs().maxCoeff(&held);
         held += n_plates;
-        // The row of its balance becomes z = 0: it follows from the others
+        // The row of its equilibrium is replaced by z = 0: it follows from the others
         problem.motions.col(free[held]).setZero();
         problem.balance.row(free[held]).setZero();
         problem.held.push_back(free[held]);

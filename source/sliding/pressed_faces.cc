@@ -14,7 +14,7 @@ namespace Squeal
 {
   namespace
   {
-    /// |∫ n dA| over the area, below which a face has no direction in which it is pressed [-].
+    /// |∫ n dA| relative to the area, below which a face has no direction of pressure [-].
     constexpr double least_resultant = 0.1;
 
     Eigen::Vector3d as_vector(const dealii::Tensor<1, 3> &v)
@@ -22,14 +22,14 @@ namespace Squeal
       return {v[0], v[1], v[2]};
     }
 
-    /// What a pressed face is made of, the same on every process.
+    /// Properties of a pressed face, the same on every process.
     struct PressedFace
     {
       Eigen::Matrix3Xd area_normals;    ///< ∫ n dA of each component [m²]
       double           area       = 0.; ///< [m²]
       double           of_disc    = 0.; ///< number of element faces of the disc
-      double           in_contact = 0.; ///< of those with contact nodes only
-      double           clamped    = 0.; ///< of those with clamped nodes
+      double           in_contact = 0.; ///< number of element faces with contact nodes only
+      double           clamped    = 0.; ///< number of element faces with clamped nodes
     };
 
     PressedFace pressed_face(const Model &model, const std::string &name, const std::set<std::int64_t> &contact_nodes)
@@ -69,8 +69,8 @@ namespace Squeal
       if (face.in_contact > 0.)
         refuse("the pressed face is in contact with the disc", "name the back of the body");
       if (face.clamped > 0.)
-        refuse("the pressed face is clamped: the clamp would take the load",
-               "hold the body by Mounts/Elastic mounts that leave it free along the load");
+        refuse("the pressed face is clamped: the clamp would carry the load",
+               "hold the body by Mounts/Elastic mounts that do not constrain it along the load");
       if (!(face.area_normals.rowwise().sum().norm() > least_resultant * face.area))
         refuse("the face is closed around its body: a pressure on it has no resultant", "name a face on one side of the body");
       for (std::size_t body = 0; body < directions.size(); ++body)
@@ -96,7 +96,7 @@ namespace Squeal
         const PressedFace whole = pressed_face(model, name, contact_nodes);
         check_pressed(model, name, whole, directions);
         const double pressure = load_per_side / whole.area_normals.rowwise().sum().norm();
-        // Faces of other processes as well: each adds to the rows that it has
+        // Includes faces of other processes: each process adds to its own rows
         for (const Face *face : model.faces_of(name))
           {
             values.reinit(*face);

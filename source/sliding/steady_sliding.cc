@@ -37,8 +37,8 @@ namespace Squeal
       return centres;
     }
 
-    /// Distances of a node from the centre of its face [m]: along t and outwards, along the axis where a rim is rubbed, along b where the disc
-    /// does not turn about z.
+    /// Distances of a node from the centre of its face [m]: along t, and outwards (along the axis for contact with a rim, along b if the
+    /// disc does not turn about z).
     std::pair<double, double> offsets(const ContactNode &node, const Eigen::Vector3d &centre, const Travel &travel)
     {
       return {node.sliding.dot(node.position - centre), !node.turns      ? node.radial.dot(node.position - centre) :
@@ -46,7 +46,8 @@ namespace Squeal
                                                                            node.axis_distance() - std::hypot(centre[0], centre[1])};
     }
 
-    /// Travel and backplate of each component, and the load on each backplate; none where the travel is given or nothing moves.
+    /// Travel and backplate of each component, and the load on each backplate; no loads if the travel is prescribed or there are no
+    /// backplates.
     struct Backplates
     {
       std::vector<Travel> travels;
@@ -70,7 +71,7 @@ namespace Squeal
       if (!per_pin)
         return result;
 
-      // Pins share the load of the backplate that they would have in common
+      // Pins share the load of their common backplate
       const std::vector<int> shared = backplate_numbers(result.travels, false);
       for (std::size_t pin = 0; pin < shared.size(); ++pin)
         if (const int number = result.of_pin[pin]; number >= 0)
@@ -85,8 +86,8 @@ namespace Squeal
       return result;
     }
 
-    /// The problem condensed to the contact nodes; free @p motions, where there are any, follow those of the backplates. @p pressing: forces of a
-    /// pressure, null without one.
+    /// Problem condensed to the contact nodes; free @p motions, if any, follow those of the backplates. @p pressing: forces of a pressure,
+    /// or null.
     ContactProblem contact_problem(const SlidingModel               &sliding,
                                    const Backplates                 &plates,
                                    const Eigen::VectorXd            &gaps,
@@ -120,7 +121,7 @@ namespace Squeal
         {
           const DenseMatrix B_n = replicate(P_n * *motions), B_t = replicate(*sliding.contact.tangential * *motions);
           problem.forces.resize(n_z, 0.);
-          // −L = (P_n + μ P_t) N: work of the contact forces on the motion
+          // −L = (P_n + μ P_t) N: work of the contact forces in the motion
           problem.motions.rightCols(n_z - n_plates)  = B_n;
           problem.balance.bottomRows(n_z - n_plates) = -(B_n + mu * B_t).transpose();
           if (pressing)
@@ -131,7 +132,7 @@ namespace Squeal
       return problem;
     }
 
-    /// The problem with what it was made of.
+    /// The contact problem and its data.
     struct CondensedSliding
     {
       Backplates                 plates;
@@ -156,7 +157,7 @@ namespace Squeal
               contact_problem(sliding, plates, gaps, motions, pressing, parameters.displacement, operation.friction_coefficient)};
     }
 
-    /// u with the displacement of the backplates of the pins.
+    /// u including the displacement of the backplates of the pins.
     MultiVector with_backplates(const SlidingModel &sliding, MultiVector u, const std::vector<Eigen::Vector3d> &backplates)
     {
       for (const Node &node : sliding.model.nodes())
@@ -166,7 +167,7 @@ namespace Squeal
       return u;
     }
 
-    /// Everything once more from the displacements @p u of the full model.
+    /// Recomputes all equations from the displacements @p u of the full model.
     SlidingCertificate certificate(const SlidingModel        &sliding,
                                    const Backplates          &plates,
                                    const Eigen::VectorXd     &gaps,
@@ -187,7 +188,7 @@ namespace Squeal
       forces.local() += mu * transpose_times(P_t, r).local();
       if (pressing)
         forces += *pressing;
-      if (const MultiVector *N = sliding.response.rigid_body_modes()) // the moment that the drive takes
+      if (const MultiVector *N = sliding.response.rigid_body_modes()) // moment balanced by the drive
         multiply_add(-1., *sliding.system.mass * *N, gram(*N, forces), 1., forces);
       MultiVector rest = K * u;
       rest.local() -= forces.local();
@@ -213,7 +214,7 @@ namespace Squeal
       result.overlap         = gap.maxCoeff() / travel;
       result.complementarity = max_norm(gap.cwiseProduct(reactions)) / (travel * load);
 
-      // Supports: K w, w a rigid-body motion of a component, holds forces next to its mount or clamp only
+      // Supports: for a rigid-body motion w of a component, K w has forces only at its mount or clamp
       for (unsigned int component = 0; component < sliding.model.component_names().size(); ++component)
         {
           const MultiVector     W     = rigid_motions(sliding.model, component);
@@ -277,7 +278,7 @@ namespace Squeal
       heights.push_back(largest_of_processes(model.communicator(), extent.max()[0]) +
                         largest_of_processes(model.communicator(), -extent.min()[0]));
     if (parameters.control == BackplateControl::pressure)
-      pressing_forces(model, interface, parameters, operation.load_per_side); // refuses faces that cannot be pressed
+      pressing_forces(model, interface, parameters, operation.load_per_side); // rejects invalid faces
     for (const PinLoad &load : parameters.pin_loads)
       pin_number(model.component_names(), load.pin, "Steady sliding/Loads");
 

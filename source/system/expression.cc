@@ -19,7 +19,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Steps of differences, each a tenth of the one before, and the relative difference of two of them up to which they agree.
+    /// Number of difference steps, each a tenth of the previous one, and relative difference at which two results agree.
     constexpr int    n_steps              = 10;
     constexpr double largest_disagreement = 1e-6;
 
@@ -32,7 +32,7 @@ namespace Squeal
       {
         parser.SetExpr(expression);
         for (const std::string &name : parameters)
-          parser.DefineVar(name, &variables[name]); // elements of a map stay where they are
+          parser.DefineVar(name, &variables[name]); // elements of a map have fixed addresses
         int n_results = 0;
         parser.Eval(n_results);
         if (n_results != 1)
@@ -44,7 +44,7 @@ namespace Squeal
 
       double at(const ParameterValues &values) const override
       {
-        // The parser reads its variables from here, and several threads may ask
+        // The parser reads these variables, and several threads may evaluate
         const std::lock_guard guard(mutex);
         for (const std::string &name : used)
           variables.at(name) = values.at(name).front();
@@ -58,7 +58,7 @@ namespace Squeal
         ParameterValues others = values;
         double         &value  = others.at(parameter).front();
         const double    x = value, largest = x == 0. ? 1. : std::abs(x);
-        // The steps of which two in a row agree best: how fast the expression varies is not known
+        // Use the two successive steps that agree best: the length scale of the expression is unknown
         double best = 0., disagreement = std::numeric_limits<double>::infinity(), before = std::numeric_limits<double>::quiet_NaN();
         for (int k = 0; k < n_steps; ++k)
           {
@@ -107,7 +107,7 @@ namespace Squeal
       mutable std::mutex                    mutex;
     };
 
-    /// The same expression where it is a product of numbers and of integer powers of parameters.
+    /// The same expression if it is a product of numbers and integer powers of parameters.
     std::optional<Coefficient> monomial(const std::string &expression, const std::vector<std::string> &parameters)
     {
       static const std::regex factor_pattern(
@@ -141,7 +141,7 @@ namespace Squeal
 
   Coefficient parsed_coefficient(const std::string &expression, const std::vector<std::string> &parameters)
   {
-    // muParser would assign
+    // muParser would perform an assignment
     static const std::regex assignment(R"((^|[^<>=!])=([^=]|$))");
     if (std::regex_search(expression, assignment))
       throw ParameterError(text("the expression ", in_quotes(expression), " assigns a value"), "", "write == to compare");

@@ -24,13 +24,13 @@ namespace Squeal
   {
     using Json = nlohmann::ordered_json;
 
-    /// Largest |A − Aᵀ| or |A + Aᵀ| of a claimed symmetry, relative to the largest entry.
+    /// Largest |A − Aᵀ| or |A + Aᵀ| for a declared symmetry, relative to the largest entry [-].
     constexpr double symmetry_tolerance = 1e-12;
 
-    /// Values of every parameter at which the coefficients are checked.
+    /// Number of values of every parameter at which the coefficients are checked.
     constexpr int n_samples = 65;
 
-    /// An object of the file with its place, for messages.
+    /// A JSON value with its position in the file, for messages.
     class JsonEntry
     {
     public:
@@ -105,7 +105,7 @@ namespace Squeal
         return result;
       }
 
-      /// Throws unless all keys are among those known: a misspelt one would be ignored.
+      /// Throws for unknown keys: a misspelt key would be ignored.
       void check_keys(const std::set<std::string> &known) const
       {
         if (!json.is_object())
@@ -125,17 +125,18 @@ namespace Squeal
       std::string file, place;
     };
 
-    /// Refuses a key that an object has twice, of which only one would count.
+    /// Rejects duplicate keys in an object, of which only one would be used.
     Json parsed(std::istream &stream, const std::string &file)
     {
-      std::vector<std::set<std::string>> keys; // of the objects that are open
+      std::vector<std::set<std::string>> keys; // of the open objects
       return Json::parse(stream, [&](int, const Json::parse_event_t event, const Json &value) {
         if (event == Json::parse_event_t::object_start)
           keys.emplace_back();
         else if (event == Json::parse_event_t::object_end)
           keys.pop_back();
         else if (event == Json::parse_event_t::key && !keys.back().insert(value.get<std::string>()).second)
-          throw FileError(text("an object has ", in_quotes(value.get<std::string>()), " twice"), "file " + file, "remove one of them");
+          throw FileError(text("an object contains the key ", in_quotes(value.get<std::string>()), " twice"), "file " + file,
+                          "remove one of them");
         return true;
       });
     }
@@ -162,7 +163,7 @@ namespace Squeal
       return result;
     }
 
-    /// Reads terms, and knows the matrices that several of them share.
+    /// Reads terms; matrices that several terms share are read once.
     class TermReader
     {
     public:
@@ -186,7 +187,7 @@ namespace Squeal
           entry["power"].refuse("the power of lambda is " + std::to_string(term.power), "write 0, 1 or 2");
         const std::string kind = entry.text_or("kind", "body");
         if (const auto kinds = enum_names<TermKind>(); std::find(kinds.begin(), kinds.end(), kind) == kinds.end())
-          entry["kind"].refuse("unknown kind " + in_quotes(kind), "leave it out");
+          entry["kind"].refuse("unknown kind " + in_quotes(kind), "remove it");
         term.kind        = enum_value<TermKind>(kind);
         term.coefficient = coefficient(entry);
         if (entry.has("matrix"))
@@ -199,7 +200,7 @@ namespace Squeal
           read_factors(entry, term);
       }
 
-      /// `positions` of points with their `displacements`, by default of the dofs 3i − 2, 3i − 1 and 3i of point i.
+      /// `positions` of points and their `displacements`; by default, point i has the dofs 3i − 2, 3i − 1 and 3i.
       ShapePoints read_points(const JsonEntry &root) const
       {
         const JsonEntry  entry     = root["positions"];
@@ -210,7 +211,7 @@ namespace Squeal
                        "give a row with x, y and z for each point");
         if (!root.has("displacements") && 3 * n_points != n)
           entry.refuse(text(n_points, " points have ", 3 * n_points, " displacements, the system has ", n, " dofs"),
-                       "give `displacements`, the matrix by which the dofs move the points");
+                       "give `displacements`, the matrix from dofs to displacements of the points");
         ShapePoints  result{positions, nullptr};
         const RowMap rows = ShapePoints::rows_of(n_points, communicator);
         if (root.has("displacements"))
@@ -219,10 +220,10 @@ namespace Squeal
             const SparseRows T    = read_matrix_file(file);
             if (T.rows() != 3 * positions.rows() || T.cols() != n)
               file.refuse(text("the matrix is ", T.rows(), " x ", T.cols(), ", not ", 3 * n_points, " x ", n),
-                          "give rows for x, y and z of each of the points, and a column for each dof");
+                          "give rows for x, y and z of each point, and a column for each dof");
             result.displacements = std::make_shared<SparseMatrix>(rows, system.map, SparseRows(T.middleRows(rows.first(), rows.n_local())));
             if (!(max_norm(*result.displacements) > 0.))
-              file.refuse("no dof moves a point: all entries are zero", "correct the matrix, or leave out `positions` and `displacements`");
+              file.refuse("no dof moves a point: all entries are zero", "correct the matrix, or remove `positions` and `displacements`");
           }
         else
           result.displacements = std::make_shared<SparseMatrix>(
@@ -243,7 +244,7 @@ namespace Squeal
           {
             entry["coefficient"].refuse(error.reason, error.change);
           }
-        // Each parameter over its range with the others at their values
+        // Each parameter over its range, with the others at their values
         const auto check = [&](const ParameterValues &values) {
           if (std::isfinite(result.at(values)))
             return;
@@ -283,7 +284,7 @@ namespace Squeal
         return read_matrix_market(path.string());
       }
 
-      /// All entries of a matrix; known ones are not read again.
+      /// All entries of a matrix; each file is read once.
       const SparseRows &entries_of(const JsonEntry &file)
       {
         const std::string name = file.as<std::string>("the name of a file");
@@ -468,7 +469,7 @@ namespace Squeal
                                  known.empty() ? "it has none" : "it has " + known);
           }
         if (!(parameter->lower <= value && value <= parameter->upper))
-          throw ParameterError(text(name, " = ", exact_text(value), " is outside of its range from ", exact_text(parameter->lower), " to ",
+          throw ParameterError(text(name, " = ", exact_text(value), " is outside its range from ", exact_text(parameter->lower), " to ",
                                     exact_text(parameter->upper)),
                                "file " + path, "choose a value in the range, or widen the range in the file if the system is valid there");
       }
@@ -528,7 +529,7 @@ namespace Squeal
     if (root.has("positions"))
       system.points = reader.read_points(root);
     else if (root.has("displacements"))
-      root["displacements"].refuse("displacements of points that are not given", "give `positions`, too");
+      root["displacements"].refuse("the positions of the displacements are not given", "also give `positions`");
     if (root.has("measured modes"))
       system.measured_modes = (file.parent_path() / root["measured modes"].as<std::string>("a file name")).string();
     return system;

@@ -33,7 +33,7 @@ namespace Squeal
   {
     if (summands.empty())
       return nullptr;
-    // What is not changed need not be copied
+    // A single unscaled matrix need not be copied
     if (summands.size() == 1 && summands.front().first == 1.)
       return summands.front().second;
     std::vector<std::pair<double, const SparseMatrix *>> parts;
@@ -244,7 +244,7 @@ namespace Squeal
                     const bool               transposed)
   {
     MultiVector                                                result(X.map(), X.n_columns());
-    std::vector<std::pair<const LowRankFactor *, DenseMatrix>> onto; // what each factor maps, once for all of its terms
+    std::vector<std::pair<const LowRankFactor *, DenseMatrix>> onto; // product of each factor, shared by all of its terms
     for (const Term *term : terms_of(terms, values, power))
       {
         const double theta = term->coefficient.at(values);
@@ -272,7 +272,7 @@ namespace Squeal
     {
       if (!term.is_sparse())
         throw SolverError("the term `" + term.name + "` has no sparse matrix", "system matrices",
-                          "choose a solver that takes such terms as products, or leave the term out");
+                          "choose a solver that applies such terms as products, or remove the term");
       return term.matrix ? term.matrix : product(term, values);
     }
   } // namespace
@@ -355,10 +355,10 @@ namespace Squeal
 
   namespace
   {
-    /// Scales that differ by less are the same: they come from products of the same parameters.
+    /// Relative difference below which scales are equal: they come from products of the same parameters [-].
     constexpr double same_scale = 1e-13;
 
-    /// Terms whose coefficients have the same ratios to their means in all members.
+    /// Terms whose coefficients have the same ratio to their mean in all members.
     struct Group
     {
       const Term                                                         *first;

@@ -18,9 +18,9 @@ namespace Squeal
   {
     using Complex = std::complex<double>;
 
-    /// |Re λ| / Im λ of modes of nearly the same λ, up to which it is a rounding error.
+    /// |Re λ| / Im λ of modes with nearly equal λ, below which it is a rounding error [-].
     constexpr double neutral_rate = 1e-11;
-    /// Weight of closeness of λ beside overlaps of vectors.
+    /// Weight of the distance of λ relative to overlaps of vectors [-].
     constexpr double closeness_weight = 0.01;
 
     /// −1: decays, 0: neutral, 1: grows.
@@ -29,11 +29,11 @@ namespace Squeal
       return !(std::abs(lambda.real()) / lambda.imag() > neutral_rate) ? 0 : lambda.real() > 0. ? 1 : -1;
     }
 
-    /// Vectors of the modes at a point, but within a multiple λ those nearest to the vectors of the branches before.
+    /// Vectors of the modes at a point; within a multiple λ those closest to the previous vectors of the branches.
     struct Carried
     {
       ComplexDenseMatrix   right, left;
-      std::vector<Complex> lambda; ///< at the last point where it was not multiple
+      std::vector<Complex> lambda; ///< at the last point at which it was simple
     };
 
     void begin_branch(TrackedModes &modes, const int k, const int mode)
@@ -44,12 +44,12 @@ namespace Squeal
       modes.branches.back().modes[k] = mode;
     }
 
-    /// λ at point k + 1 from the points before.
+    /// λ at point k + 1, extrapolated from previous points.
     Complex extrapolated(const TrackedModes &modes, const int k, const int mode)
     {
       const Complex here   = modes.points[k].lambda[mode];
       const int     before = k > 0 ? modes.branches[modes.branch_of[k][mode]].modes[k - 1] : -1;
-      // The slope of a much shorter step says nothing about this one
+      // The slope of a much shorter step is not representative
       if (before < 0 || modes.width(k - 1) < 0.1 * modes.width(k))
         return here;
       return here + (here - modes.points[k - 1].lambda[before]) * (modes.width(k) / modes.width(k - 1));
@@ -75,7 +75,7 @@ namespace Squeal
             }
         }
 
-      // Vectors where they tell modes apart, else λ that would lie on a smooth curve
+      // Link modes by vectors if these distinguish them, else by a smooth curve of λ
       const int            r        = std::max(modes.points[k].right.rows(), modes.points[k + 1].right.rows());
       DenseMatrix          overlaps = DenseMatrix::Zero(n, n);
       std::vector<Complex> predicted;
@@ -91,7 +91,7 @@ namespace Squeal
       };
       add_overlaps(carried.right, modes.points[k + 1].right);
       add_overlaps(carried.left, modes.points[k + 1].left);
-      // Among modes that nothing else tells apart the growing ones stay growing, however slowly they do
+      // Otherwise indistinguishable modes keep their growth, however slow
       const auto   grow_alike = [](const Complex &x, const Complex &y) { return growth_class(x) == growth_class(y); };
       const double weight     = block.resolved ? closeness_weight : 1.;
       return best_assignment(n, n, [&](const int i, const int j) {
@@ -101,14 +101,15 @@ namespace Squeal
       });
     }
 
-    /// The vectors @p to of Y become the parts of the columns @p from of X in the span of the orthonormal columns of Q, normalised.
+    /// Projects the columns @p from of X on the span of the orthonormal columns of Q, normalises them and stores them as the columns @p to
+    /// of Y.
     void project(const ComplexDenseMatrix &Q,
                  const ComplexDenseMatrix &X,
                  const std::vector<int>   &from,
                  ComplexDenseMatrix       &Y,
                  const std::vector<int>   &to)
     {
-      // Vectors of a smaller basis have zeros beyond it
+      // Vectors in a smaller basis are extended by zeros
       const Eigen::Index       r = std::min(Q.rows(), X.rows());
       const ComplexDenseMatrix P = Q * (Q.topRows(r).adjoint() * X.topRows(r)(Eigen::all, from));
       for (std::size_t j = 0; j < to.size(); ++j)
@@ -116,7 +117,7 @@ namespace Squeal
           Y.col(to[j]) = P.col(j) / norm;
     }
 
-    /// Carries vectors from point k to the next.
+    /// Carries vectors from point k to the next one.
     void carry(const TrackedModes &modes, const int k, const std::vector<int> &image, Carried &carried)
     {
       const ChartPoint &next = modes.points[k + 1];
@@ -145,7 +146,7 @@ namespace Squeal
       carried = std::move(result);
     }
 
-    /// Of each multiple λ of a point.
+    /// All multiple λ of a point.
     std::vector<MultipleModes> multiple_modes(const ChartPoint &point)
     {
       std::vector<MultipleModes> result;
@@ -158,7 +159,7 @@ namespace Squeal
       return result;
     }
 
-    /// Part of a step below which another one is half of it, up to rounding errors.
+    /// Fraction of a step below which another one counts as half of it, up to rounding [-].
     constexpr double half_width = 0.5 + 1e-6;
 
     void insert(TrackedModes &modes, const EvaluateChart &evaluate, const std::vector<double> &values, const bool refines)
@@ -211,7 +212,7 @@ namespace Squeal
       begin_branch(modes, 0, static_cast<int>(j));
     for (int k = 0; k + 1 < modes.n_points(); ++k)
       {
-        std::vector<int> image(modes.points[k].lambda.size(), -1); // the mode at point k + 1 of each mode at point k
+        std::vector<int> image(modes.points[k].lambda.size(), -1); // for each mode at point k its mode at point k + 1
         for (const ModeBlock &block : modes.intervals[k].links->blocks)
           {
             const std::vector<int> match = match_in_block(modes, k, block, carried);

@@ -18,24 +18,24 @@ namespace Squeal
 {
   namespace
   {
-    /// Directions whose M-norm is below this part of the largest are taken for rounding errors.
+    /// Directions with M-norms below this fraction of the largest are rounding errors [-].
     constexpr double dependence_tolerance = 1e-8;
-    /// Principal axes of residuals below this part of the largest are left to the next growth.
+    /// Principal axes of residuals below this fraction of the largest are postponed to the next extension [-].
     constexpr double compression_tolerance = 0.02;
 
-    /// Part of the largest principal axis of some vectors below which one is left out.
+    /// Principal axes of vectors below this fraction of the largest are dropped [-].
     constexpr double least_axis = 1e-6;
 
-    /// Orthonormal basis of the span of the columns of X, a few.
+    /// Orthonormal basis of the span of a few columns of X.
     DenseMatrix principal_columns(const DenseMatrix &X)
     {
       const auto [sizes, axes] = singular_values(X); // descending
       const auto n             = std::upper_bound(sizes.begin(), sizes.end(), least_axis * sizes.front(), std::greater<>()) - sizes.begin();
-      // The small ones have lost their orthogonality
+      // Small principal axes have lost their orthogonality
       return orthonormal_columns(X * axes.leftCols(n));
     }
 
-    /// λ of a mode, or those of two by their mean and (λ_1 − λ_2)², which are smooth where the two coalesce.
+    /// λ of a mode, or the mean and (λ_1 − λ_2)² of two, which are smooth at a coalescence.
     struct LambdaPair
     {
       std::complex<double> mean, square;
@@ -55,7 +55,7 @@ namespace Squeal
         return {(1. - t) * mean + t * other.mean, (1. - t) * square + t * other.square};
       }
 
-      /// The values next to these become the first ones: a small basis has others, too, which may be close to the mean.
+      /// Moves the values closest to these to the front: a small basis has additional ones, which may be close to the mean.
       void bring_to_front(std::vector<std::complex<double>> &values) const
       {
         auto place = values.begin();
@@ -98,7 +98,7 @@ namespace Squeal
   ChartPoint ChartModel::evaluate(const OperatingPoint &point) const
   {
     const ParameterValues values = system.at(point.friction_coefficient, point.values);
-    // What follows from products of vectors is the same in modal coordinates, where most of them are diagonal
+    // Vector products are the same in modal coordinates, where most matrices are diagonal
     const double     end   = (1. + band_margin) * largest_circular_frequency;
     auto             modal = modal_modes_of_band(model, values, end);
     ReducedModes     modes = modal ? std::move(*modal) : local_reduced_modes_by_qr(model, values, end);
@@ -156,7 +156,7 @@ namespace Squeal
       ParameterValues others;
       for (const auto &[name, numbers] : first.values)
         {
-          std::vector<double> &between = others[name]; // where there are no numbers, too: they mean zeros
+          std::vector<double> &between = others[name]; // also if the list is empty, which means zeros
           for (std::size_t i = 0; i < numbers.size(); ++i)
             between.push_back((1. - t) * numbers[i] + t * second.values.at(name)[i]);
         }
@@ -179,7 +179,7 @@ namespace Squeal
     const double at_a = value(a), at_b = value(b);
     if (!(at_a * at_b < 0.))
       return {};
-    // A value that is not a number ends the search there
+    // NaN ends the search
     constexpr double resolution = 1e-10;
     std::uintmax_t   n_steps    = 50;
     const auto       bracket    = boost::math::tools::toms748_solve(
@@ -207,7 +207,7 @@ namespace Squeal
 
   std::optional<MultiVector> ChartModel::new_vectors(const std::vector<ModesAt> &sets) const
   {
-    const int n_missing = system.map().n() - model.size(); // to a basis of all
+    const int n_missing = system.map().n() - model.size(); // number of vectors missing to a complete basis
     if (n_missing <= 0)
       return {};
     std::vector<ProjectedResiduals::ModesAt> modes;
@@ -225,7 +225,7 @@ namespace Squeal
     std::optional<MultiVector> responses = residuals.principal_responses(model, modes, compression_tolerance);
     if (!responses)
       return {};
-    // First, so that what is left is not compared with what they have in the basis
+    // First, so that the remainder is not compared with components in the basis
     remove_basis(*system.mass, model, *responses);
     auto result =
       orthonormalize_if_any(*system.mass, &model.basis(), std::move(*responses), dependence_tolerance, nullptr, FirstProjection::done);
@@ -248,13 +248,13 @@ namespace Squeal
     for (const ChartPoint &chart : charts)
       for (const ComplexDenseMatrix *X : {&chart.right, &chart.left})
         {
-          // Of unit strain energy
+          // Scale to unit strain energy
           const Eigen::VectorXcd scales = as_column(chart.lambda).cwiseAbs().cwiseInverse().cast<std::complex<double>>();
           Y                             = append_columns(Y, halves(orthonormal_in_clusters(*X, chart.lambda) * scales.asDiagonal()));
         }
     Y -= real_modes * (real_modes.transpose() * Y);
 
-    // Strain energy: K_r = V diag(w) Vᵀ, the squares of Y are those of √w VᵀY
+    // Strain energy: K_r = V diag(w) Vᵀ, squared norms of Y are those of √w VᵀY
     const MPI_Comm communicator = inverse.map().communicator();
     const auto [w, V]           = agreed(communicator, symmetric_eigenpairs(model.stiffness() + shift * shift * model.mass()));
     const DenseMatrix Y_w       = as_column(w).cwiseSqrt().asDiagonal() * (V.transpose() * Y);

@@ -15,23 +15,23 @@ namespace Squeal
 {
   namespace
   {
-    /// The basis is grown at the training points beyond the tolerance, so that points between them meet it, too.
+    /// Fraction of the tolerance at training points, so that points between them also meet it [-].
     constexpr double training_factor = 0.5;
 
-    /// Squares of principal axes below this times the tolerance are left out of the basis, see compressed_basis().
+    /// Principal axes with squares below this times the tolerance are dropped from the basis, see compressed_basis() [-].
     constexpr double compression_factor = 10.;
 
-    /// Growths in a row that may leave the error of their point as it is: beyond them, rounding makes up the error. A growth takes the
-    /// modes that miss the tolerance with their residuals, and divides their errors by ten and more where residuals are right.
+    /// Number of successive extensions without halving the error of their point, after which the error counts as rounding. An extension by
+    /// the residuals of the inaccurate modes normally divides their errors by ten or more.
     constexpr int max_growths_in_vain = 4;
 
-    /// How many growths in a row have not halved the error of their point, with one that took it from @p before to @p after.
+    /// Number of successive extensions that did not halve the error of their point, after one that changed it from @p before to @p after.
     int in_vain(const int n_so_far, const double before, const double after)
     {
       return after < 0.5 * before ? 0 : n_so_far + 1;
     }
 
-    /// Grows the basis by the modes of a point that miss the tolerance; returns why it cannot, or nothing.
+    /// Extends the basis by the inaccurate modes of a point; returns the reason if it cannot, or nothing.
     std::string grow(ChartModel           &model,
                      const OperatingPoint &point,
                      const ChartPoint     &chart,
@@ -40,14 +40,14 @@ namespace Squeal
     {
       auto vectors = model.new_vectors({{point, &chart, model.inaccurate_modes(chart, tolerance)}});
       if (!vectors)
-        return "rounding errors leave no new direction";
+        return "all new directions are rounding errors";
       if (model.size() + vectors->n_columns() > maximum_basis)
         return text("the basis would exceed ", maximum_basis, " vectors");
       model.extend(*std::move(vectors));
       return "";
     }
 
-    /// Grows the basis for some operating points, one after the other, and compresses it; returns how often it grew.
+    /// Extends the basis for some operating points, one after the other, and compresses it; returns the number of extensions.
     int train(ChartModel                        &model,
               const std::vector<OperatingPoint> &points,
               const std::vector<int>            &training,
@@ -60,7 +60,7 @@ namespace Squeal
       bool                    may_grow  = true;
       int                     n_growths = 0, n_in_vain = 0;
       for (const int t : training)
-        for (double before = 0.;; ++n_growths) // the error of this point before the last growth for it
+        for (double before = 0.;; ++n_growths) // error of this point before its last extension
           {
             ChartPoint   chart = evaluate(model, {points[t]}, communicator).front();
             const double error = model.largest_error(chart);
@@ -68,7 +68,7 @@ namespace Squeal
             if (before > 0.)
               n_in_vain = in_vain(n_in_vain, before, error);
             may_grow = may_grow && n_in_vain < max_growths_in_vain;
-            // Where the basis may not grow further, the points may still do
+            // Even if the basis cannot be extended further, more points may be evaluated
             if (error <= tolerance || !may_grow)
               {
                 charts.push_back(std::move(chart));
@@ -89,7 +89,7 @@ namespace Squeal
   {
     const int n = dealii::Utilities::MPI::n_mpi_processes(communicator), me = dealii::Utilities::MPI::this_mpi_process(communicator);
     const int n_points = static_cast<int>(points.size());
-    // Some for each thread, so that none waits long for the last of them
+    // Several per thread, so that no thread waits long for the last ones
     constexpr int points_of_thread = 4;
     const int     n_at_once        = n * points_of_thread * static_cast<int>(dealii::Utilities::MPI::min(n_task_threads(), communicator));
     model.prepare();
@@ -119,7 +119,7 @@ namespace Squeal
     return [&model, at, communicator](const ZeroSearch &search) {
       const auto point = [&](const ModesAtPoint &modes) { return at(modes.point->friction_coefficient); };
       const auto zero  = model.predicted_zero(search, point(search.first), point(search.second));
-      // Rounding must not lead processes to different friction coefficients
+      // Rounding must not lead to different friction coefficients on different processes
       const auto same = dealii::Utilities::MPI::broadcast(communicator, zero ? std::vector{*zero} : std::vector<double>(), 0);
       return same.empty() ? std::nullopt : std::optional(same.front());
     };
@@ -134,7 +134,7 @@ namespace Squeal
                                               Progress                          &progress)
   {
     if (points.empty())
-      throw SolverError("there is no operating point to evaluate", "sweep", "give one at least");
+      throw SolverError("there is no operating point to evaluate", "sweep", "give at least one");
     ErrorControlledSweep result{points.size(), 0., 0, ""};
     const auto           report = [&](const double error) {
       progress.update(text(points.size() - result.n_left, " of ", points.size(), " operating points, ", model.size(),
@@ -145,7 +145,7 @@ namespace Squeal
       result.n_growths = train(model, points, training, options, communicator, report);
     std::vector<int> left(points.size());
     std::iota(left.begin(), left.end(), 0);
-    int    grown        = -1; // the point that the basis was grown for
+    int    grown        = -1; // point of the last extension
     int    n_in_vain    = 0;
     double error_before = 0.;
     for (;; ++result.n_growths)
@@ -186,7 +186,7 @@ namespace Squeal
         grown              = worst;
         error_before       = worst_error;
         result.why_stopped = n_in_vain >= max_growths_in_vain ?
-                               text("larger bases do not halve the estimated error ", worst_error, ", which rounding makes up") :
+                               text("extending the basis does not halve the estimated error ", worst_error, ", which is due to rounding") :
                                grow(model, points[worst], worst_point, options.tolerance, options.maximum_basis);
         if (!result.why_stopped.empty())
           break;

@@ -12,10 +12,10 @@ namespace Squeal
   {
     using Complex = std::complex<double>;
 
-    /// |Re λ_1 + Re λ_2| and |Im λ_1 − Im λ_2| of ±R + iω by R.
+    /// |Re λ_1 + Re λ_2| and |Im λ_1 − Im λ_2| for ±R + iω, relative to R [-].
     constexpr double mirror_tolerance = 1e-6;
 
-    /// δ² / |λ|² of pairs far enough from their coalescence for corrections to be read there.
+    /// δ² / |λ|² above which pairs are far enough from their coalescence for corrections [-].
     constexpr double separate = 1e-6;
 
     Complex square_difference(const Complex &x, const Complex &y)
@@ -28,7 +28,7 @@ namespace Squeal
       return modes.mode(branch, k) >= 0 && modes.lambda(branch, k).imag() <= modes.options.largest_circular_frequency;
     }
 
-    /// Whether two modes are one double mode at a point.
+    /// True if two modes form one double mode at a point.
     bool is_double(const TrackedModes &modes, const EventSearch &search, const int k)
     {
       return modes.mode(search.branch, k) >= 0 && modes.mode(search.partner, k) >= 0 &&
@@ -36,12 +36,12 @@ namespace Squeal
                indistinguishable * std::abs(modes.lambda(search.branch, k));
     }
 
-    /// The branch with −R + iω where this one has R + iω, or -1.
+    /// Branch with −R + iω if this one has R + iω; -1: none.
     int mirror_branch(const TrackedModes &modes, const int branch, const int k)
     {
       const Complex here = modes.lambda(branch, k);
       int           best = -1;
-      // Close to a coalescence, R is small and known to rounding errors of λ only
+      // Close to a coalescence, R is small and limited by rounding errors of λ
       double least = std::max(mirror_tolerance * std::abs(here.real()), 1e-13 * std::abs(here));
       for (std::size_t j = 0; j < modes.points[k].lambda.size(); ++j)
         if (const double distance = std::abs(modes.points[k].lambda[j] + std::conj(here));
@@ -53,8 +53,7 @@ namespace Squeal
       return best;
     }
 
-    /// Moves the interval of a threshold to where the function itself changes sign: the growth of a mode is seen only beyond what is
-    /// negligible.
+    /// Moves the interval of a threshold to the sign change of the function itself: growth is detected only above a negligible rate.
     void enclose(const TrackedModes &modes, EventSearch &search)
     {
       const int direction = search.upward ? -1 : 1;
@@ -95,7 +94,7 @@ namespace Squeal
       return search;
     }
 
-    /// ((λ_1 − λ_2)/2)² of neighbouring real values that a mode, last seen nearby, has become.
+    /// ((λ_1 − λ_2)/2)² of neighbouring real values that replace a nearby mode.
     std::optional<double> real_pair(const TrackedModes &modes, const EventSearch &search, const int k)
     {
       const int                  seen   = search.upward ? search.interval + 1 : search.interval;
@@ -112,14 +111,14 @@ namespace Squeal
       return best;
     }
 
-    /// Zero of a search, with what is left of its interval.
+    /// Zero of a search, and the remaining interval.
     std::pair<double, double> zero(const TrackedModes &modes, const EventSearch &search)
     {
       const int    k = search.interval;
       const double l = modes.mu(k), r = modes.mu(k + 1);
       if (search.at_once && grows_at_once(modes, search))
         return {l, 0.};
-      // The growth of a double mode emerges from rounding errors only here
+      // The growth of a double mode exceeds rounding errors only here
       if (search.multiple)
         return {modes.mu(0), r - modes.mu(0)};
       if (modes.width(k) > modes.tolerance(k))
@@ -130,7 +129,7 @@ namespace Squeal
       return {l - *fl * (r - l) / (*fr - *fl), r - l};
     }
 
-    /// |df/dμ| over the points around an interval.
+    /// |df/dμ| from the points around an interval.
     double slope(const TrackedModes &modes, const EventSearch &search)
     {
       const int  k     = search.interval;
@@ -139,8 +138,8 @@ namespace Squeal
       return fl && fr ? std::abs(*fr - *fl) / (modes.mu(last) - modes.mu(first)) : 0.;
     }
 
-    /// What corrections change of Re λ (growth) or Im λ to second order, the latter without regard to its sign; no more than the
-    /// uncertainty of λ, which is what remains at the real axis and where no corrections are known.
+    /// Second-order effect of the corrections on Re λ (growth) or |Im λ|; at most the uncertainty of λ, which is used at the real axis and
+    /// without corrections.
     double uncertainty_of_lambda(const TrackedModes &modes, const EventSearch &search)
     {
       double result = 0.;
@@ -163,7 +162,7 @@ namespace Squeal
       return result;
     }
 
-    /// What corrections change of δ² at point k.
+    /// Effect of the corrections on δ² at point k.
     double change_of_discriminant(const TrackedModes &modes, const EventSearch &search, const int k)
     {
       const ComplexDenseMatrix &D = modes.points[k].corrections;
@@ -174,7 +173,7 @@ namespace Squeal
       return std::abs(shift * (2. * (modes.points[k].lambda[i] - modes.points[k].lambda[j]) + shift) + 4. * D(i, j) * D(j, i));
     }
 
-    /// Shift of μ at a coalescence by corrections read on both sides at points away from it.
+    /// Shift of μ at a coalescence due to corrections at points on both sides at some distance.
     double shift_of_coalescence(const TrackedModes &modes, const EventSearch &search, const double threshold)
     {
       double result = 0.;
@@ -196,7 +195,7 @@ namespace Squeal
             continue;
           const double distance = std::abs(modes.mu(best) - threshold), part = change_of_discriminant(modes, search, best) / std::abs(f);
           if (f != 0.)
-            // δ² ~ (μ − μ_0)² where a double mode grows at once, else linear
+            // δ² ~ (μ − μ_0)² if a double mode grows at once, else linear
             result = std::max(result, distance * (search.at_once || search.multiple ? std::sqrt(part) : part));
         }
       return result;
@@ -207,12 +206,12 @@ namespace Squeal
       if (search.kind == EventSearch::coalescence)
         return error_safety * shift_of_coalescence(modes, search, threshold);
       double error = error_safety * uncertainty_of_lambda(modes, search);
-      // Im λ = √|f| changes by the error: f by 2 √|f| times as much, away from the axis
+      // Im λ = √|f|: away from the axis, an error of it changes f by 2 √|f| times as much
       if (search.kind == EventSearch::real_axis)
         error *= 2. * modes.lambda(search.branch, search.upward ? search.interval + 1 : search.interval).imag();
       if (error == 0.)
         return 0.;
-      // Without a slope, as where a mode leaves zero, the number of modes says that the event lies in the interval
+      // Without a slope, for example where a mode leaves zero, the change of the number of modes proves the event to be in the interval
       const double change = slope(modes, search);
       return change > 0. ? error / change : modes.width(search.interval);
     }
@@ -277,7 +276,7 @@ namespace Squeal
               if (const bool after = in_band(modes, b, k + 1); after != in_band(modes, b, k))
                 searches.push_back({EventSearch::end_of_band, k, b, -1, after});
             }
-        // A list that is cut may lose modes beyond the band
+        // A truncated list may lose modes beyond the band
         const ModeLinks &links = *modes.intervals[k].links;
         const int        n_new = modes.points[k + 1].n_real() - modes.points[k].n_real();
         for (const int i : links.lost)

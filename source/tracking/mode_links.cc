@@ -16,20 +16,20 @@ namespace Squeal
   {
     using Complex = std::complex<double>;
 
-    /// Overlaps |φ_aᴴφ_b|² below this do not connect modes.
+    /// Overlaps |φ_aᴴφ_b|² below this do not connect modes [-].
     constexpr double weakest_overlap = 0.1;
-    /// cos² of the largest angle between subspaces that agree.
+    /// Smallest cos² of the largest angle between agreeing subspaces [-].
     constexpr double agreement = 0.6;
-    /// Parts T of a mode that may be missed: rotations by up to 30°.
+    /// Largest parts T of a mode that are neglected: rotations by up to 30° [-].
     constexpr double negligible_part = 0.25;
-    /// |φ_iᴴφ_j|² at one point from which two modes are about to coalesce.
+    /// |φ_iᴴφ_j|² at one point above which two modes are about to coalesce [-].
     constexpr double parallel = 0.7;
-    /// Norm of what Gram and Schmidt leave of a unit vector so close to a coalescence that rounding decides on the rest.
+    /// Remainder of a unit vector after Gram-Schmidt so close to a coalescence that it is determined by rounding [-].
     constexpr double defective = 1e-7;
-    /// |Im δ²| / |δ²| of the difference δ of two λ up to which δ² is real, as it is where modes may coalesce.
+    /// |Im δ²| / |δ²| of the difference δ of two λ below which δ² is real, as for modes that may coalesce [-].
     constexpr double real_discriminant = 1e-6;
 
-    /// Orthonormal basis without directions that are rounding errors.
+    /// Orthonormal basis without directions due to rounding errors.
     ComplexDenseMatrix safe_basis(const ComplexDenseMatrix &X)
     {
       const auto       basis = orthonormal_basis(X);
@@ -40,7 +40,7 @@ namespace Squeal
       return basis.Q(Eigen::all, kept);
     }
 
-    /// cos² of the largest angle between two subspaces; of a smaller one and its image, where vectors are parallel.
+    /// cos² of the largest angle between two subspaces; if vectors are parallel, between a smaller subspace and its image.
     double agreement_of(const ComplexDenseMatrix &first, const ComplexDenseMatrix &second)
     {
       const ComplexDenseMatrix C       = safe_basis(first).adjoint() * safe_basis(second);
@@ -48,7 +48,7 @@ namespace Squeal
       return squares.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff();
     }
 
-    /// |xᴴy|² of unit vectors; of several y with one λ the share of x in their span.
+    /// |xᴴy|² of unit vectors; for several y with one λ the share of x in their span.
     DenseMatrix shares(const ComplexDenseMatrix &X, const ComplexDenseMatrix &Y, const std::vector<int> &cluster)
     {
       DenseMatrix result = (X.adjoint() * Y).cwiseAbs2();
@@ -71,7 +71,7 @@ namespace Squeal
     struct Side
     {
       const ChartPoint  &point;
-      ComplexDenseMatrix right, left; ///< of as many rows as those of the other point
+      ComplexDenseMatrix right, left; ///< with as many rows as those of the other point
       std::vector<int>   cluster;
 
       Side(const ChartPoint &p, const int n_rows)
@@ -86,7 +86,7 @@ namespace Squeal
         return static_cast<int>(point.lambda.size());
       }
 
-      /// Positions in @p modes that belong together: multiple λ and, where asked, pairs about to coalesce.
+      /// Indices in @p modes that belong together: multiple λ and, optionally, pairs about to coalesce.
       std::vector<std::vector<int>> groups(const std::vector<int> &modes, const bool join_parallel) const
       {
         return members_of(connected_groups(static_cast<int>(modes.size()), [&](const int i, const int j) {
@@ -96,7 +96,7 @@ namespace Squeal
         }));
       }
 
-      /// Whether all these modes are one cluster.
+      /// True if all these modes form one cluster.
       bool indistinguishable_modes(const std::vector<int> &modes) const
       {
         return std::all_of(modes.begin(), modes.end(), [&](const int i) { return cluster[i] == cluster[modes.front()]; });
@@ -130,7 +130,7 @@ namespace Squeal
             if (!first.empty())
               sort_block(first, second);
           }
-        // Modes of the band without counterpart have to be as many as pairs of real values came and went
+        // The number of modes of the band without counterpart must equal the change of the number of real pairs
         const int lost = in_band(a, links.lost), gained = in_band(b, links.gained);
         links.resolved = 2 * (lost - gained) == b.point.n_real() - a.point.n_real() && (lost == 0 || gained == 0);
         for (const ModeBlock &block : links.blocks)
@@ -145,7 +145,7 @@ namespace Squeal
           std::count_if(modes.begin(), modes.end(), [&](const int i) { return side.point.lambda[i].imag() <= limit; }));
       }
 
-      /// Leaves as many modes on either side, those most alike.
+      /// Reduces both sides to equal numbers of modes, the most similar ones.
       void trim(std::vector<int> &first, std::vector<int> &second)
       {
         const bool        swapped = first.size() > second.size();
@@ -174,7 +174,7 @@ namespace Squeal
           divide(first, second);
       }
 
-      /// Divides a block whose subspaces agree as far as the vectors allow.
+      /// Divides a block with agreeing subspaces as far as the vectors allow.
       void divide(const std::vector<int> &first, const std::vector<int> &second)
       {
         const int n = static_cast<int>(first.size());
@@ -205,7 +205,7 @@ namespace Squeal
         links.blocks.push_back({first, second, exceptional});
       }
 
-      /// Divides a block by T, summed over groups; false if nothing can be divided.
+      /// Divides a block by T, summed over groups; false if it cannot be divided.
       bool divide_by_parts(const std::vector<int> &first, const std::vector<int> &second, const DenseMatrix &T, const bool join_parallel)
       {
         const auto rows = a.groups(first, join_parallel), columns = b.groups(second, join_parallel);

@@ -13,22 +13,22 @@ namespace Squeal
   {
     using Complex = std::complex<double>;
 
-    /// |λ_1 − λ_2| / |λ_1| of modes that may meet within a step.
+    /// Largest |λ_1 − λ_2| / |λ_1| of modes that may coalesce within a step [-].
     constexpr double nearby = 0.1;
-    /// Part of δ², or of Re λ, that an approach must leave to be worth a look.
+    /// Largest remaining fraction of δ², or of Re λ, for an approach to be evaluated [-].
     constexpr double remaining = 0.3;
-    /// What coupling adds to the difference of two λ, over that difference, below which they do not interact.
+    /// Change of the difference of two λ by coupling, relative to the difference, below which they do not interact [-].
     constexpr double interacting = 0.1;
-    /// |Re (λ_1 − λ_2)| / |Im (λ_1 − λ_2)| from which two modes do not meet: their growth rates tell them apart.
+    /// |Re (λ_1 − λ_2)| / |Im (λ_1 − λ_2)| above which two modes do not coalesce because their growth rates differ [-].
     constexpr double other_growth = 0.5;
-    /// Part of a step within which several approaches are looked at once.
+    /// Fraction of a step within which several approaches share one evaluation [-].
     constexpr double one_look = 0.2;
-    /// Steps of a search that may halve less than the interval before it is halved.
+    /// Number of steps of a search without halving before the interval is halved.
     constexpr int patience = 2;
-    /// Steps of a search that a prediction may miss before the interval is halved; each has two values.
+    /// Number of failed predictions in a search before the interval is halved; each has two values.
     constexpr int most_predictions = 5;
 
-    /// Whether a step has to be divided before a mode at its end can be told from others.
+    /// True if a step must be divided to distinguish a mode at its end from others.
     bool is_tangled(const TrackedModes &modes, const int k, const int branch)
     {
       if (modes.width(k) <= modes.options.smallest_step)
@@ -45,7 +45,7 @@ namespace Squeal
              (search.at_once && grows_at_once(modes, search));
     }
 
-    /// Where to look next for a zero.
+    /// Next point of the search for a zero.
     double proposal(const TrackedModes &modes, const EventSearch &search)
     {
       const int    k = search.interval;
@@ -55,7 +55,7 @@ namespace Squeal
         return middle;
 
       double x = l - *fl * (r - l) / (*fr - *fl);
-      // The nearer neighbour as a third point of inverse quadratic interpolation
+      // The nearer neighbour is the third point of inverse quadratic interpolation
       const auto before = search_value(modes, search, k - 1), after = search_value(modes, search, k + 2);
       const bool left = before && (!after || modes.width(k - 1) < modes.width(k + 1));
       if (const auto fc = left ? before : after; fc && *fc != *fl && *fc != *fr)
@@ -66,12 +66,13 @@ namespace Squeal
           if (q > l && q < r)
             x = q;
         }
-      // Beyond the zero, seen from the nearer end: the interval closes, and no point lies on a coalescence, where vectors are lost
+      // Slightly beyond the zero, seen from the nearer end: the interval closes, and no point lies exactly on a coalescence, where vectors
+      // are lost
       const double margin = 0.5 * std::min(modes.tolerance(k), r - l);
       return std::clamp(x + (x < middle ? 0.5 : -0.5) * margin, l + margin, r - margin);
     }
 
-    /// Both sides of where the zero is expected, closer to each other than the tolerance; nothing if that is not known.
+    /// Points on both sides of the predicted zero, closer than the tolerance; nothing without a prediction.
     std::vector<double> predictions(const TrackedModes &modes, const EventSearch &search, const PredictZero &predict)
     {
       const int k = search.interval;
@@ -115,7 +116,7 @@ namespace Squeal
       return result;
     }
 
-    /// Whether two modes lie beyond the band all along a step, of which no result tells.
+    /// True if two modes are beyond the band over the whole step, and thus not in the results.
     bool are_beyond(const TrackedModes &modes, const int k, const int p, const int q)
     {
       const double limit = modes.options.largest_circular_frequency;
@@ -127,10 +128,9 @@ namespace Squeal
     }
 
     /**
-     * Where branches that change places in a step would meet if they interact.
-     * With λ_a diagonal and B = X Λ_b X⁻¹ for Φ_b = Φ_a X, the 2 × 2 problem is linear
-     * between; at the meeting point t of the frequencies its δ² is (Re λ_1 − Re λ_2)² + 4 t² B_12 B_21. Modes of other growth
-     * rates do not meet.
+     * Points at which branches that exchange their order in a step would coalesce if they interact. With λ_a diagonal and B = X Λ_b X⁻¹ for
+     * Φ_b = Φ_a X, the 2 × 2 problem is linear in between; where the frequencies are equal, at t, its δ² is (Re λ_1 − Re λ_2)² + 4 t² B_12
+     * B_21. Modes with different growth rates do not coalesce.
      */
     std::vector<double> interactions(const TrackedModes &modes, const int k)
     {
@@ -157,7 +157,7 @@ namespace Squeal
             const double  gap          = std::sqrt(std::abs(discriminant));
             if (gap < interacting * std::abs((1. - t) * before.real() + t * after.real()))
               continue;
-            // Frequencies that only repel each other do so over gap / slope
+            // Frequencies that only repel each other do so over a range of gap / slope
             const bool repel =
               discriminant.real() < 0. && modes.verdict(p, k) == Verdict::neutral && modes.verdict(q, k) == Verdict::neutral;
             const double extent = gap * modes.width(k) / std::abs(after.imag() - before.imag());
@@ -170,7 +170,7 @@ namespace Squeal
       return result;
     }
 
-    /// Where a negative function comes close to zero within a step, closer than at its ends.
+    /// Point within a step at which a negative function is closer to zero than at the ends.
     std::optional<double> peak_within(const TrackedModes &modes, const EventSearch &search)
     {
       const int    k    = search.interval;
@@ -191,7 +191,7 @@ namespace Squeal
       if (x.size() < 3)
         return std::nullopt;
 
-      // Lagrange's polynomial: coefficients of its products
+      // Lagrange polynomial: sum over the coefficients of its products
       for (std::size_t a = 0; a < x.size(); ++a)
         for (std::size_t b = 0; b < x.size(); ++b)
           if (a != b)
@@ -220,7 +220,7 @@ namespace Squeal
       return result;
     }
 
-    /// The middle one of values that follow each other within a distance of the first.
+    /// The middle value of each group of values within a distance of its first one.
     std::vector<double> one_of_each_cluster(std::vector<double> values, const double distance)
     {
       std::sort(values.begin(), values.end());
@@ -235,10 +235,9 @@ namespace Squeal
     }
 
     /**
-     * Where something may have happened that neither end of a step shows: Re λ of a
-     * decaying mode, or δ² of two modes at some distance, is about to reach zero
-     * according to the polynomial through the points around. Of several approaches about one place, of pins that are alike, one is
-     * looked at for all: where that is not enough, the next round asks again.
+     * Points at which an event may be hidden inside a step: Re λ of a decaying mode, or δ² of two modes at some distance, is about to reach
+     * zero according to the polynomial through the surrounding points. Several approaches at one point, such as those of equal pins, share
+     * one evaluation; if that is not enough, the next round repeats it.
      */
     std::vector<double> approaches(const TrackedModes &modes, const int k)
     {
@@ -285,7 +284,7 @@ namespace Squeal
           if (predicted.empty())
             wanted.push_back(proposal(modes, search));
         }
-    // Steps are looked at several at a time, and what they ask for is put together in their order
+    // Steps are examined in parallel, and their requests are collected in order
     std::vector<std::vector<double>> suspicions(std::max(0, modes.n_points() - 1));
     run_tasks(static_cast<int>(suspicions.size()), [&](const int k) {
       if (modes.width(k) <= modes.options.smallest_step)
@@ -300,13 +299,13 @@ namespace Squeal
       wanted.insert(wanted.end(), values.begin(), values.end());
     std::sort(wanted.begin(), wanted.end());
 
-    // Two searches may want nearly the same
+    // Two searches may request nearly the same point
     std::vector<double> result;
     for (const double value : wanted)
       if (result.empty() || value - result.back() > 0.25 * modes.options.threshold_tolerance)
         result.push_back(value);
 
-    // The last evaluations are spread over the range
+    // Distribute the last evaluations over the range
     if (result.size() > left)
       {
         for (std::size_t i = 0; i < left; ++i)

@@ -15,17 +15,17 @@ namespace Squeal
   struct ChartInterval
   {
     std::optional<ModeLinks> links;
-    int                      stalls = 0; ///< how often in a row it shrank by less than half
+    int                      stalls = 0; ///< number of successive shrinkages by less than half
   };
 
-  /// Modes of a multiple λ, with orthonormal bases of the spans of their right and left vectors.
+  /// Modes of a multiple λ, with orthonormal bases for their right and left vectors.
   struct MultipleModes
   {
     std::vector<int>   modes;
     ComplexDenseMatrix right, left;
   };
 
-  /// Modes over the friction coefficient: the points evaluated so far, and the mode of each branch at each of them.
+  /// Modes over the friction coefficient: evaluated points, and the mode of each branch at each point.
   struct TrackedModes
   {
     const ChartOptions                     &options;
@@ -52,7 +52,7 @@ namespace Squeal
       return mu(k + 1) - mu(k);
     }
 
-    /// Number of the mode of a branch, -1 beyond the chart.
+    /// Index of the mode of a branch; -1 beyond the chart.
     int mode(const int branch, const int k) const
     {
       return k < 0 || k >= n_points() ? -1 : branches[branch].modes[k];
@@ -63,24 +63,24 @@ namespace Squeal
       return points[k].lambda[mode(branch, k)];
     }
 
-    /// Intervals of this width are not searched further.
+    /// Width below which intervals are not searched further.
     double tolerance(const int k) const
     {
       constexpr double rounding = 8. * std::numeric_limits<double>::epsilon();
       return std::max(options.threshold_tolerance, rounding * std::max(std::abs(mu(k)), std::abs(mu(k + 1))));
     }
 
-    /// Of a branch at a point, from its λ alone: what rounding leaves open counts as neutral.
+    /// Verdict on a branch at a point from λ alone: undecided by rounding counts as neutral.
     Verdict verdict(const int branch, const int k) const
     {
       return verdict_of(lambda(branch, k));
     }
   };
 
-  /// Divides the modes of all points into branches, by the links of neighbouring points.
+  /// Links the modes of all points to branches.
   void follow_branches(TrackedModes &modes);
 
-  /// A sign to be located in a step, of a function of the branches.
+  /// A sign change of a function of the branches, to be located in a step.
   struct EventSearch
   {
     enum Kind
@@ -88,29 +88,29 @@ namespace Squeal
       growth,      ///< Re λ
       coalescence, ///< δ²
       end_of_band, ///< Im λ − ω_max
-      real_axis    ///< ((λ − λ̄)/2)², of real λ afterwards
+      real_axis    ///< ((λ − λ̄)/2)², then of real λ
     };
     Kind kind;
     int  interval;
     int  branch, partner;
     bool upward;           ///< onset, or entering the band
     bool at_once  = false; ///< neutral at the first point of the chart
-    bool multiple = false; ///< two modes that nothing tells apart from the first point up to this interval
+    bool multiple = false; ///< two modes that are indistinguishable from the first point up to this interval
   };
 
-  /// Steps in which a branch begins or ceases to grow, or enters or leaves the band.
+  /// Steps with thresholds or band crossings.
   std::vector<EventSearch> find_events(const TrackedModes &modes);
 
-  /// The function whose zero is searched, where the branches exist.
+  /// Function of the search, where its branches exist.
   std::optional<double> search_value(const TrackedModes &modes, const EventSearch &search, int k);
 
-  /// Whether a branch that is neutral at the first point grows from there on: Re λ ~ μ, or δ² ~ μ² of a double mode, with a factor that
-  /// linear extrapolation leaves positive.
+  /// True if a branch that is neutral at the first point grows from there: Re λ ~ μ, or δ² ~ μ² for a double mode, with a factor that is
+  /// positive by linear extrapolation.
   bool grows_at_once(const TrackedModes &modes, const EventSearch &search);
 
-  /// Friction coefficients that would tell more; @p predict may be empty.
+  /// Friction coefficients for further evaluations; @p predict may be empty.
   std::vector<double> refinement_requests(const TrackedModes &modes, const std::vector<EventSearch> &searches, const PredictZero &predict);
 
-  /// The chart, with what the searches have found.
+  /// The final chart, with the results of the searches.
   StabilityChart finished_chart(TrackedModes modes, const std::vector<EventSearch> &searches);
 } // namespace Squeal

@@ -106,7 +106,7 @@ TEST(SlidingVelocity, Refusals)
       [&] {
         nodes(block_on_rail(), {Rotation::positive, velocity});
       },
-      {"the velocity of the disc is zero or undefined there", "contact node at (0.07"});
+      {"the sliding velocity of the disc is zero or undefined at a contact node", "contact node at (0.07"});
   expect_refusal<MeshError>(
     [&] {
       nodes(block_on_rail(), {Rotation::positive, "0, 0, 2"});

@@ -79,7 +79,7 @@ TEST(Refusals, PlansThatDoNotFit)
      {plate + disc + "c() = Boundary{ Surface{2}; }; Physical Curve(\"pin_top_1\") = {c(0)};", {"'pin_top_1' is not one closed curve"}},
      {plate + disc + "c() = Abs(Boundary{ Surface{2}; }); Transfinite Curve{c()} = 2; Physical Curve(\"pin_top_1\") = {c()};",
       {"'pin_top_1' has 8 nodes", "multiple of 6"}},
-     {apart + disc + pad, {"coincide", "without being joined"}}});
+     {apart + disc + pad, {"coincide", "are not joined"}}});
 
   // Two pins one behind the other fill the ring, the one below overlaps both
   GeometryParameters parameters;

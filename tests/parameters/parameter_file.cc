@@ -110,8 +110,8 @@ TEST_F(ParameterFile, WhatIsNoParameterFileIsRefused)
   expect_refusal(write("a.prm", "end\n"), {"`end` closes no section"});
   expect_refusal(write("a.prm", "subsection A\n\nset b = 1\n"), {"a.prm, line 1"});
   expect_refusal(write("a.prm", "set b\n"), {"`set b` has no `=`"});
-  expect_refusal(write("a.prm", "friction = 3\n"), {"`friction = 3` is no line of a parameter file"});
-  expect_refusal(write("a.prm", "subsection A\nend of it\n"), {"`end of it` is no line"});
+  expect_refusal(write("a.prm", "friction = 3\n"), {"`friction = 3` is not a valid line of a parameter file"});
+  expect_refusal(write("a.prm", "subsection A\nend of it\n"), {"`end of it` is not a valid line"});
 }
 
 TEST_F(ParameterFile, ValuesBetweenQuotesAreTakenAsTheyAre)

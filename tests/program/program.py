@@ -127,7 +127,7 @@ class ProgramTest(unittest.TestCase):
 
     def interrupt(self, output, overrides, ends):
         """Begins a study of designs or a search, and goes on with it, as often as there are pairs (number, signal) in `ends`: each time it gets
-        the signal as soon as so many designs are known, and leaves no results."""
+        the signal as soon as so many designs are finished, and leaves no results."""
         for number, how in ends:
             with open(self.folder / "interrupted.log", "w+", encoding="utf-8") as log:
                 process = subprocess.Popen([EXECUTABLE, "scene.prm", "--output", output, *settings(overrides)], cwd=self.folder, stdout=log, stderr=log)

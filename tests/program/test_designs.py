@@ -86,7 +86,7 @@ class DesignsTest(ProgramTest):
         self.assertEqual(*((folder / "designs" / "2.prm").read_text(encoding="utf-8") for folder in (some, self.study)))
 
     def test_unknown_designs_are_refused(self):
-        for designs, what in (("7", "names no designs"), (",", "names no design")):
+        for designs, what in (("7", "is not a number of designs"), (",", "the list is empty")):
             process = self.call("scene.prm", "--output", "none", "--designs", designs, *settings((*STUDY, VARIABLES)))
             self.assert_message(process, [what])
             self.assertFalse((self.folder / "none").exists())
@@ -115,7 +115,7 @@ class DesignsTest(ProgramTest):
 
         process = self.call("scene.prm", "--output", "killed", *settings((*STUDY, VARIABLES)))
         self.assertEqual(process.returncode, 0, process.stderr)
-        self.assertIn(f"{n_known} of 6 designs are known", process.stdout)
+        self.assertIn(f"{n_known} of 6 designs are finished", process.stdout)
         self.assertEqual(design_tables(self.folder / "killed"), design_tables(self.study))
         self.assertFalse((self.folder / "killed.checkpoint").exists())
 
@@ -162,7 +162,7 @@ class DesignsTest(ProgramTest):
         self.assertEqual([row["outcome"] for row in rows], ["solved"])
 
     def test_what_lies_in_the_way_is_left_alone(self):
-        for name, text, words in (("letter.txt", "keep me", "not those of an unfinished study"),
+        for name, text, words in (("letter.txt", "keep me", "other than an unfinished study"),
                                   ("study.key", "squeal designs 1\n",
                                    "another version of the program lies there: `squeal designs 1` there, `squeal designs 4` here")):
             folder = self.folder / "mine.checkpoint"
@@ -182,5 +182,5 @@ class DesignsTest(ProgramTest):
         self.assertFalse((folder / "designs" / "2.prm").exists())
 
     def test_dry_runs_refuse_what_the_study_would(self):
-        self.dry_run_refused(["Real modes/Tolerance", "changes nothing"], "Study=geometry",
+        self.dry_run_refused(["Real modes/Tolerance", "has no effect"], "Study=geometry",
                              "Designs/Variables=Real modes/Tolerance = 1e-9, 1e-8")

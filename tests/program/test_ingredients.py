@@ -15,9 +15,9 @@ def tried_eigenvalues(folder, ingredient, tried=None):
     """lambda [rad/s] of a variant, from the table of its modes."""
     result = []
     for row in read_table(folder / "ingredients_modes.csv"):
-        if row["ingredient"] == ingredient and tried in (None, row["tried"]) and row["frequency tried [Hz]"]:
-            omega = 2 * math.pi * float(row["frequency tried [Hz]"])
-            result.append(complex(float(row["divergence rate tried [%]"]) / 100 * omega, omega))
+        if row["ingredient"] == ingredient and tried in (None, row["variant"]) and row["variant frequency [Hz]"]:
+            omega = 2 * math.pi * float(row["variant frequency [Hz]"])
+            result.append(complex(float(row["variant divergence rate [%]"]) / 100 * omega, omega))
     return result
 
 
@@ -29,7 +29,7 @@ class Ingredients(ProgramTest):
         cls.here = eigenvalues(cls.run_scene("here", *RICH))
 
     def rows(self, folder):
-        return {(row["ingredient"], row["tried"]): row for row in read_table(folder / "ingredients.csv")}
+        return {(row["ingredient"], row["variant"]): row for row in read_table(folder / "ingredients.csv")}
 
     def test_effects_are_those_of_single_runs(self):
         """What a variant shares with the reference leaves it as it is when run by itself."""
@@ -44,11 +44,11 @@ class Ingredients(ProgramTest):
                 row = self.rows(study)[ingredient, tried]
                 unstable = [sum(table_row["unstable [-]"] == "1" for table_row in read_table(folder / "complex_modes.csv"))
                             for folder in (self.folder / "here", alone)]
-                self.assertEqual([int(row["unstable modes here [-]"]), int(row["unstable modes tried [-]"])], unstable)
+                self.assertEqual([int(row["unstable modes in reference [-]"]), int(row["unstable modes in variant [-]"])], unstable)
         # All modes of the scene are in every variant's list
         for variant, row in self.rows(study).items():
-            listed = [mode["frequency here [Hz]"] for mode in modes if (mode["ingredient"], mode["tried"]) == variant]
-            self.assertEqual(sum(frequency != "" for frequency in listed), 0 if row["not tried because"] else len(here), variant)
+            listed = [mode["reference frequency [Hz]"] for mode in modes if (mode["ingredient"], mode["variant"]) == variant]
+            self.assertEqual(sum(frequency != "" for frequency in listed), 0 if row["reason not tried"] else len(here), variant)
 
     def test_the_cheapest_model_runs_and_keeps_its_promise(self):
         study = self.study
@@ -73,14 +73,14 @@ class Ingredients(ProgramTest):
 
     def test_what_a_scene_cannot_have(self):
         study = self.run_scene("plain", "Study=ingredients")
-        why = {ingredient: row["not tried because"] for (ingredient, _), row in self.rows(study).items()}
+        why = {ingredient: row["reason not tried"] for (ingredient, _), row in self.rows(study).items()}
         self.assertIn("equal shares of the load", why["lift-off"])
         self.assertIn("Ingredients/Trial friction slope", why["friction slope"])
         self.assertEqual(why["radial dissipation"], "")
-        self.assertIn("nothing that it has can be left out", (study / "cheapest.prm").read_text(encoding="utf-8"))
+        self.assertIn("no feature of it can be removed", (study / "cheapest.prm").read_text(encoding="utf-8"))
         # A free disc has no rotation in the fixed frame
         free = self.run_scene("free", "Study=ingredients", "Mounts/Elastic mounts=", "Band/Maximum frequency=3000")
-        self.assertIn("rigid body", self.rows(free)["rotation of the disc", "on"]["not tried because"])
+        self.assertIn("rigid body", self.rows(free)["rotation of the disc", "on"]["reason not tried"])
 
 
 if __name__ == "__main__":

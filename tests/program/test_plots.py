@@ -85,14 +85,14 @@ class Studies(ProgramTest):
     def assert_bars_of_ingredients(self, results, panels):
         rows = read_table(results / "ingredients.csv")
         for axes, column in zip(panels, ("change of frequency [%]", "change of divergence rate [percentage points]",
-                                         "cost beside the reference [-]"), strict=True):
+                                         "cost relative to reference [-]"), strict=True):
             values = [float(row[column] or 0) for row in rows]
             self.assert_bars(axes, {place: value for place, value in enumerate(values) if value > 1e-6})
         self.assertEqual(len(panels[0].get_yticklabels()), len(rows))
 
     def assert_bars_of_sensitivity(self, results, panels):
         column = "divergence rate per 1 % [percentage points]"
-        rows = [row for row in read_table(results / "sensitivities.csv") if not row["only of"] and row[column]]
+        rows = [row for row in read_table(results / "sensitivities.csv") if not row["body"] and row[column]]
         self.assertEqual(len(panels), min(4, len({row["mode [-]"] for row in rows})))
         names = [label.get_text() for label in panels[0].get_yticklabels()]
         for mode, axes in enumerate(panels, start=1):

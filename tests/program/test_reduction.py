@@ -131,9 +131,9 @@ class Refusals(ProgramTest):
         for mentions, *overrides in (
                 (["no basis `reel`", "Reduction/Bases", "real + 1st-ord."], "Reduction/Bases=reel"),
                 (["leaves no modes", "Reduction/Component modes"], "Reduction/Component modes=0, 3, 3"),
-                (["is out of reach"], "Reduction/Grown tolerances=1e-20"),
+                (["is outside the useful range"], "Reduction/Grown tolerances=1e-20"),
                 (["needs damping"], "Reduction/Bases=real + 1st-ord. two-sided + damping"),
-                (["belongs to the problem with friction"], "Reduction/Problem=frictionless", "Reduction/Bases=real + 1st-ord."),
+                (["requires friction"], "Reduction/Problem=frictionless", "Reduction/Bases=real + 1st-ord."),
                 (["given twice", "Reduction/Coupled frequency"], "Reduction/Coupled frequency=0, 9000, 9000"),
                 (["no snapshots", "Reduction/Snapshots"], "Reduction/Bases=POD", "Reduction/Snapshots=")):
             with self.subTest(mentions):

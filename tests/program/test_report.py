@@ -112,7 +112,7 @@ class Reports(ProgramTest):
         solved = [row for row in self.rows("designs", "designs") if row["outcome"] == "solved"]
         found = [row for row in self.rows("search", "search") if row[LARGEST]]
         mode = self.rows("sensitivity", "sensitivities")[0]
-        largest = next(row for row in self.rows("sensitivity", "sensitivity_ranking") if not row["only of"])
+        largest = next(row for row in self.rows("sensitivity", "sensitivity_ranking") if not row["body"])
         for name, rows, rate, label in (("stability", growing, RATE, "label"), ("map", cells, RATE, "label"), ("designs", solved, ONSET, "design [-]"),
                                         ("search", [{**row, LARGEST: "-" + row[LARGEST]} for row in found], LARGEST, "design [-]")):
             worst = max(rows, key=lambda row: float(row[rate]))
@@ -140,7 +140,7 @@ class Reports(ProgramTest):
         self.assertEqual(sum(len(trace["x"]) for trace in charts["branches"]["data"][-2:]), len(events))
         # Of two modes that meet, both have the frequency of the threshold there
         first, second = charts["bifurcations"]["data"][:2]
-        event = next(row for row in events if first["name"].startswith(f"{row['label']} and {row['label of partner']}, "
+        event = next(row for row in events if first["name"].startswith(f"{row['label']} and {row['partner label']}, "
                                                                        f"{float(row['frequency [Hz]']):.1f} Hz"))
         for curve in (first, second):
             at = min(range(len(curve["x"])), key=lambda i: abs(curve["x"][i] - float(event["mu [-]"])))
@@ -205,7 +205,7 @@ class Reports(ProgramTest):
         self.assertEqual([choice["key"] for choice in chart["choices"]], ["1", "2"])
         self.assertEqual(chart["chosen"], "1")
         for choice in chart["choices"]:
-            own = [row for row in rows if row["mode [-]"] == choice["key"] and not row["only of"] and row[CHANGE]]
+            own = [row for row in rows if row["mode [-]"] == choice["key"] and not row["body"] and row[CHANGE]]
             shown = sorted(x for trace in choice["data"] for x in trace["x"])
             self.assertEqual(len(shown), len(own))
             for x, row in zip(shown, sorted(own, key=lambda row: float(row[CHANGE]))):

@@ -40,8 +40,8 @@ class OfSystem(test_systems.SystemTest):
         c = test_systems.Flutter.MU_C
         exact = (2. - c - c * math.log(2. / c)) / 1.5
         bands = self.rows(results, "probabilities")
-        self.assertLess(bands[0]["lower end of confidence [%]"], 100. * exact)
-        self.assertGreater(bands[0]["upper end of confidence [%]"], 100. * exact)
+        self.assertLess(bands[0]["lower confidence limit [%]"], 100. * exact)
+        self.assertGreater(bands[0]["upper confidence limit [%]"], 100. * exact)
         self.assertEqual([(row["from [Hz]"], row["to [Hz]"]) for row in bands], [(0., 3.), (0., 1.), (1., 2.)])
         samples = self.rows(results, "samples")
         self.assertEqual(len(samples), 500 * 4)
@@ -54,7 +54,7 @@ class OfSystem(test_systems.SystemTest):
                 self.assertAlmostEqual(row["growth rate [1/s]"], abs(growth.real), delta=1e-9)
         worst = max(samples, key=lambda row: row["divergence rate [%]"] or 0.)
         self.assertTrue((results / "worst" / f"{int(worst['sample [-]'])}.prm").exists())
-        indices = [row for row in self.rows(results, "sobol_indices") if row["of"] == "largest divergence rate"]
+        indices = [row for row in self.rows(results, "sobol_indices") if row["quantity"] == "largest divergence rate"]
         self.assertEqual([row["uncertain parameter"] for row in indices], ["mu", "kappa"])
         self.assertTrue(all(row["total index [-]"] > row["first-order index [-]"] - 0.1 for row in indices))
 
@@ -133,8 +133,8 @@ class SearchOfSystem(test_systems.SystemTest):
             self.assertLessEqual(len(rows), 30)
             for row in rows:
                 exact = 100. * max(0., 1. - c / (0.8 + 4. * (row["x"] - 0.3) ** 2))
-                self.assertLessEqual(row["lower end of confidence [%]"] - 1., exact)
-                self.assertGreaterEqual(row["upper end of confidence [%]"] + 1., exact)
+                self.assertLessEqual(row["lower confidence limit [%]"] - 1., exact)
+                self.assertGreaterEqual(row["upper confidence limit [%]"] + 1., exact)
                 self.assertEqual(row["probability of squeal or doubt [%]"], row["probability of squeal [%]"] + row["undecided samples [%]"])
             best = min(rows, key=lambda row: row[column])
             self.assertEqual(rows[-1][f"best {column}"], best[column])
@@ -167,8 +167,8 @@ class SearchOfSystem(test_systems.SystemTest):
         rows = self.rows(results, "search")
         for row in rows:
             exact = 100. * (1. - c / (1.16 * row["kappa"]) * math.log(1.1 / 0.9) / 0.2)
-            self.assertLessEqual(row["lower end of confidence [%]"] - 1., exact)
-            self.assertGreaterEqual(row["upper end of confidence [%]"] + 1., exact)
+            self.assertLessEqual(row["lower confidence limit [%]"] - 1., exact)
+            self.assertGreaterEqual(row["upper confidence limit [%]"] + 1., exact)
         self.assertAlmostEqual(min(rows, key=lambda row: row["probability of squeal [%]"])["kappa"], 0.9, delta=0.01)
 
     def test_refusals(self):

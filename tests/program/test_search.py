@@ -62,7 +62,7 @@ class SearchTest(ProgramTest):
         process = self.call("scene.prm", "--output", "killed", *settings(SEARCH))
         self.assertEqual(process.returncode, 0, process.stderr)
         # Said once, not with every round that comes again
-        self.assertEqual(re.findall("an interrupted .*", process.stdout), [f"an interrupted search goes on: {n_known} designs are known"])
+        self.assertEqual(re.findall("continuing an .*", process.stdout), [f"continuing an interrupted search: {n_known} designs are finished"])
         resumed = self.folder / "killed"
         self.assertEqual(read_table(resumed / "search.csv"), read_table(self.search / "search.csv"))
         self.assertFalse((self.folder / "killed.checkpoint").exists())

@@ -136,7 +136,7 @@ class Sensitivity(ProgramTest):
         here = eigenvalue(row)
         at = {side: min(values, key=lambda other: abs(other - here)) for side, values in around.items()}
         difference = (at[1] - at[-1]) / (2 * step)
-        with self.subTest(parameter=row["parameter"], pin=row["only of"], mode=row["mode [-]"]):
+        with self.subTest(parameter=row["parameter"], pin=row["body"], mode=row["mode [-]"]):
             error, resolution = derivative(row) - difference, PRINTED * abs(here / step)
             self.assertLessEqual(abs(error), 1e-5 * abs(difference) + resolution)
             self.assertLessEqual(abs(error.real), 1e-5 * abs(difference.real) + resolution)
@@ -145,7 +145,7 @@ class Sensitivity(ProgramTest):
         """Beside complete runs; returns the names of all parameters."""
         folder = self.run_scene("rich", STUDY, NO_THRESHOLDS, NO_GEOMETRY, "Sensitivity/Tolerance=1e-7",
                                 "Sensitivity/Largest number of modes=4", *scene)
-        rows = [row for row in read_table(folder / "sensitivities.csv") if not row["only of"]]
+        rows = [row for row in read_table(folder / "sensitivities.csv") if not row["body"]]
         self.assertGreaterEqual(len({row["mode [-]"] for row in rows}), 2)
         self.assertEqual({row["derivative of"] for row in rows}, {"lambda"})
         for path in paths:
@@ -191,7 +191,7 @@ class Sensitivity(ProgramTest):
         folder = self.run_scene("orthotropic", STUDY, NO_THRESHOLDS, NO_GEOMETRY, "Sensitivity/Tolerance=1e-7",
                                 "Sensitivity/Largest number of modes=3", *scene())
         rows = [row for row in read_table(folder / "sensitivities.csv") if row["parameter"].startswith("Materials/Orthotropic:/")]
-        self.assertEqual({row["only of"] for row in rows}, {volume})
+        self.assertEqual({row["body"] for row in rows}, {volume})
         for name in checked or numbers:
             of_path = [row for row in rows if row["parameter"].rsplit("/", 1)[1].split()[0] == name]
             self.assertGreaterEqual(len(of_path), 2)
@@ -206,14 +206,14 @@ class Sensitivity(ProgramTest):
         rows = read_table(folder / "sensitivities.csv")
         for mode in {row["mode [-]"] for row in rows}:
             of_mode = [row for row in rows if row["mode [-]"] == mode]
-            own = {row["parameter"]: float(row["value"]) * derivative(row) for row in of_mode if not row["only of"]}
+            own = {row["parameter"]: float(row["value"]) * derivative(row) for row in of_mode if not row["body"]}
             here = eigenvalue(of_mode[0])
             stiffness = sum(value for path, value in own.items() if "Young" in path or "Mounts" in path)
             density = sum(value for path, value in own.items() if "Density" in path)
             self.assertLessEqual(abs(stiffness - here / 2), 1e-8 * abs(here))
             self.assertLessEqual(abs(density + here / 2), 1e-8 * abs(here))
             for path in ("Pin material/Young modulus", "Pin material/Density"):
-                single = [float(row["value"]) * derivative(row) for row in of_mode if row["parameter"] == path and row["only of"]]
+                single = [float(row["value"]) * derivative(row) for row in of_mode if row["parameter"] == path and row["body"]]
                 self.assertEqual(len(single), 4)
                 self.assertLessEqual(abs(sum(single) - own[path]), 1e-10 * abs(here))
             for row in of_mode:
@@ -246,7 +246,7 @@ class Sensitivity(ProgramTest):
         light = {frequency: 0.1 * ratio for frequency, ratio in RATIOS.items()}
         scene = [*RICH, modal(light), STEADY]
         folder = self.run_scene("damped", STUDY, NO_GEOMETRY, *THRESHOLDS, *scene)
-        rows = [row for row in read_table(folder / "sensitivities_thresholds.csv") if not row["only of"]]
+        rows = [row for row in read_table(folder / "sensitivities_thresholds.csv") if not row["body"]]
         self.assertEqual({row["derivative of"] for row in rows}, {"growth rate"})
         self.check_thresholds(rows, "Operation/Load per side", scene)
         self.check_thresholds(rows, "Damping/Modal damping ratio: 2000 Hz", scene,
@@ -257,7 +257,7 @@ class Sensitivity(ProgramTest):
         change."""
         overrides = overrides or (lambda value, change: [override(path, value * (1 + change))])
         step = 2e-5
-        rows = [row for row in rows if row["parameter"] == path and row["only of"] == pin]
+        rows = [row for row in rows if row["parameter"] == path and row["body"] == pin]
         self.assertGreaterEqual(len(rows), 3)
         value = float(rows[0]["value"])
         found, largest = {}, 0.0
@@ -301,7 +301,7 @@ class Sensitivity(ProgramTest):
         rows = read_table(folder / "sensitivities.csv")
         still = self.run_scene("still", "Band/Maximum frequency=1000", *scene)
         for path, pin in places:
-            of_path = [row for row in rows if row["parameter"] == "Geometry/" + path and row["only of"] == pin]
+            of_path = [row for row in rows if row["parameter"] == "Geometry/" + path and row["body"] == pin]
             self.assertGreaterEqual(len(of_path), 2)
             step = 1e-6 if "angles" not in path else 1e-4
             around = {}

@@ -380,7 +380,7 @@ class OtherSweeps(SweepTest):
         screen = self.screen_of("between", STEADY, "Sweep/First friction coefficient=0.4", "Sweep/Last friction coefficient=1.2",
                                 "Sweep/Number of friction coefficients=2", "Sweep/Count modes at=0.8", "Sweep/Mode shapes at=0.8",
                                 "Output/Mode shapes=unstable")
-        for message in ("modes are not counted", "no mode shape is written", "the complex plane is left out"):
+        for message in ("modes are not counted", "no mode shape is written", "the complex plane is omitted"):
             self.assertEqual(screen.count(message), 1, screen)
         for name in ("argument_counts.csv", "complex_plane.csv", "modes"):
             self.assertFalse((self.folder / "between" / name).exists())

@@ -213,7 +213,7 @@ class Flutter(SystemTest):
                     rate = complex(row["growth rate per unit [1/s]"], 2. * math.pi * row["frequency per unit [Hz]"])
                     self.assertLess(abs(rate - (above - below) / (2. * step)), 1e-5 * abs(rate))
         self.write("study.prm", STUDY.format(study="reduction", band=BAND))
-        self.assert_message(self.call("study.prm", "--output", "refused"), ["negative eigenvalues", "all studies but reduction"])
+        self.assert_message(self.call("study.prm", "--output", "refused"), ["negative eigenvalues", "all studies except reduction"])
         self.write("study.prm", STUDY.format(study="sweep", band=BAND))
         self.assert_message(self.call("study.prm", "--output", "refused", "--set", "Sweep/Parameter=p, 0.5, 2, 4", "--set", "Output/Write system=reduced"),
                             ["no definite part", "Output/Write system"])
@@ -507,7 +507,7 @@ class RoundTrip(SystemTest):
         compared = 0
         for row in mesh:
             name = names.get(row["parameter"])
-            if name is None or row["only of"] not in ("", "pin_top_1") or row["only of"] and "Volumes" not in row["parameter"]:
+            if name is None or row["body"] not in ("", "pin_top_1") or row["body"] and "Volumes" not in row["parameter"]:
                 continue
             value, scale = (complex(row["growth rate [1/s]"], 2. * math.pi * row["frequency [Hz]"]), abs(row["value"]))
             rate = complex(row["growth rate per unit [1/s]"], 2. * math.pi * row["frequency per unit [Hz]"])

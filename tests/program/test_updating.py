@@ -60,7 +60,7 @@ class OfScene(ProgramTest):
         fit = read_table(results / "fit.csv")
         self.assertEqual(len(fit), len(modes))
         self.assertLess(max(abs(float(row["residual after the fit [-]"])) for row in fit), 1e-6)
-        self.assertGreater(max(abs(float(row["residual of the start [-]"])) for row in fit), 1.)
+        self.assertGreater(max(abs(float(row["residual at start [-]"])) for row in fit), 1.)
         # The parameter file has the values, and its run the modes
         again = self.run_scene("again", file=str(results / "updated.prm"))
         found = {label: float(frequency) for (_, label, frequency), _ in unique_modes(again, "coupled")}

@@ -28,7 +28,7 @@ namespace
     return refusal("", {"Designs/Plan=file", "Designs/File=" + file.string()});
   }
 
-  const std::string changes_nothing = "changes nothing";
+  const std::string changes_nothing = "has no effect";
 } // namespace
 
 TEST(DesignChecks, VariablesThatChangeNothingAreRefused)
@@ -74,7 +74,7 @@ TEST(DesignChecks, ColumnsThatChangeNothingAreRefusedWhereRowsBecomeEqual)
   const std::string names = "Geometry/Pin height,Operation/Friction coefficient\n";
   EXPECT_EQ(refusal_of_file(names + "0.03,0.3\n0.035,0.4\n0.03,0.3\n"), "accepted");
   expect_mentions(refusal_of_file(names + "0.03,0.3\n0.03,0.4\n"),
-                  {"`Operation/Friction coefficient` varies, but changes nothing", "line 1"});
+                  {"`Operation/Friction coefficient` varies, but has no effect", "line 1"});
 }
 
 TEST(DesignChecks, ValuesAreHeldAgainstTheirBoundsFirst)

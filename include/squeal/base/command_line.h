@@ -8,20 +8,20 @@
 
 namespace Squeal
 {
-  /// What the user typed behind the name of the program.
+  /// Command-line arguments of the program.
   struct CommandLine
   {
     std::string                parameter_file; ///< empty: none
-    std::vector<std::string>   overrides;      ///< of the form Section/Name=value, in their order
+    std::vector<std::string>   overrides;      ///< Section/Name=value, in the order given
     std::optional<std::string> output;         ///< result folder
     std::string                designs;        ///< numbers of designs, such as "3, 7-9"; empty: all
     bool                       dry_run = false, print_parameters = false, version = false, help = false;
   };
 
   /**
-   * Takes options (`--name value` or `--name=value`) and the parameter file in any order; what follows `--` is no option.
+   * Parses options (`--name value` or `--name=value`) and the parameter file in any order; words after `--` are not options.
    *
-   * Throws ParameterError that quotes the word which is not understood.
+   * Throws ParameterError that quotes the unknown word.
    */
   CommandLine parse_command_line(const std::vector<std::string> &words);
 } // namespace Squeal

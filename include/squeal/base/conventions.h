@@ -8,20 +8,20 @@
 
 namespace Squeal
 {
-  /// Divergence rates that the least structural damping outweighs [-].
+  /// Divergence rate below which slight structural damping stabilises a mode [-].
   constexpr double weak_divergence = 1e-4;
 
-  /// Rates |Re λ| up to this part of the band's end belong to the band [-].
+  /// Largest |Re λ| in the band, as a fraction of its upper end ω [-].
   inline constexpr double largest_rate_of_band = 0.1;
 
   /**
-   * The band of a run. The argument principle counts the eigenvalues of its rectangle, Im λ ≤ end and |Re λ| ≤ rate. Those with
-   * |λ| ≤ radius(), which contains the rectangle, are listed, except those that decay faster than a given rate. What grows or decays faster
-   * than the radius depends on the mesh.
+   * The band of a run. The argument principle counts the eigenvalues in the rectangle Im λ ≤ end, |Re λ| ≤ rate. Listed are eigenvalues
+   * with |λ| ≤ radius(), a circle that encloses the rectangle, except those that decay faster than largest_decay. Faster growth or decay
+   * depends on the mesh.
    */
   struct Band
   {
-    /// @param given_rate largest |Re λ| [1/s]; 0: the part largest_rate_of_band of the end
+    /// @param given_rate largest |Re λ| [1/s]; 0: largest_rate_of_band times the end
     Band(const double end, const double given_rate = 0.)
       : end(end)
       , rate(given_rate > 0. ? given_rate : largest_rate_of_band * end)
@@ -31,7 +31,7 @@ namespace Squeal
 
     double end;             ///< largest Im λ [rad/s]
     double rate;            ///< largest |Re λ| of the rectangle [1/s]
-    double largest_damping; ///< |Re λ| over the end within reach of the radius [-]
+    double largest_damping; ///< largest |Re λ| within the radius, relative to the end [-]
     double largest_decay;   ///< of listed modes [1/s]
 
     double radius() const
@@ -45,7 +45,7 @@ namespace Squeal
     }
   };
 
-  /// Real eigenvalues below this part of the band's end creep, and are not listed [-].
+  /// Real eigenvalues below this fraction of the band's end are creep motions and are not listed [-].
   inline constexpr double zero_frequency = 1e-4;
 
   /// Circular frequency [rad/s] of a frequency in Hz.
@@ -60,21 +60,21 @@ namespace Squeal
     return circular_frequency / (2. * M_PI);
   }
 
-  /// How an eigenvalue λ = R + iω of Q(λ) = λ² M + λ C + K is reported. This is the only place where rad/s become Hz and rates become per
+  /// Reported quantities of an eigenvalue λ = R + iω of Q(λ) = λ² M + λ C + K. The only place where rad/s become Hz and rates become per
   /// cent.
   struct ModalQuantities
   {
     double frequency;       ///< ω / 2π [Hz]
     double growth_rate;     ///< R [1/s]; positive: the perturbation grows
     double divergence_rate; ///< ξ = R / ω [-], eq. (11) of the paper; 0 for ω = 0
-    double damping_ratio;   ///< industrial damping ratio -2 R / ω [-]; 0 for ω = 0
+    double damping_ratio;   ///< effective damping ratio −2R/ω [-]; 0 for ω = 0
   };
 
-  /// Quantities of a complex eigenvalue @p lambda [rad/s], of which Im λ ≥ 0.
+  /// Quantities of a complex eigenvalue @p lambda [rad/s] with Im λ ≥ 0.
   inline ModalQuantities modal_quantities(const std::complex<double> &lambda)
   {
     const double R = lambda.real(), omega = lambda.imag();
-    // A rigid-body or overdamped mode has no period to which R could be related.
+    // A rigid-body or overdamped mode has no period to relate R to
     const double xi = omega > 0. ? R / omega : 0.;
     return {hertz(omega), R, xi, -2. * xi};
   }

@@ -9,7 +9,7 @@
 
 namespace Squeal
 {
-  /// One value of an enumeration with the name that parameter files use.
+  /// A value of an enumeration and its name in parameter files.
   template <typename Enum>
   struct EnumName
   {
@@ -17,11 +17,11 @@ namespace Squeal
     std::string_view name;
   };
 
-  /// Names of an enumeration, stated once: specialised beside each enum as an array of EnumName; parser, printing and documentation all read it.
+  /// Names of an enumeration for parsing, printing and documentation: specialised next to each enum as an array of EnumName.
   template <typename Enum>
   inline constexpr std::nullptr_t enum_table = nullptr;
 
-  /// The name of @p value.
+  /// Name of @p value.
   template <typename Enum>
   std::string to_string(const Enum value)
   {
@@ -31,7 +31,7 @@ namespace Squeal
     return "?";
   }
 
-  /// All names in their order.
+  /// All names, in the order of the enumeration.
   template <typename Enum>
   std::vector<std::string> enum_names()
   {
@@ -41,7 +41,7 @@ namespace Squeal
     return names;
   }
 
-  /// The value called @p name, which must be one of enum_names().
+  /// Value with this @p name, which must be one of enum_names().
   template <typename Enum>
   Enum enum_value(const std::string &name)
   {

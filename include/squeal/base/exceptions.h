@@ -7,12 +7,12 @@
 
 namespace Squeal
 {
-  /// What the user reads when a run cannot go on: what is wrong, where, and what to change. Thrown by everything that checks input, meshes
-  /// or the outcome of a solver; main() prints it as one message and returns 1.
+  /// An error message for the user: what is wrong, where, and what to change. Thrown by all checks of input, meshes and solver results;
+  /// main() prints it and returns 1.
   struct Error : std::runtime_error
   {
     /**
-     * @param what   the quantity or parameter, its value, and why it is refused
+     * @param what   the quantity or parameter, its value, and why it is rejected
      * @param where  file, section, surface, component or step
      * @param change what would make the run succeed
      */
@@ -26,25 +26,25 @@ namespace Squeal
     const std::string reason, where, change; ///< the three parts of the message
   };
 
-  /// An Error in the parameter file or on the command line.
+  /// An error in the parameter file or on the command line.
   struct ParameterError : Error
   {
     using Error::Error;
   };
 
-  /// An Error in a geometry or mesh.
+  /// An error in a geometry or mesh.
   struct MeshError : Error
   {
     using Error::Error;
   };
 
-  /// An Error of a solver: not converged, not certified, count not met.
+  /// A solver did not converge, or its modes are not as many as counted.
   struct SolverError : Error
   {
     using Error::Error;
   };
 
-  /// An Error while reading or writing files.
+  /// An error while reading or writing files.
   struct FileError : Error
   {
     using Error::Error;

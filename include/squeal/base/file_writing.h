@@ -7,10 +7,10 @@
 
 namespace Squeal
 {
-  /// Writes a text as a file, to its last byte and its closing. Returns 0, or the number of the error (`errno`).
+  /// Writes a complete text file and closes it. Returns 0 or `errno`.
   int write_file(const std::filesystem::path &file, std::string_view text);
 
-  /// Gives a file a new content by way of `FILE.incomplete`: at every moment it has the former one or all of the new one. Throws
+  /// Replaces a file atomically, via `FILE.incomplete`: the old or the new content is complete at any time. Throws
   /// std::filesystem::filesystem_error.
   void replace_file(const std::filesystem::path &file, std::string_view text);
 } // namespace Squeal

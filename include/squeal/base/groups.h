@@ -9,7 +9,7 @@
 
 namespace Squeal
 {
-  /// Group of each of n things, the number of its first member, where connected(i, j), j < i, puts two into one, in chains.
+  /// Groups of n items, chained by connected(i, j), j < i: for each item the number of the first member of its group.
   template <typename Predicate>
   std::vector<int> connected_groups(const int n, const Predicate &connected)
   {
@@ -22,7 +22,7 @@ namespace Squeal
     return group;
   }
 
-  /// The members of each group, ascending, by the first of them.
+  /// Members of each group, ascending; groups in the order of their first members.
   inline std::vector<std::vector<int>> members_of(const std::vector<int> &group)
   {
     std::vector<std::vector<int>> members(group.size());
@@ -33,10 +33,8 @@ namespace Squeal
   }
 
   /**
-   * Assigns each of @p n_rows to a column of its own so that the sum of
-   * gain(row, column) is largest; needs n_rows ≤ n_columns. Returns the column
-   * of each row. Shortest augmenting paths (H. W. Kuhn 1955; R. Jonker,
-   * A. Volgenant 1987), n_rows² · n_columns operations.
+   * Assigns each of @p n_rows to a column of its own so that the sum of gain(row, column) is largest; needs n_rows ≤ n_columns. Returns the
+   * column of each row. Shortest augmenting paths (H. W. Kuhn 1955; R. Jonker, A. Volgenant 1987), n_rows² · n_columns operations.
    */
   std::vector<int> best_assignment(int n_rows, int n_columns, const std::function<double(int, int)> &gain);
 } // namespace Squeal

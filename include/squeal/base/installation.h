@@ -6,14 +6,14 @@
 
 namespace Squeal
 {
-  /// Where the program finds what belongs to it: seen from the executable as `cmake --install` lays it out, so that an installation may be
-  /// moved as a whole; in the trees that it was built from, if it is not installed.
+  /// Paths of installed files, relative to the executable as laid out by `cmake --install`, so that an installation can be moved; paths in
+  /// the source and build trees if not installed.
   struct Installation
   {
-    std::filesystem::path geometries; ///< folder of the geometries that come with the program
+    std::filesystem::path geometries; ///< geometries that come with the program
     std::filesystem::path mesher;     ///< executable in which Gmsh runs
   };
 
-  /// That of this process.
+  /// Installation of this process.
   const Installation &installation();
 } // namespace Squeal

@@ -9,34 +9,34 @@
 namespace Squeal
 {
   /**
-   * Memory that the processes of this machine may take together before one of them is killed [byte]: what the kernel has available
-   * (`MemAvailable`), or what the control groups of this process (version 2) leave, whichever is less. Files that are only cached count
-   * as available. Infinity where neither is known.
+   * Memory that the processes of this machine may use in total before the kernel kills one [byte]: the smaller of the available memory
+   * (`MemAvailable`) and the remaining limit of the control groups (version 2). Cached files count as available. Infinity if neither is
+   * known.
    *
-   * @param root where /proc and /sys are found
+   * @param root folder that contains /proc and /sys
    */
   double available_memory(const std::filesystem::path &root = "/");
 
-  /// What all machines on which these processes run have [byte]. All processes must call.
+  /// Available memory of all machines of the communicator [byte]. Collective.
   double available_memory(MPI_Comm communicator);
 
-  /// Part of the available memory up to which vectors are kept that can be solved for again, one for each contact node [-].
+  /// Largest fraction of the available memory for vectors that can be recomputed, one per contact node [-].
   constexpr double largest_part_of_attachment_modes = 0.125;
 
-  /// Memory of this process that is resident now [byte]; 0 where the system does not tell.
+  /// Resident memory of this process [byte]; 0 if the system does not report it.
   double resident_memory();
 
-  /// Peak of it since the beginning of the process or since reset_peak_memory() [byte]; 0 where the system does not tell.
+  /// Peak resident memory since the start of the process or the last reset_peak_memory() [byte]; 0 if the system does not report it.
   double peak_resident_memory();
 
-  /// Lets freed memory go back to the system where it is more than 256 MB at the end of the heap. SuperLU_dist, which comes with the
-  /// packages of deal.II, tells the allocator to keep everything: a process would hold the sum of what its steps ever used. Large blocks
-  /// are not mapped one by one, since clearing new pages for each temporary vector takes a tenth of a large run. To be called once, first.
+  /// Returns freed memory at the end of the heap to the system if it exceeds 256 MB. SuperLU_dist, which the deal.II packages link, makes
+  /// the allocator keep all memory, so that a process would hold the sum of all steps. Large blocks are not mapped individually: clearing
+  /// the pages of each temporary vector takes a tenth of a large run. Call once, before anything else.
   void return_freed_blocks();
 
-  /// Gives all freed memory back to the system.
+  /// Returns all freed memory to the system.
   void return_freed_memory();
 
-  /// Gives freed memory back and begins a new peak; whether the system allows it.
+  /// Returns freed memory and resets the peak; false if the system does not allow it.
   bool reset_peak_memory();
 } // namespace Squeal

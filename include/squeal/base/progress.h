@@ -13,7 +13,7 @@
 
 namespace Squeal
 {
-  /// What work takes on this process.
+  /// Time and memory used on this process.
   struct Cost
   {
     double seconds     = 0.; ///< wall time [s]
@@ -21,7 +21,7 @@ namespace Squeal
     double peak_memory = 0.; ///< peak resident memory so far [byte]
   };
 
-  /// Measures what is done after its construction.
+  /// Measures the cost since its construction.
   class Stopwatch
   {
   public:
@@ -34,26 +34,24 @@ namespace Squeal
     std::clock_t                          cpu_start;
   };
 
-  /// One finished step of a run, as the run record lists it.
+  /// A finished step of a run, as listed in the run record.
   struct StepRecord : Cost
   {
     std::string name;
-    std::string summary; ///< what the step found, one phrase
+    std::string summary; ///< result of the step, one phrase
   };
 
   /**
-   * The one channel through which computing code speaks while it works: one
-   * line per step with its elapsed time, and on a terminal a live counter,
-   * which a thread of its own keeps running while libraries compute.
-   * Silent on every process but the one that was given a stream.
+   * Progress messages: one line per step with its elapsed time, and on a terminal a live counter, which a separate thread updates while
+   * libraries compute. Silent on all processes except the one with a stream.
    */
   class Progress
   {
   public:
-    /// A channel that records steps but prints nothing.
+    /// Records steps and prints nothing.
     Progress() = default;
 
-    /// A channel that prints to @p stream; @p live: it is a terminal.
+    /// Prints to @p stream; @p live: it is a terminal.
     Progress(std::ostream &stream, bool live);
 
     ~Progress();
@@ -61,13 +59,13 @@ namespace Squeal
     Progress(const Progress &)            = delete;
     Progress &operator=(const Progress &) = delete;
 
-    /// Begins a step; an unfinished one is finished first.
+    /// Begins a step, after finishing the current one.
     void begin(const std::string &name);
 
     /// Sets the state of the current step that the live counter shows.
     void update(const std::string &state);
 
-    /// Ends the current step with the line that stays; returns what it took.
+    /// Ends the current step, prints its final line and returns its cost.
     Cost finish(const std::string &summary = "");
 
     /// Prints a line that belongs to no step.
@@ -86,7 +84,7 @@ namespace Squeal
     }
 
   private:
-    /// Shows the counter until the channel is closed.
+    /// Updates the live counter until the object is destroyed.
     void count();
 
     std::ostream           *stream = nullptr;

@@ -6,20 +6,20 @@
 
 namespace Squeal
 {
-  /// Threads on which this process may work: @p wanted, or where that is 0 OMP_NUM_THREADS if it is set to a positive number, and else one
-  /// for each core that the process may use, as far as it need not share them with @p n_processes - 1 others on this machine.
+  /// Number of threads of this process: @p wanted; if 0, OMP_NUM_THREADS if positive, else the available cores, shared with @p n_processes
+  /// - 1 other processes on this machine.
   unsigned int usable_threads(unsigned int wanted, unsigned int n_processes = 1);
 
-  /// Sets the number of threads of run_tasks(), which is 1 before.
+  /// Sets the number of threads of run_tasks(); initially 1.
   void set_task_threads(unsigned int n);
 
   unsigned int n_task_threads();
 
-  /// Calls task(0) to task(n - 1), in any order and several at a time. They may not communicate, nor write what another one reads. What the
-  /// first of those that fail throws is thrown here, when no other is at work any more.
+  /// Calls task(0) to task(n - 1), in any order and concurrently. Tasks must not communicate, nor write what another one reads. Rethrows
+  /// the exception of the first failing task once all running tasks have ended.
   void run_tasks(int n, const std::function<void(int)> &task);
 
-  /// Calls f(first, n) as tasks for parts of 0, ..., total - 1 of @p size each, the last of them of what is left; for one part without
-  /// anything if the total is 0. Parts are the same however many threads there are.
+  /// Calls f(first, n) as tasks for blocks of 0, ..., total - 1 with @p size elements, the last one with the remainder; f(0, 0) once if the
+  /// total is 0. The blocks do not depend on the number of threads.
   void run_parts(int total, int size, const std::function<void(int first, int n)> &f);
 } // namespace Squeal

@@ -11,32 +11,32 @@
 
 namespace Squeal
 {
-  /// Cores that this process may use, as the system and whoever started it leave them.
+  /// Cores that this process may use according to its affinity.
   unsigned int n_usable_cores();
 
-  /// This program once more, in a process of its own: whatever happens to it leaves this one alone. It knows nothing of the MPI job that
-  /// this process belongs to, and is told to end (SIGTERM) when this process ends in whatever way.
+  /// Runs this program in a separate process, so that its failure does not affect this one. It does not join the MPI job of this process
+  /// and receives SIGTERM when this process ends for any reason.
   class WorkerProcess
   {
   public:
     /**
-     * Starts it.
+     * Starts the process.
      *
-     * @param arguments behind the name of the program
-     * @param log       file that takes what it prints
-     * @param n_threads where the user has not chosen their number by OMP_NUM_THREADS: more threads than cores wait for each other
+     * @param arguments without the name of the program
+     * @param log       file for its output
+     * @param n_threads sets OMP_NUM_THREADS unless the user has set it, so that there are not more threads than cores
      *
      * Throws FileError if it cannot be started.
      */
     WorkerProcess(const std::vector<std::string> &arguments, const std::filesystem::path &log, unsigned int n_threads);
 
-    /// Tells it to end, and waits until it has.
+    /// Sends SIGTERM and waits for the end of the process.
     ~WorkerProcess();
 
     WorkerProcess(const WorkerProcess &)            = delete;
     WorkerProcess &operator=(const WorkerProcess &) = delete;
 
-    /// How it ended: "" for success, "exit status 1", "killed by SIGSEGV"; nothing while it runs.
+    /// How the process ended: "" for success, "exit status 1", "killed by SIGSEGV"; nothing while it runs.
     std::optional<std::string> end();
 
   private:

@@ -12,16 +12,16 @@
 
 namespace Squeal
 {
-  /// What bases rest on, and what it costs to compute it.
+  /// Quantities from which bases are built; those that are needed determine the cost.
   enum class BasisSource
   {
-    disc_free,    ///< Φ_f^D, n_uncoupled × k, truncated as wanted
+    disc_free,    ///< Φ_f^D, n_uncoupled × k, truncated as requested
     disc_sliding, ///< Φ_s^D
     pins_free,    ///< Φ_f^P
     pins_sliding, ///< Φ_s^P
     real,         ///< Φ_R, n × n_R
     snapshots,    ///< real and imaginary parts of complex modes, n × k, φᴴ M_c φ = 1
-    residuals,    ///< a basis grown by residuals, n × k
+    residuals,    ///< basis enriched by residuals, n × k
     normal_attachment,
     tangential_attachment,
     constraint_disc,
@@ -48,15 +48,15 @@ namespace Squeal
     {BasisSource::uncoupled_factor, "factor of K"},
     {BasisSource::coupled_factor, "factor of K_c"}};
 
-  /// Numbers of vectors that a basis is made of.
+  /// Numbers of vectors in the parts of a basis.
   struct BasisCounts
   {
     std::map<BasisSource, int> sets;
-    int                        rigid_body = 0; ///< motions of a free disc that its modes do not contain
+    int                        rigid_body = 0; ///< rigid-body motions of a free disc that are missing in its modes
     int                        contact    = 0; ///< n_c
   };
 
-  /// What bases are made from. What a basis does not need may be missing; what is pointed to must outlive the call only.
+  /// Input of bases. Anything that a basis does not need may be null; pointers must be valid during the call only.
   struct BasisIngredients
   {
     std::map<BasisSource, const MultiVector *> sets; ///< of modes
@@ -69,7 +69,7 @@ namespace Squeal
 
     double friction_coefficient = 0.; ///< μ of the rubbing attachment modes and of the response to damping
 
-    /// Null if it is missing.
+    /// Null if the set is missing.
     const MultiVector *set(const BasisSource source) const
     {
       const auto found = sets.find(source);
@@ -77,46 +77,46 @@ namespace Squeal
     }
   };
 
-  /// Vectors that bases are made of: a set, or responses to be computed.
+  /// A block of basis vectors: a given set, or computed responses.
   struct BasisPart
   {
     const char                *symbol;
-    std::vector<BasisSource>   rests_on; ///< what is computed beforehand
-    std::optional<BasisSource> set;      ///< the vectors, or modes to each of which there is a response; else one per contact node
-    bool                       is_uncoupled                     = false;   ///< whether the vectors are of the uncoupled bodies
-    MultiVector (*compute)(const BasisIngredients &ingredients) = nullptr; ///< null: they are the set
+    std::vector<BasisSource>   rests_on; ///< quantities computed beforehand
+    std::optional<BasisSource> set;      ///< the vectors, or modes with one response each; without a set, one vector per contact node
+    bool                       is_uncoupled                     = false;   ///< vectors of the uncoupled bodies
+    MultiVector (*compute)(const BasisIngredients &ingredients) = nullptr; ///< null: the vectors are the set
   };
 
-  /// A reduced basis: what it is made of, and for which problems.
+  /// A reduced basis: its parts and its eigenproblems.
   struct BasisRecipe
   {
     const char                    *name;
-    std::vector<const BasisPart *> parts; ///< the columns of T_r0, from left to right
+    std::vector<const BasisPart *> parts; ///< columns of T_r0, from left to right
     bool                           needs_friction = true;
     bool                           needs_damping  = false;
-    bool                           is_pod         = false; ///< the principal axes of the columns; else all that are independent
+    bool                           is_pod         = false; ///< principal axes of the columns; else all independent columns
 
-    /// The parts by their symbols: "Phi_f^D Phi_f^P (Psi_an^D - Psi_an^P)".
+    /// Symbols of the parts: "Phi_f^D Phi_f^P (Psi_an^D - Psi_an^P)".
     std::string columns() const;
 
-    /// Whether it is made on the uncoupled dofs and must be connected, eq. (22); the others have coupled columns.
+    /// True if built on the uncoupled dofs and connected by eq. (22); other bases have coupled columns.
     bool is_connected() const
     {
       return parts.front()->is_uncoupled;
     }
 
-    /// Whether some of its columns belong to contact nodes instead of modes.
+    /// True if some columns belong to contact nodes instead of modes.
     bool needs_contact_nodes() const;
 
-    /// Whether real coupled modes are among its columns.
+    /// True if the columns include real coupled modes.
     bool has_real_modes() const;
 
     bool rests_on(BasisSource source) const;
   };
 
-  /// All bases: those of tables 2, 4 and 5 of the paper first, then what goes beyond them.
+  /// All bases: first those of tables 2, 4 and 5 of the paper, then additional ones.
   const std::vector<BasisRecipe> &basis_recipes();
 
-  /// The basis of that name; null if there is none.
+  /// Basis with this name; null if there is none.
   const BasisRecipe *find_recipe(const std::string &name);
 } // namespace Squeal

@@ -12,7 +12,7 @@
 
 namespace Squeal
 {
-  /// Normal modes of the disc, or of the whole set of pins, on the uncoupled dofs.
+  /// Normal modes of the disc or of all pins, on the uncoupled dofs.
   struct ComponentModes
   {
     std::vector<ModeLabel>       labels;
@@ -21,18 +21,17 @@ namespace Squeal
     std::shared_ptr<MultiVector> vectors;     ///< n_free × k, orthonormal in M, zero on the other components
   };
 
-  /// Masses lumped to the nodes [kg] whose rows this process has; zero of the others, and of clamped ones. They are row sums, or, where some of
-  /// these are not positive as at the corners of quadratic tetrahedra, shares of the whole mass in proportion to the diagonal (E. Hinton,
-  /// T. Rock, O. C. Zienkiewicz 1976).
+  /// Lumped nodal masses [kg] of the rows of this process; zero for other and for clamped nodes. Row sums; if some are not positive, as at
+  /// the corners of quadratic tetrahedra, the total mass is distributed in proportion to the diagonal (E. Hinton, T. Rock, O. C.
+  /// Zienkiewicz 1976).
   std::vector<double> nodal_masses(const Model &model, const SparseMatrix &mass);
 
   /**
-   * All modes of a component with ω² ≤ @p largest_eigenvalue, contact nodes
-   * free or sliding, labelled by shape. The number of modes is certified by
-   * inertia. Throws SolverError where it is not met.
+   * All modes of a component with ω² ≤ @p largest_eigenvalue, contact nodes free or sliding, labelled by shape. Throws SolverError if their
+   * number differs from the inertia count.
    *
-   * @param interface all contact nodes, which give the pins their axes, whether they are closed or not
-   * @param closed    those in contact
+   * @param interface all contact nodes, closed or open: they define the axes of the pins
+   * @param closed    contact nodes in contact
    */
   ComponentModes component_modes(const Model                 &model,
                                  const ContactInterface      &interface,
@@ -43,11 +42,11 @@ namespace Squeal
                                  double                       largest_eigenvalue,
                                  const SymmetricModesOptions &options);
 
-  /// Part of each shape of component modes in a mode: |v_iᵀ M φ|² / φᴴ M φ, summed over the v_i of the shape [-].
+  /// Contribution of each shape of component modes to a mode: |v_iᵀ M φ|² / φᴴ M φ, summed over the v_i of the shape [-].
   using ShapeShares = std::map<ModeShape, double>;
 
   /**
-   * The shares of every shape in each of some real or complex modes.
+   * Contribution of every shape to real or complex modes.
    *
    * @param references     disc modes with contact free, pin modes with contact sliding
    * @param mass           M of the uncoupled bodies
@@ -59,15 +58,15 @@ namespace Squeal
                                         const MultiVector                         &real_part,
                                         const MultiVector                         *imaginary_part);
 
-  /// VᵀMX of the component modes V of each of the @p references, with vectors X, n_free × r.
+  /// VᵀMX of the component modes V of each of the @p references with vectors X, n_free × r.
   std::vector<DenseMatrix> products_with(const std::vector<const ComponentModes *> &references,
                                          const SparseMatrix                        &mass,
                                          const MultiVector                         &X);
 
   /**
-   * The same for modes Xy of a reduced model, from their coordinates y.
+   * Contribution of every shape to modes Xy of a reduced model, from their coordinates y.
    *
-   * @param products       products_with() its basis X
+   * @param products       products_with() of the basis X
    * @param mass           XᵀMX
    * @param coordinates    [Re y, Im y], r × 2k
    */
@@ -77,16 +76,14 @@ namespace Squeal
                                         const DenseMatrix                         &coordinates);
 
   /**
-   * Identities of real or complex coupled modes by their M-inner products with
-   * component modes; those of one shape (a doublet, the F1 modes of all
-   * pins) count together. Where each mode is dominated by another component
-   * mode it gets that one's label; where several compete (an A0-5 mode that
-   * shakes the pins more than itself), the labels are distributed so that the
-   * sum of all participations is largest and none is given more often than there are
+   * Labels real or complex coupled modes by their M-inner products with component modes; modes of one shape (a doublet, the F1 modes of all
+   * pins) count together. If each mode is dominated by a different component mode, it gets the label of that one. If several modes compete
+   * (an A0-5 mode with larger motion of the pins), labels are distributed so that the sum of all participations is largest and no label
+   * occurs more often than there are component modes with it. A participation below 0.1 gives no label.
    * component modes of it. A participation below a tenth gives no name.
    *
-   * @param references the component modes that were given to shape_shares()
-   * @param shares     what it returned, an entry for each coupled mode
+   * @param references component modes, as for shape_shares()
+   * @param shares     result of shape_shares(), one entry per coupled mode
    */
   std::vector<ModeLabel> identify(const std::vector<const ComponentModes *> &references, const std::vector<ShapeShares> &shares);
 } // namespace Squeal

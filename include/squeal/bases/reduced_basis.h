@@ -9,44 +9,44 @@
 
 namespace Squeal
 {
-  /// Columns of T_r0 and of T_r before any decision on rank, tables 2, 4 and 5 of the paper.
+  /// Nominal numbers of columns of T_r0 and T_r, before rank decisions; tables 2, 4 and 5 of the paper.
   struct BasisSize
   {
     int n_r0, n_r;
   };
   BasisSize nominal_size(const BasisRecipe &recipe, const BasisCounts &counts);
 
-  /// Decisions on rank.
+  /// Rank tolerances.
   struct BasisOptions
   {
-    /// Directions whose M-norm is below this part of the largest are dropped [-].
+    /// Directions whose M-norm is below this fraction of the largest are dropped [-].
     double tolerance = 1e-10;
 
-    /// Singular values of P_n T_r0, columns scaled to unit M-norm, below this part of the largest count as zero [-].
+    /// Singular values of P_n T_r0, columns scaled to unit M-norm, below this fraction of the largest count as zero [-].
     double connection_tolerance = 1e-12;
 
-    double pod_tolerance = 1e-6; ///< principal axes of the snapshots below this part of the largest are dropped [-]
-    int    pod_size      = 0;    ///< principal axes kept at most; 0: as many as the tolerance leaves
+    double pod_tolerance = 1e-6; ///< principal axes of the snapshots below this fraction of the largest are dropped [-]
+    int    pod_size      = 0;    ///< largest number of principal axes; 0: limited by the tolerance only
   };
 
-  /// How the components were connected: T_cr spans the kernel of P_n T_r0.
+  /// Rank of the connection of the components: T_cr spans the kernel of P_n T_r0.
   struct ConnectionRank
   {
     int    rank             = 0;  ///< of P_n T_r0; 0 for a basis that needs no connection
     double smallest_kept    = 0.; ///< singular value / largest one [-]
     double largest_dropped  = 0.; ///< singular value / largest one [-]; 0 if none was dropped
-    double constraint_error = 0.; ///< max |P_n T_r0 T_cr| / max |T_r0 T_cr| before the last digit is mended [-]
+    double constraint_error = 0.; ///< max |P_n T_r0 T_cr| / max |T_r0 T_cr| before the final correction [-]
   };
 
-  /// A basis of the coupled system, and how it came about.
+  /// A basis of the coupled system, and rank and accuracy of its construction.
   struct ReducedBasis
   {
     std::shared_ptr<MultiVector> vectors;        ///< T_r in coupled coordinates, n × r, M_c-orthonormal
     int                          n_r0;           ///< columns of T_r0
-    int                          n_nominal;      ///< columns of T_r by the formula
-    int                          n_dropped;      ///< columns of T_r0 T_cr found dependent, or left out by POD
-    double                       tolerance;      ///< of that decision [-]
-    double                       condition;      ///< of the Gram matrix of T_r0 T_cr, columns scaled to unit M-norm (POD: as they are)
+    int                          n_nominal;      ///< columns of T_r according to the formula
+    int                          n_dropped;      ///< columns of T_r0 T_cr that are dependent, or dropped by POD
+    double                       tolerance;      ///< rank tolerance [-]
+    double                       condition;      ///< of the Gram matrix of T_r0 T_cr, columns scaled to unit M-norm (POD: unscaled) [-]
     double                       orthonormality; ///< max |T_rᵀ M_c T_r − I|, below 1e-10
     ConnectionRank               connection;
 
@@ -58,14 +58,12 @@ namespace Squeal
   };
 
   /**
-   * Builds a basis: joins the columns of T_r0; for component modes finds T_cr
-   * with P_n T_r0 T_cr = 0 by a singular value decomposition of P_n T_r0, its
-   * columns scaled to unit M-norm, and goes over to coupled coordinates; then
-   * makes the columns M_c-orthonormal. The disc_free modes of a free disc
-   * are completed by its rigid-body motions where they lack them.
+   * Builds a basis: joins the columns of T_r0; for component modes finds T_cr with P_n T_r0 T_cr = 0 by a singular value decomposition of
+   * P_n T_r0, columns scaled to unit M-norm, and converts to coupled coordinates; then orthonormalises the columns in M_c. Rigid-body
+   * motions that are missing in the disc_free modes of a free disc are added.
    *
-   * Throws SolverError if an ingredient is missing or an empty set, if a
-   * basis of component modes is larger than the system, or if it cannot be made orthonormal.
+   * Throws SolverError if an ingredient is missing or empty, if a basis of component modes is larger than the system, or if
+   * orthonormalisation fails.
    */
   ReducedBasis reduced_basis(const BasisRecipe &recipe, const BasisIngredients &ingredients, const BasisOptions &options = {});
 } // namespace Squeal

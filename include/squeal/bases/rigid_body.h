@@ -15,60 +15,56 @@
 
 namespace Squeal
 {
-  /// ω_max / s for a shift s that keeps the inverse of K + s² M from magnifying slow motions [-].
+  /// ω_max / s for the shift s in K + s² M: large enough that the inverse does not amplify slow motions [-].
   inline constexpr double band_per_stabilizing_shift = 50.;
 
-  /// Displacements along and rotations about x, y, z of one component, the others at rest: n × 6 on the uncoupled dofs.
+  /// Translations along and rotations about x, y, z of one component, the others at rest: n × 6 on the uncoupled dofs.
   MultiVector rigid_motions(const Model &model, unsigned int component);
 
-  /// The six rigid-body motions of the disc with the pins following where the contact makes them, in coupled coordinates, n × 6.
+  /// The six rigid-body motions of the disc, with the pins following where contact requires it, in coupled coordinates, n × 6.
   MultiVector rigid_disc_motions(const Model &model, const CoupledSystem &system);
 
-  /// Rigid-body motions of an uncoupled body that its mounts leave free (up to rounding errors of K), M-orthonormal; nothing if they hold
-  /// it, or it has clamped nodes.
+  /// Rigid-body motions of an uncoupled body that its mounts leave free (up to rounding errors of K), M-orthonormal; nothing if the body is
+  /// held or has clamped nodes.
   std::optional<MultiVector> free_motions(const Model &model, const SecondOrderSystem &system, unsigned int component);
 
-  /// Combinations of rigid-body motions, M-orthonormal as these are, by what they do to the contact nodes.
+  /// Rigid-body motions, M-orthonormal, split by their effect on the contact nodes.
   struct ContactMotions
   {
-    std::optional<MultiVector> pressing; ///< those that move contact nodes along the normals
-    std::optional<MultiVector> sliding;  ///< those that leave the gaps as they are
+    std::optional<MultiVector> pressing; ///< move contact nodes along the normals
+    std::optional<MultiVector> sliding;  ///< leave all gaps unchanged
   };
 
   /**
-   * Splits the M-orthonormal rigid-body @p motions, n × k, by the singular values of
-   * @p normal times them; root mean squares over the contact nodes below 10⁻⁸ of the
-   * largest displacement are rounding errors. The same on every process.
+   * Splits the M-orthonormal rigid-body @p motions, n × k, by the singular values of P_n times them, P_n = @p normal; root mean squares
+   * over the contact nodes below 10⁻⁸ of the largest displacement are rounding errors. The same on every process.
    */
   ContactMotions contact_motions(const SparseMatrix &normal, const MultiVector &motions);
 
   /**
-   * A shift s ≥ 0 [rad/s] with which K_c + s² M_c is well-conditioned positive
-   * definite: zero if every rigid-body motion of the disc is faster than the
-   * fiftieth part of the band's end, else that part. Decided by the smallest
-   * Rayleigh quotient of K_c and M_c on the rigid-body motions.
+   * Shift s ≥ 0 [rad/s] that makes K_c + s² M_c positive definite and well conditioned: zero if the smallest Rayleigh quotient of K_c and
+   * M_c on the rigid-body motions of the disc exceeds (ω_max / 50)², else ω_max / 50.
    */
   double stabilizing_shift(const Model &model, const CoupledSystem &system, double largest_circular_frequency);
 
-  /// The same for the disc alone, of which @p system has M and K on the uncoupled dofs.
+  /// Shift for the disc alone; @p system has M and K on the uncoupled dofs.
   double stabilizing_shift(const Model &model, const SecondOrderSystem &system, double largest_circular_frequency);
 
   /**
-   * Solves K u = f for blocks of forces, K symmetric positive semidefinite with
-   * a known kernel N of rigid-body motions. Where there is one the forces are
-   * relieved by inertia,
+   * Solves K u = f for blocks of forces, K symmetric positive semidefinite with a known kernel N of rigid-body motions. With a kernel,
+   * inertia relief applies,
    *
    *   K u = f − M N Nᵀf,   NᵀM u = 0,   NᵀM N = 1,
    *
-   * solved with the factor of K + s² M and iterative refinement.
+   * solved by a factor of K + s² M and iterative refinement.
    */
   class InertiaRelief
   {
   public:
     /**
      * @param rigid_body N, n × k, M-orthonormal; nothing if K is positive definite
-     * @param largest_circular_frequency end of the band [rad/s]: s is a small part of it
-     * @param what       whose stiffness K is, for messages
+     * @param largest_circular_frequency end of the band [rad/s]: sets the shift s
+     * @param what       name of the body with stiffness K, for messages
      *
      * Throws SolverError if K (or K + s² M) is not positive definite.
      */
@@ -96,9 +92,8 @@ namespace Squeal
   };
 
   /**
-   * Static responses of the uncoupled bodies, K u = f: with f = P_nᵀ or P_tᵀ the normal and tangential attachment modes of
-   * disc and pins together (section 5.1 of the paper). K consists of one block for each component, so that one factorisation
-   * is that of every component.
+   * Static responses of the uncoupled bodies, K u = f: f = P_nᵀ or P_tᵀ gives the normal and tangential attachment modes of disc and pins
+   * (section 5.1 of the paper). K is block diagonal, so that one factorisation serves all components.
    *
    * @param largest_circular_frequency end of the band [rad/s], for the shift of a disc that can move freely
    *

@@ -13,12 +13,11 @@
 namespace Squeal
 {
   /**
-   * Static boundary modes of disc and pins on the uncoupled dofs, one column for
-   * each contact node (sections 5.1 and 6.1 of the paper), each set computed when
-   * it is first asked for and kept. The arguments must outlive it.
+   * Static boundary modes of disc and pins on the uncoupled dofs, one column for each contact node (sections 5.1 and 6.1 of the paper).
+   * Each set is computed on first use and kept. The arguments must outlive the object.
    *
-   * Where the mount leaves the disc free, forces on it are relieved by inertia:
-   * its attachment modes are complete only together with InertiaRelief::rigid_body_modes().
+   * For a disc that its mount leaves free, inertia relief applies: attachment modes are complete only together with
+   * InertiaRelief::rigid_body_modes().
    */
   class StaticModes
   {
@@ -35,23 +34,21 @@ namespace Squeal
     /// Ψ_an^D − Ψ_an^P = K⁻¹ P_nᵀ: responses to unit normal forces, +n on the disc and −n on the pins [m/N], n × n_c.
     const MultiVector &normal_attachment() const;
 
-    /// Ψ_at^D − Ψ_at^P = K⁻¹ P_tᵀ, the same along t.
+    /// Ψ_at^D − Ψ_at^P = K⁻¹ P_tᵀ: responses to unit forces along t [m/N], n × n_c.
     const MultiVector &tangential_attachment() const;
 
     /// Ψ_an^D or Ψ_an^P: responses of one component to unit forces along n, the other at rest.
     MultiVector normal_attachment(Component component) const;
 
-    /// Ψ_aμ^D − Ψ_aμ^P = K⁻¹ (P_nᵀ + μ P_tᵀ), eq. (23): responses to unit normal forces together with the friction that they cause, r_t = μ
-    /// r_n.
+    /// Ψ_aμ^D − Ψ_aμ^P = K⁻¹ (P_nᵀ + μ P_tᵀ), eq. (23): responses to unit normal forces with the corresponding friction r_t = μ r_n.
     MultiVector rubbing_attachment(double friction_coefficient) const;
 
     /**
-     * Ψ_cn^D or Ψ_cn^P: responses of one component to a unit displacement n·u = 1
-     * of one of its contact nodes, n·u = 0 at the others, free in the tangent
-     * planes [-], n × n_c; P_n Ψ_cn^D = I and P_n Ψ_cn^P = −I. Of a disc that can
-     * still move rigidly, those orthogonal to the motions in the M-inner product.
+     * Ψ_cn^D or Ψ_cn^P: responses of one component to a unit displacement n·u = 1 of one of its contact nodes, n·u = 0 at the others, free
+     * in the tangent planes [-], n × n_c; P_n Ψ_cn^D = I and P_n Ψ_cn^P = −I. If the disc still has rigid-body motions, the responses are
+     * M-orthogonal to them.
      *
-     * Throws SolverError if the stiffness of the sliding component is singular otherwise.
+     * Throws SolverError if the stiffness of the sliding component is singular for another reason.
      */
     const MultiVector &constraint(Component component) const;
 
@@ -70,7 +67,7 @@ namespace Squeal
     mutable std::array<std::unique_ptr<MultiVector>, 2> constraints;
   };
 
-  /// Which of the two eigenvectors of a nonsymmetric problem.
+  /// Right or left eigenvector of a nonsymmetric problem.
   enum class Side
   {
     right,
@@ -78,18 +75,17 @@ namespace Squeal
   };
 
   /**
-   * Responses of first order of real coupled modes Φ_R to friction, n × n_R, in
-   * coupled coordinates and up to the factor μ:
+   * First-order responses of real coupled modes Φ_R to friction, n × n_R, in coupled coordinates, without the factor μ:
    *
-   *   right  K_c⁻¹ A V_K Φ_R,    eq. (25), with the static part of the friction forces
-   *   left   K_c⁻¹ V_Kᵀ Aᵀ Φ_R,  the same of the transposed problem
+   * right  K_c⁻¹ A V_K Φ_R,    eq. (25), with the static part of the friction forces
+   * left   K_c⁻¹ V_Kᵀ Aᵀ Φ_R,  the same for the transposed problem
    *
-   * Where @p inverse has a shift s, its S = K_c + s C_c + s² M_c stands for K_c.
+   * If @p inverse has a shift s, S = K_c + s C_c + s² M_c replaces K_c.
    */
   MultiVector friction_response(const CoupledSystem &system, const UpdatedInverse &inverse, const MultiVector &real_modes, Side side);
 
-  /// Responses of first order of real coupled modes Φ_R to damping, K_c⁻¹ (C_c − μ A V_C) Φ_R, n × n_R, at a friction coefficient or at the
-  /// values of the system. Throws SolverError if there is no damping.
+  /// First-order responses of real coupled modes Φ_R to damping, K_c⁻¹ (C_c − μ A V_C) Φ_R, n × n_R, at a friction coefficient or at the
+  /// parameter values of the system. Throws SolverError if there is no damping.
   MultiVector damping_response(const CoupledSystem  &system,
                                const UpdatedInverse &inverse,
                                const MultiVector    &real_modes,

@@ -14,33 +14,33 @@
 
 namespace Squeal
 {
-  /// A node with its factor in a sum.
+  /// A node and its weight in a sum.
   struct WeightedNode
   {
-    Node   node; ///< the same on every process, but for is_own
+    Node   node; ///< the same on every process, except is_own
     double weight;
   };
 
   using WeightedNodes = std::vector<WeightedNode>;
 
-  /// A contact node of a pin with the point of the disc that it faces, and their local frame. Faces that match node by node make pairs of
-  /// coincident nodes, each with the weight 1; other faces are coupled by mortar(), whose rows these are.
+  /// A contact node of a pin, the opposite point of the disc, and their local frame. Matching faces give pairs of coincident nodes with
+  /// weight 1; other faces are coupled by mortar(), with one node for each of its rows.
   struct ContactNode
   {
     WeightedNodes   on_disc, on_pin; ///< Σ weight u: displacements of both sides
-    WeightedNodes   forces_of_pin;   ///< Σ weight f: the force of this node from forces on the pin's nodes
+    WeightedNodes   forces_of_pin;   ///< Σ weight f: force of this node from nodal forces on the pin
     Node            pin_node;
     unsigned int    pin;       ///< component of the pin node
     Eigen::Vector3d position;  ///< [m]
     Eigen::Vector3d normal;    ///< n: outward unit normal of the disc
     Eigen::Vector3d sliding;   ///< t: direction in which the disc moves relative to the pin
     Eigen::Vector3d radial;    ///< b = n × t
-    double          lever;     ///< |v| = w_0 / Ω [m]: the distance from the axis where the disc turns about z
-    bool            turns;     ///< whether the disc turns about z
+    double          lever;     ///< |v| = w_0 / Ω [m]: distance from the axis if the disc turns about z
+    bool            turns;     ///< the disc turns about z
     double          area;      ///< share of the contact area [m²]
-    double          friction;  ///< of the pair of surfaces: factor of the friction coefficient [-]
+    double          friction;  ///< friction factor of the pair of surfaces: multiplies the friction coefficient [-]
     unsigned int    pair;      ///< number of the pair of surfaces
-    double          stiffness; ///< k of the pair [N/m³]; zero: nothing yields
+    double          stiffness; ///< k of the pair [N/m³]; zero: rigid contact
 
     bool is_rigid() const
     {
@@ -62,7 +62,7 @@ namespace Squeal
   /// The contact nodes, the same on every process.
   using ContactInterface = std::vector<ContactNode>;
 
-  /// Contact nodes, and what the user should know of how they were found.
+  /// Contact nodes, and notes for the user on how they were found.
   struct FoundContact
   {
     ContactInterface         interface;
@@ -70,11 +70,11 @@ namespace Squeal
   };
 
   /**
-   * The contact nodes of pairs of surfaces: pairs of nodes where every node of the pins has one of the disc within @p tolerance [m] and every node of
-   * the disc one of the pins, else by mortar(). The normal of a pair is the area average over the disc's contact faces that meet there,
-   * that of another node the average over the pin's; t is the direction of the velocity in the tangent plane.
+   * Contact nodes of pairs of surfaces: pairs of nodes if every node of the pins has a disc node within @p tolerance [m] and vice versa,
+   * else by mortar(). The normal of a node pair is the area average over the adjacent contact faces of the disc, that of a mortar node the
+   * average over those of the pin; t is the direction of the velocity in the tangent plane.
    *
-   * Throws MeshError if a contact node is clamped, or the velocity there is zero, not finite or normal to the face, and as mortar() does.
+   * Throws MeshError if a contact node is clamped, if its velocity is zero, not finite or normal to the face, or as mortar() does.
    */
   FoundContact contact_nodes(const Model &model, const std::vector<ContactPair> &pairs, const SlidingVelocity &velocity, double tolerance);
 

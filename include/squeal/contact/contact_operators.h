@@ -12,7 +12,7 @@
 
 namespace Squeal
 {
-  /// Springs of stiffness k between a pair of surfaces whose contact is not rigid: r_n = −k diag(D) P_n, D the areas of the contact nodes.
+  /// Compliant contact of a pair of surfaces, with springs k: r_n = −k diag(D) P_n, D the areas of the contact nodes.
   struct ContactSpring
   {
     std::string                         name;      ///< parameter of its term
@@ -28,16 +28,16 @@ namespace Squeal
    *   P_n u = n·(u_D − u_P),  P_t u = f t·(u_D − u_P),  P_b u = b·(u_D − u_P)   n_c × n each
    *   T_c spans ker P_n of the rigid contact nodes                             n × (n − n_rigid)
    *
-   * with the friction factor f of each pair of surfaces, 1 as a rule, and S that reads the reactions r_n from forces f = P_nᵀ r_n + P_tᵀ r_t + P_bᵀ r_b of the contact (n_c × n),
+   * with the friction factor f of each pair of surfaces, by default 1, and S that extracts the reactions r_n from the contact forces f =
+   * P_nᵀ r_n + P_tᵀ r_t + P_bᵀ r_b (n_c × n),
    *
    *   S P_nᵀ = I,   S P_tᵀ = 0,   S P_bᵀ = 0,   r_n = S (λ² M + λ C + K) u.
    *
-   * Any S with these properties gives the same eigenvalues. Between pairs of nodes it is ½ P_n, where P_n P_nᵀ = 2 I; elsewhere it reads
+   * Any S with these properties gives the same eigenvalues. For node pairs it is ½ P_n, because P_n P_nᵀ = 2 I; for mortar nodes it takes
    * the forces on the pins' nodes.
    *
-   * In T_c one displacement component of each pin node, the one nearest to the
-   * normal, follows from the others, so that T_c selects dofs where the
-   * normal is a coordinate axis.
+   * T_c eliminates one displacement component of each pin node, the one closest to the normal; if the normal is a coordinate axis, T_c
+   * selects dofs.
    */
   struct ContactOperators
   {
@@ -45,7 +45,7 @@ namespace Squeal
     std::shared_ptr<const SparseMatrix> tangential; ///< P_t
     std::shared_ptr<const SparseMatrix> radial;     ///< P_b
     std::shared_ptr<const SparseMatrix> kernel;     ///< T_c
-    std::shared_ptr<const SparseMatrix> reaction;   ///< S, whose rows of contact nodes with springs are zero
+    std::shared_ptr<const SparseMatrix> reaction;   ///< S; rows of contact nodes with springs are zero
     std::vector<ContactSpring>          springs;
   };
 
@@ -54,7 +54,7 @@ namespace Squeal
 
   ContactOperators contact_operators(const Model &model, const ContactInterface &interface);
 
-  /// Components of the paper.
+  /// Components as in the paper.
   enum class Component
   {
     disc,
@@ -63,21 +63,21 @@ namespace Squeal
 
   bool belongs_to(const Node &node, Component component);
 
-  /// Dofs of a component, with their contact nodes free or sliding on a rigid face.
+  /// Boundary condition at the contact nodes of a component: free, or sliding on a rigid face.
   enum class ContactBoundary
   {
     free,   ///< no constraint at the contact nodes
     sliding ///< fixed along n, free in the tangent plane
   };
 
-  /// Matrix whose columns span the admissible displacements of a component, the other being at rest: n × n_component. It selects the dofs
-  /// of the component; with `sliding` n·u = 0 holds at its contact nodes; of the disc: at every node that takes part.
+  /// Basis of the admissible displacements of a component, the other one at rest: n × n_component. Selects the dofs of the component; with
+  /// `sliding`, n·u = 0 at its contact nodes, for the disc at every node of a contact constraint.
   std::shared_ptr<SparseMatrix> component_kernel(const Model            &model,
                                                  const ContactInterface &interface,
                                                  Component               component,
                                                  ContactBoundary         boundary);
 
-  /// q with T q = u for displacements u, n × k, in the range of a kernel T (T_c or one of component_kernel()): the entries of u at the dofs
-  /// that T selects.
+  /// q with T q = u for displacements u, n × k, in the range of a kernel T (T_c or component_kernel()): the entries of u at the dofs that T
+  /// selects.
   MultiVector coordinates(const SparseMatrix &T, const MultiVector &u);
 } // namespace Squeal

@@ -11,7 +11,7 @@
 
 namespace Squeal
 {
-  /// Parameters of a coupled system that stay free; those of the bodies have their values.
+  /// Free parameters of a coupled system; parameters of the bodies have fixed values.
   namespace SystemParameter
   {
     inline constexpr const char *friction        = "mu";                             ///< μ [-]
@@ -27,7 +27,7 @@ namespace Squeal
     std::vector<double> radial;  ///< c_b, along b
     std::vector<double> sliding; ///< c_t, along t
 
-    /// As values of the parameters of a coupled system.
+    /// Values for the parameters of a coupled system.
     ParameterValues values() const;
   };
 
@@ -38,17 +38,17 @@ namespace Squeal
    *
    *   (λ² (M_c − μ A V_M) + λ (C_c − μ A V_C) + K_c − μ A V_K) φ_c = 0
    *
-   * as a list of terms. Of each term X of the bodies, such as K, it has
+   * as a list of terms. Each term X of the bodies, such as K, gives
    *
    *   X_c = T_cᵀ X T_c   and   −μ A V_X,   A = T_cᵀ P_tᵀ,  V_X = S X T_c,
    *
-   * and of the contact's own damping, which has no part in the reactions because S P_bᵀ = S P_tᵀ = 0,
+   * and contact damping, which does not contribute to the reactions because S P_bᵀ = S P_tᵀ = 0, gives
    *
    *   Rᵀ diag(c_b) R   and   A diag(c_t) Aᵀ,   R = P_b T_c.
    *
-   * Springs of the contact are a term of the stiffness, T_cᵀ P_nᵀ k diag(D) P_n T_c, whose V is −k diag(D) P_n T_c.
+   * Contact springs are a stiffness term, T_cᵀ P_nᵀ k diag(D) P_n T_c, with V = −k diag(D) P_n T_c.
    *
-   * add_modal_damping() appends a term of its own.
+   * add_modal_damping() appends another term.
    */
   struct CoupledSystem
   {
@@ -56,7 +56,7 @@ namespace Squeal
     ParameterValues                     values;                             ///< of all parameters, with μ = 0
     std::string                         varied = SystemParameter::friction; ///< parameter over which charts follow the modes
     std::shared_ptr<const SparseMatrix> mass, stiffness;                    ///< M_c and K_c, n × n: the symmetric terms without friction
-    double hidden_square = 0.; ///< |λ|² up to this is zero: rounding errors of K_c, see unresolved_square() [rad²/s²]
+    double hidden_square = 0.; ///< |λ|² up to this value counts as zero: rounding errors of K_c, see unresolved_square() [rad²/s²]
     std::shared_ptr<const LowRankFactor> friction_forces; ///< A, n × n_c
     std::shared_ptr<const SparseMatrix>  kernel;          ///< T_c, n_uncoupled × n
 
@@ -69,18 +69,18 @@ namespace Squeal
       return friction_forces->rank();
     }
 
-    /// The values with one of the varied parameter, which is μ of a mesh, and with others in place of those that are given.
+    /// Parameter values with the varied parameter (μ for a mesh) at @p value and with @p others replaced.
     ParameterValues at(double value, const ParameterValues &others = {}) const;
 
-    /// Whether there is damping without friction.
+    /// True if there is damping without friction.
     bool has_damping() const;
   };
 
-  /// C_f = P_bᵀ diag(c_b) P_b + P_tᵀ diag(c_t) P_t [N s/m] on the uncoupled dofs; null if all coefficients vanish. With a friction
-  /// coefficient μ(w) that falls with the sliding speed, c_t = μ'(w_0) |R_n0| is negative.
+  /// C_f = P_bᵀ diag(c_b) P_b + P_tᵀ diag(c_t) P_t [N s/m] on the uncoupled dofs; null if all coefficients vanish. If μ(w) falls with the
+  /// sliding speed, c_t = μ'(w_0) |R_n0| is negative.
   std::shared_ptr<const SparseMatrix> contact_damping(const ContactOperators &contact, const ContactDamping &damping);
 
-  /// A term of the coupled bodies, and its part V in the normal reactions, n_c × n; null: none.
+  /// A term of the coupled bodies, and its contribution V to the normal reactions, n_c × n; null: none.
   struct CoupledTerm
   {
     Term                                term;
@@ -88,7 +88,7 @@ namespace Squeal
   };
 
   /**
-   * The list of terms from those of the coupled bodies, with those of friction and of damping of the contact.
+   * Coupled system from the terms of the coupled bodies, with added terms for friction and contact damping.
    *
    * @param tangential Aᵀ = P_t T_c, n_c × n
    * @param radial     R = P_b T_c, n_c × n
@@ -100,10 +100,10 @@ namespace Squeal
                                const ContactDamping               &damping = {},
                                const ParameterValues              &values  = {});
 
-  /// Finds the mass, the stiffness and what follows from them of a system with other terms or values.
+  /// Updates mass, stiffness and derived quantities after a change of terms or values.
   void set_frictionless_matrices(CoupledSystem &system);
 
-  /// Couples bodies, given by merged() terms, or by others with the values of their parameters.
+  /// Couples bodies given by merged() terms, or by terms with parameter values.
   CoupledSystem couple(const std::vector<Term> &bodies,
                        const ContactOperators  &contact,
                        const ContactDamping    &damping = {},
@@ -112,19 +112,18 @@ namespace Squeal
   /// The same system with other values of some parameters.
   CoupledSystem with_values(CoupledSystem system, const ParameterValues &others);
 
-  /// The system without its terms in λ.
+  /// The system without its terms in λ¹.
   CoupledSystem undamped(CoupledSystem system);
 
   /**
-   * Damping of the real coupled modes Φ (n × k, M_c-orthonormal), each by its own ratio ζ_j of the critical one,
+   * Adds modal damping: each real coupled mode of Φ (n × k, M_c-orthonormal) has its own damping ratio ζ_j,
    *
    *   C_m = M_c Φ diag(2 ζ_j ω_j) Φᵀ M_c     n × n, symmetric, of rank k, never formed
    *
    * so that Φᵀ C_m Φ = diag(2 ζ_j ω_j) and, without friction and other damping,
-   * λ_j = −ζ_j ω_j ± i ω_j √(1 − ζ_j²). Known in coupled coordinates only, it takes no part in the
-   * reactions: what damping of the bodies it stands for, the ratios do not tell.
+   * λ_j = −ζ_j ω_j ± i ω_j √(1 − ζ_j²). It does not contribute to the reactions: the ratios do not determine which body dissipates.
    *
-   * @param eigenvalues ω² [rad²/s²], one for each mode; a mode with ω = 0 gets no damping
+   * @param eigenvalues ω² [rad²/s²], one for each mode; modes with ω = 0 are undamped
    * @param ratios      ζ [-], one for each mode
    */
   void add_modal_damping(CoupledSystem             &system,
@@ -138,17 +137,17 @@ namespace Squeal
   /// Q(s) = K + s C + s² M at a real shift s [rad/s]; K itself for s = 0.
   std::shared_ptr<const SparseMatrix> pencil_at(const SecondOrderSystem &system, double shift);
 
-  /// V_K + s V_C + s² V_M at a real shift s [rad/s], n_c × n; null where there is no friction.
+  /// V_K + s V_C + s² V_M at a real shift s [rad/s], n_c × n; null without friction.
   std::shared_ptr<const SparseMatrix> normal_reactions(const CoupledSystem &system, double shift);
 
-  /// r_n = S (λ² M + λ C + K) u as V_K u_c + λ V_C u_c + λ² V_M u_c: normal contact reactions [N] (compression negative) of complex modes,
+  /// r_n = S (λ² M + λ C + K) u = V_K u_c + λ V_C u_c + λ² V_M u_c: normal contact reactions [N] of complex modes, negative in compression,
   /// n_c × k.
   ComplexDenseMatrix normal_reactions(const CoupledSystem                     &system,
                                       const std::vector<std::complex<double>> &lambda,
                                       const MultiVector                       &real_part,
                                       const MultiVector                       &imaginary_part);
 
-  /// The system of a family of terms: bodies coupled as couple() does, each term with its own part in the reactions. Its mass and
-  /// stiffness, the parameter values with it, are those in the middle of the family.
+  /// Couples a family of terms as couple() does, each term with its own contribution to the reactions. Mass, stiffness and parameter values
+  /// are those in the middle of the family.
   CoupledSystem coupled_family(const TermFamily &bodies, const ContactOperators &contact, const ContactDamping &damping = {});
 } // namespace Squeal

@@ -10,19 +10,19 @@
 namespace Squeal
 {
   /**
-   * The system of a file as one that charts, reduction and sensitivities work on.
+   * A coupled system from a system file, for charts, reduction and sensitivities.
    *
-   * Its mass and stiffness are the symmetric sparse terms at the @p values. Its dofs are scaled, u = D v with D from powers of two, so that
-   * the diagonal of K + ω² M is about one (largest entries of rows replace diagonal entries of zero): results do not depend on the units
-   * of the dofs, and entries of very different size are no difficulty. D is the kernel of the system.
+   * Mass and stiffness are the symmetric sparse terms at the @p values. The dofs are scaled, u = D v with powers of two in D, so that the
+   * diagonal of K + ω² M is about one (zero diagonal entries are replaced by the largest entry of the row): results do not depend on the
+   * units of the dofs, and matrices may be badly scaled. D is the kernel of the system.
    *
-   * Low-rank terms of friction, linear in a varied parameter μ with a common left factor, stay as they are and vanish at μ = 0; so do
-   * symmetric ones in λ. Other terms of low rank are multiplied out.
+   * Low-rank friction terms that are linear in a varied parameter μ and share a left factor are kept and vanish at μ = 0; so are symmetric
+   * low-rank terms in λ. Other low-rank terms are multiplied out.
    *
-   * Symmetric parts of unsymmetric matrices (TermKind::circulatory) belong to mass and stiffness if these are definite then, else they
-   * count as friction. Where there is no definite part either way, mass and stiffness are null: direct_modes() is for these.
+   * Symmetric parts of unsymmetric matrices (TermKind::circulatory) are included in mass and stiffness if these are then definite;
+   * otherwise they count as friction. If neither choice is definite, mass and stiffness are null: use direct_modes().
    *
-   * @param values  of all parameters, at which mass and stiffness are taken
+   * @param values  of all parameters, for mass and stiffness
    * @param varied  parameter of charts
    * @param largest_circular_frequency ω [rad/s]
    */
@@ -31,6 +31,6 @@ namespace Squeal
                                 const std::string     &varied,
                                 double                 largest_circular_frequency);
 
-  /// A shift s with which K + s² M is positive definite: 0, or 2 % of ω where K is semidefinite to rounding; nothing if it is not.
+  /// Shift s for which K + s² M is positive definite: 0, or 0.02 ω if K is semidefinite up to rounding; nothing if there is none.
   std::optional<double> definite_shift(const CoupledSystem &system, double largest_circular_frequency);
 } // namespace Squeal

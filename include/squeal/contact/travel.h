@@ -9,19 +9,19 @@
 
 namespace Squeal
 {
-  /// How the backplate of a pin moves towards the disc: the direction in which a load presses.
+  /// Travel of the backplate of a pin towards the disc: the direction of the load.
   struct Travel
   {
     Eigen::Vector3d direction = Eigen::Vector3d::Zero(); ///< e, a unit vector; zero for a component without contact nodes, such as the disc
     int             side      = 0; ///< ±1: along the axis, from above or below the disc; 0: along the normal of the body's own face
 
-    /// a = −e·n: normal gap that a unit of travel closes at a node [-].
+    /// a = −e·n: closure of the normal gap at a node per unit of travel [-].
     double closing(const ContactNode &node) const
     {
       return -direction.dot(node.normal);
     }
 
-    /// e·(n + μ f t): force along e on the backplate for a unit reaction at a node with friction [-]; negative, since reactions are.
+    /// e·(n + μ f t): force along e on the backplate per unit reaction at a node with friction [-]; negative, because reactions are.
     double force(const ContactNode &node, const double mu) const
     {
       return direction.dot(node.normal + mu * node.friction * node.sliding);
@@ -32,25 +32,26 @@ namespace Squeal
    * Travel of each component: e = −N/|N|, N = Σ area n over its contact nodes. Within 45 degrees of the disc's axis, backplates are guided
    * along the axis.
    *
-   * Throws MeshError if a body has no direction of travel: contact nodes of it look across the direction or away from it, such as
-   * those of a body that rubs both faces of the disc.
+   * Throws MeshError if a body has no direction of travel: some of its contact nodes face across the direction or away from it, for example
+   * if it touches both faces of the disc.
    */
   std::vector<Travel> travels(const Model &model, const ContactInterface &interface);
 
-  /// Whether every body has a direction of travel.
+  /// True if every body has a direction of travel.
   bool have_travels(const Model &model, const ContactInterface &interface);
 
-  /// Backplate of each component, numbered from 0; −1: none. Pins that travel along the axis share that of their side unless each has its own.
+  /// Backplate of each component, numbered from 0; −1: none. Pins that travel along the axis share the backplate of their side, unless each
+  /// has its own.
   std::vector<int> backplate_numbers(const std::vector<Travel> &travels, bool one_for_each_pin);
 
-  /// Displacement of the backplate of each component [m] after an approach to the disc [m].
+  /// Displacement of the backplate of each component [m] for given travels towards the disc [m].
   std::vector<Eigen::Vector3d> backplate_displacements(const std::vector<Travel> &travels, const std::vector<double> &approach);
 
   /**
-   * R_n0 [N] ≤ 0 if all nodes of a backplate have the same reaction, or on faces that do not match the same pressure, and the force along
-   * its travel, contact friction included, is the load per side: Σ e·(n + μ f t) R_n0 = load.
+   * R_n0 [N] ≤ 0 with equal reactions at all nodes of a backplate (equal pressure on faces that do not match). The force along its travel,
+   * friction included, is the load per side: Σ e·(n + μ f t) R_n0 = load.
    *
-   * Throws MeshError as travels() does, ParameterError if friction alone carries the load.
+   * Throws MeshError as travels() does, ParameterError if friction alone balances the load.
    */
   std::vector<double> equal_load_shares(const Model &model, const ContactInterface &interface, const OperationParameters &operation);
 } // namespace Squeal

@@ -12,15 +12,15 @@
 
 namespace Squeal
 {
-  /// When the n_c columns of X are solved for, which takes longer than the factor, and whether they are kept, a dense n × n_c matrix.
+  /// When the n_c columns of X are computed, which takes longer than the factorisation, and whether the dense n × n_c matrix is kept.
   enum class AttachmentModes
   {
     at_once,     ///< with the factor
-    when_needed, ///< by a friction coefficient or by who asks for them: never, for a solver that works on a basis
-    not_kept     ///< each product with X is another solve with the factor
+    when_needed, ///< on first use; never with solvers that work on a basis
+    not_kept     ///< each product with X is a solve with the factor
   };
 
-  /// Whether a dense n × n_c matrix has room in the memory that is left: an eighth of it is what this process may take for one.
+  /// True if a dense n × n_c matrix fits into an eighth of the available memory.
   bool may_keep_attachment_modes(const CoupledSystem &system);
 
   /**
@@ -33,8 +33,8 @@ namespace Squeal
    *
    *   Q(s)⁻¹ = S⁻¹ + μ X (I − μ V X)⁻¹ V S⁻¹
    *
-   * The factor and X serve every μ; the n_c × n_c matrix is factorised for each. Without X, whose columns are then solved for a
-   * few at a time to make V X, Q(s)⁻¹ B = S⁻¹ (B + μ A (I − μ V X)⁻¹ V S⁻¹ B).
+   * The factor and X serve every μ; only the n_c × n_c matrix is refactorised. If X is not kept, its columns are solved for in blocks to
+   * compute V X, and Q(s)⁻¹ B = S⁻¹ (B + μ A (I − μ V X)⁻¹ V S⁻¹ B).
    */
   class UpdatedInverse : public LinearOperator
   {
@@ -45,7 +45,7 @@ namespace Squeal
                    FactorizationLibrary library,
                    AttachmentModes      attachment = AttachmentModes::at_once);
 
-    /// Friction coefficient of the following apply(); throws SolverError if Q(s) is singular there.
+    /// Sets the friction coefficient for apply(); throws SolverError if Q(s) is singular there.
     void set_friction_coefficient(double mu);
 
     /// Y = Q(s)⁻¹ X.
@@ -56,16 +56,16 @@ namespace Squeal
 
     const RowMap &map() const override;
 
-    /// S⁻¹ A, n × n_c: the coupled tangential attachment modes (for s = 0), kept from now on.
+    /// S⁻¹ A, n × n_c: the coupled tangential attachment modes (for s = 0). Kept once computed.
     const MultiVector &attachment_modes() const;
 
-    /// f(first, X_b) for blocks X_b of columns of S⁻¹ F that begin with column `first`.
+    /// Calls f(first, X_b) for blocks X_b of columns of S⁻¹ F, starting at column `first`.
     void for_responses(const LowRankFactor &F, const std::function<void(int first, const MultiVector &X_b)> &f) const;
 
-    /// X B for B, n_c × k, the same on every process: k solves if X is not there yet.
+    /// X B for B, n_c × k, the same on every process: takes k solves if X has not been computed.
     MultiVector attachment_modes_times(const DenseMatrix &B) const;
 
-    /// S⁻¹ by itself. Several threads may ask for it, and for apply() without friction.
+    /// Factor of S. Several threads may use it, as well as apply() without friction.
     const Factorization &frictionless() const;
 
   private:
@@ -75,7 +75,7 @@ namespace Squeal
     const RowMap                         rows;
     std::shared_ptr<const LowRankFactor> A;
     std::shared_ptr<const SparseMatrix>  V;
-    mutable std::unique_ptr<MultiVector> X;      ///< once it has been needed
+    mutable std::unique_ptr<MultiVector> X;      ///< computed on first use
     std::unique_ptr<const Factorization> factor; ///< of S
     std::optional<DenseMatrix>           VX;     ///< n_c × n_c, on every process
     double                               friction_coefficient = 0.;

@@ -8,7 +8,7 @@
 
 namespace Squeal
 {
-  /// The part of a small n × n matrix A that has the modes of a band: A R = R S, Lᵀ A = S Lᵀ, Lᵀ R = I.
+  /// Subspaces of a small n × n matrix A for the modes of a band: A R = R S, Lᵀ A = S Lᵀ, Lᵀ R = I.
   struct BandSubspaces
   {
     DenseMatrix right; ///< R, n × k
@@ -17,34 +17,34 @@ namespace Squeal
   };
 
   /**
-   * Invariant subspaces of A φ = −λ² φ that have every λ with |Im λ| ≤ @p largest_circular_frequency [rad/s].
+   * Invariant subspaces of A φ = −λ² φ for all λ with |Im λ| ≤ @p largest_circular_frequency [rad/s].
    *
-   * A is given in coordinates of the modes of a symmetric pencil near by, whose −λ² are @p squares, ascending. With those of the band
-   * first, up to the widest gap beyond it, A has blocks B_ij, and
+   * A is given in modal coordinates of a nearby symmetric pencil with −λ² = @p squares, ascending. Partitioned with the modes of the band
+   * first, up to the widest gap above it, A has blocks B_ij, and
    *
    *   R = [I; X],           B_21 + B_22 X − X (B_11 + B_12 X) = 0,
    *   Lᵀ = [I − Y X, Y],    S_1 Y − Y T − B_12 = 0,   S_1 = B_11 + B_12 X,  T = B_22 − X B_12.
    *
-   * Both are solved step by step with the diagonal operator of the symmetric pencil in place of their own (Stewart 1973, Demmel 1987), a
-   * few products of blocks each, which Anderson's method combines; S = LᵀAR, so that its error is the product of those of X and Y.
-   * That T has no eigenvalue of the band, λ that are real included, follows from Lyapunov's theorem with P = diag(T), else from powers,
+   * Both equations are solved by fixed-point iteration with the diagonal operator of the symmetric pencil (Stewart 1973, Demmel 1987), a
+   * few block products per step, accelerated by Anderson's method; S = LᵀAR, so that its error is the product of the errors of X and Y. T
+   * has no eigenvalue in the band, real λ included, by Lyapunov's theorem with P = diag(T), or else by powers,
    *
    *   P (T − ω² I) + (T − ω² I)ᵀ P positive definite, or
    *   Z = (T − ω² I − a I) (T − ω² I + a I)⁻¹:  ‖Z^m‖ < 1 for any m     =>   Re(−λ²) > ω² for all of T.
    *
-   * @return nothing if the band is not well apart, if the steps do not converge, or if neither test succeeds
+   * @return nothing if the band has no gap to the other modes, if the iteration does not converge, or if neither test succeeds
    */
   std::optional<BandSubspaces> band_subspaces(const DenseMatrix &A, const std::vector<double> &squares, double largest_circular_frequency);
 
   /**
-   * The same with dissipation: invariant subspaces of
+   * Invariant subspaces with dissipation, of
    *
    *   [ 0   I ]
    *   [ -A -C ]  [φ; λ φ] = λ [φ; λ φ],   right and left 2r × 2k, small 2k × 2k with eigenvalues λ.
    *
-   * A and C are given in modal coordinates, too. Every mode of the reference is a pair of coordinates (x, λ x / ω) here, in which its
-   * block is ω J, J = [0 1; -1 0]. Steps divide what commutes with J by ω_i − ω_j and what anticommutes by ω_i + ω_j. The proof looks at
-   * −T² in the place of T.
+   * A and C are given in modal coordinates. Each mode of the reference has the pair of coordinates (x, λ x / ω), in which its block is ω J,
+   * J = [0 1; -1 0]. Fixed-point steps divide the part that commutes with J by ω_i − ω_j and the part that anticommutes by ω_i + ω_j. The
+   * tests use −T² instead of T.
    */
   std::optional<BandSubspaces> damped_band_subspaces(const DenseMatrix         &A,
                                                      const DenseMatrix         &C,

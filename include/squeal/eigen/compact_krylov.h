@@ -15,14 +15,14 @@ namespace Squeal
   /// Eigenpairs of the projected operator of a CompactKrylov, by descending |ν|.
   struct RitzPairs
   {
-    std::vector<std::complex<double>> values; ///< ν; of a conjugate pair first the one with Im ν > 0
+    std::vector<std::complex<double>> values; ///< ν; conjugate pairs with Im ν > 0 first
     std::vector<double>               errors; ///< ‖S x - ν x‖₂ for ‖x‖₂ = 1
 
     /// Real Schur form H = Z T Zᵀ, m × m, in LAPACK's order.
     DenseMatrix schur_form, schur_vectors;
     /// Eigenvectors of H, m × m in LAPACK's order: real and imaginary part of a conjugate pair in two adjacent columns.
     DenseMatrix eigenvectors;
-    /// Column of T and of the eigenvectors that belongs to each value (the first one for both members of a pair).
+    /// Column of T and of the eigenvectors for each value (the first column for both members of a pair).
     std::vector<int> positions;
   };
 
@@ -42,7 +42,7 @@ namespace Squeal
    *
    *     S V = V H + V_a B,
    *
-   * where V_a, the active block, is what the next step is applied to.
+   * where V_a is the active block, to which the next step is applied.
    *
    * Sources: D. Lu, Y. Su, Z. Bai, SIAM J. Matrix Anal. Appl. 37 (2016)
    * 195 (two levels); D. Kressner, J. E. Roman, Numer. Linear Algebra Appl.
@@ -59,11 +59,9 @@ namespace Squeal
     CompactKrylov(const RowMap &map, int degree, int n_reserved);
 
     /**
-     * Widens the active block by the states [x; 0; ...] of the columns x of
-     * @p directions, so that eigenvectors which the block has no component of
-     * are found: first block of the process, and members of a multiple
-     * eigenvalue beyond the block size. Returns the number of directions that
-     * are new.
+     * Widens the active block by the states [x; 0; ...] of the columns x of @p directions: for the first block, and to find eigenvectors
+     * without a component in the block, such as members of a multiple eigenvalue beyond the block size. Returns the number of new
+     * directions.
      */
     int inject(const MultiVector &directions);
 
@@ -77,16 +75,14 @@ namespace Squeal
     void restart(const RitzPairs &ritz, int n_kept);
 
     /**
-     * A process of its own that starts from the Schur vectors of the first
-     * @p n_locked Ritz values, which have converged, and an empty active
-     * block: what is injected there looks for what is missing. It has room for @p n_more vectors.
+     * A new process that starts from the Schur vectors of the first @p n_locked Ritz values, which have converged, with an empty active
+     * block: injected directions search for missing eigenpairs. It has room for @p n_more vectors.
      */
     CompactKrylov deflated(const RitzPairs &ritz, int n_locked, int n_more) const;
 
     /**
-     * Upper parts of S x, n × k, for the Ritz vectors x in the columns
-     * @p positions of the eigenvectors. One more application of S, free of
-     * cost because S V is known, damps what S maps to little.
+     * Upper parts of S x, n × k, for the Ritz vectors x in the columns @p positions of the eigenvectors. Applying S once more damps
+     * components with small |ν| and is free, because S V is known.
      */
     MultiVector ritz_vectors(const RitzPairs &ritz, const std::vector<int> &positions) const;
 
@@ -95,7 +91,7 @@ namespace Squeal
     int block_size = 0; ///< b, the number of active states; 0 if the basis spans an invariant subspace
 
   private:
-    /// Orthonormalises @p X against U, appends what is new to U, and returns the coordinates of X in the new U, r × b.
+    /// Orthonormalises @p X against U, appends the new directions to U, and returns the coordinates of X in the new U, r × b.
     DenseMatrix absorb(MultiVector &X, const std::vector<double> &magnitudes);
 
     /// Appends the orthonormalised columns of @p states, d r × b in coordinates, to the active block; returns [VᵀX; R].
@@ -107,7 +103,7 @@ namespace Squeal
     /// Makes room for @p n vectors in U.
     void reserve(int n);
 
-    /// Becomes the process of the Schur vectors of some Ritz values of @p from, which may be this one, and its active block.
+    /// Takes the Schur vectors of some Ritz values of @p from, which may be *this, and its active block.
     void take_schur_vectors(const CompactKrylov &from, const RitzPairs &ritz, int n_kept, int n_reserved);
 
     RowMap                       map;

@@ -10,22 +10,22 @@
 
 namespace Squeal
 {
-  /// Whether vectors belong to real eigenvalues.
+  /// Whether eigenvectors of real eigenvalues are computed.
   enum class RealVectors
   {
     none,
     wanted
   };
 
-  /// Eigenvalues of a small quadratic pencil with vectors on both sides.
+  /// Eigenvalues of a small quadratic pencil, with right and left vectors.
   struct DenseQuadraticModes
   {
-    /// λ with vectors, ascending by Im, then Re: 0 < Im λ ≤ largest_circular_frequency and, where wanted, the real λ (of ±λ
-    /// without damping that with λ ≥ 0).
+    /// λ with vectors, ascending by Im, then Re: 0 < Im λ ≤ largest_circular_frequency and, if requested, real λ (without damping only λ ≥
+    /// 0 of each pair ±λ).
     std::vector<std::complex<double>> values;
 
     ComplexDenseMatrix right; ///< φ, r × k: Q(λ) φ = 0, ‖φ‖₂ = 1, the entry of largest modulus real and positive
-    ComplexDenseMatrix left;  ///< ψ, r × k: ψᵀ Q(λ) = 0 (plain transpose), normalised alike
+    ComplexDenseMatrix left;  ///< ψ, r × k: ψᵀ Q(λ) = 0 (plain transpose), normalised likewise
 
     std::vector<double> real_values; ///< all real λ, ascending: overdamped, divergent or zero
   };
@@ -51,10 +51,10 @@ namespace Squeal
                                             RealVectors        real_vectors               = RealVectors::none);
 
   /**
-   * The same, with the QR algorithm working on the modes of the band alone: band_subspaces(), damped_band_subspaces(). Nothing where
-   * the band cannot be separated from the other modes. Where it can, none of the others has a real λ.
+   * Computes the same with the QR algorithm restricted to the modes of the band: band_subspaces(), damped_band_subspaces(). Nothing if the
+   * band cannot be separated from the other modes; if it can, none of those has a real λ.
    *
-   * @param mass,damping,stiffness in coordinates of the modes of a symmetric pencil near by
+   * @param mass,damping,stiffness in coordinates of the modes of a nearby symmetric pencil
    * @param squares                ω² of these modes, ascending
    */
   std::optional<DenseQuadraticModes> dense_modes_of_band(const DenseMatrix         &mass,
@@ -63,6 +63,6 @@ namespace Squeal
                                                          const std::vector<double> &squares,
                                                          double                     largest_circular_frequency);
 
-  /// ‖x‖₂ = 1, entry of largest modulus real and positive, for every column.
+  /// Scales every column to ‖x‖₂ = 1 with its entry of largest modulus real and positive.
   void normalize_columns(ComplexDenseMatrix &X);
 } // namespace Squeal

@@ -13,61 +13,62 @@
 
 namespace Squeal
 {
-  /// Q(λ) = λ² M + λ C + K with real n × n matrices, none of which need be symmetric. They must outlive their use.
+  /// Q(λ) = λ² M + λ C + K with real n × n matrices, in general unsymmetric. The operators must outlive the pencil.
   struct QuadraticPencil
   {
     const LinearOperator *mass;      ///< M
-    const LinearOperator *damping;   ///< C; null for none, which halves the work
+    const LinearOperator *damping;   ///< C; null: no damping, which halves the work
     const LinearOperator *stiffness; ///< K
   };
 
-  /// What quadratic_modes() looks for, and how.
+  /// Options of quadratic_modes().
   struct QuadraticModesOptions
   {
-    double shift                      = 0.; ///< s ≥ 0 [1/s]: the operator handed over is Q(s)⁻¹; s > 0 where K is singular
-    double largest_circular_frequency = 0.; ///< wanted are the λ with 0 < Im λ ≤ this [rad/s] and the real ones
+    double shift                      = 0.; ///< s ≥ 0 [1/s] of the given operator Q(s)⁻¹; s > 0 if K is singular
+    double largest_circular_frequency = 0.; ///< requested are λ with 0 < Im λ ≤ this [rad/s], and real λ
 
-    /// ... that have |λ| ≤ ρ = hypot(1, this) largest_circular_frequency, among them all with |Re λ| ≤ this times largest_circular_frequency [-].
+    /// Requested are λ with |λ| ≤ ρ = hypot(1, this) largest_circular_frequency, which include all with |Re λ| ≤ this times
+    /// largest_circular_frequency [-].
     double largest_damping = 0.1;
 
-    double largest_decay = std::numeric_limits<double>::infinity(); ///< λ with Re λ below minus this are left out [1/s]
+    double largest_decay = std::numeric_limits<double>::infinity(); ///< λ with Re λ below minus this are omitted [1/s]
 
-    double zero_modulus = 0.; ///< |λ| up to this is zero [rad/s]; 0: the 10⁻⁴th part of the largest frequency
+    double zero_modulus = 0.; ///< |λ| up to this is zero [rad/s]; 0: 1e-4 of the largest frequency
 
-    int    expected  = 0;    ///< guess of the number of modes, e.g. of the real modes below the same frequency
+    int    expected  = 0;    ///< estimated number of modes, for example of real modes below the same frequency
     double tolerance = 1e-9; ///< largest ‖Q(λ)φ‖₂ / ‖Kφ‖₂ [-]
 
-    /// A norm of K. Modes far below the others have a small ‖Kφ‖; their ‖Q(λ)φ‖ may be as large as its rounding
-    /// errors, ten times the machine precision times this norm. 0: may not.
+    /// A norm of K. Modes far below the others have a small ‖Kφ‖; their ‖Q(λ)φ‖ may reach its rounding errors, ten times the machine
+    /// precision times this norm. 0: no such allowance.
     double stiffness_norm = 0.;
-    double damping_norm   = 0.; ///< of C, likewise, for those of λCφ
+    double damping_norm   = 0.; ///< norm of C, likewise for rounding errors of λCφ
 
     int block_size = 8; ///< vectors per block solve
 
-    /// Vectors close to the wanted ones, e.g. modes without friction and damping: the process starts from sums of them. Null: none.
+    /// Vectors close to the requested ones, for example modes without friction and damping: sums of them start the process. Null: none.
     const MultiVector *close_vectors = nullptr;
 
-    /// Random vectors that look for missing values in the end, e.g. clusters with more members than the block; 0: none.
+    /// Number of random vectors that search for missing eigenvalues at the end, for example in clusters larger than the block; 0: none.
     int n_fresh_directions = 4;
 
-    int          max_basis    = 0;  ///< largest number of basis vectors before a restart; 0: from the number of modes
-    int          max_restarts = 30; ///< after which non-convergence is reported
+    int          max_basis    = 0;  ///< largest number of basis vectors before a restart; 0: chosen from the number of modes
+    int          max_restarts = 30; ///< largest number of restarts before SolverError
     unsigned int seed         = 1;  ///< of the random first block
 
-    std::function<void(const std::string &)> report; ///< told the state of the iteration now and then; may be empty
+    std::function<void(const std::string &)> report; ///< receives the state of the iteration from time to time; may be empty
   };
 
-  /// Eigenpairs Q(λ) φ = 0 in a band, and what they cost.
+  /// Eigenpairs Q(λ) φ = 0 in a band, and their cost.
   struct QuadraticModes
   {
-    std::vector<std::complex<double>> values; ///< wanted λ with Im λ > 0 [rad/s], ascending by Im, then Re
+    std::vector<std::complex<double>> values; ///< requested λ with Im λ > 0 [rad/s], ascending by Im, then Re
 
     /// φ = real + i imaginary, n × k: ‖φ‖₂ = 1, the entry of largest modulus real and positive.
     std::shared_ptr<MultiVector> real_part, imaginary_part;
 
     std::vector<double> residuals; ///< ‖Q(λ)φ‖₂ / ‖Kφ‖₂, computed with the pencil itself
 
-    /// Real λ ≠ 0 with |λ| ≤ ρ (overdamped or divergent), ascending; for these no vectors are kept.
+    /// Real λ ≠ 0 with |λ| ≤ ρ (overdamped or divergent), ascending, without vectors.
     std::vector<double> real_values;
 
     /// Eigenvalues λ = 0 with their multiplicity: two for each rigid-body mode without damping.
@@ -91,20 +92,16 @@ namespace Squeal
    * the end of the band. Without damping, ν = 1/(λ² - s²) and
    * ν u = -Q(s)⁻¹ M u on vectors of length n: λ → -λ holds exactly.
    *
-   * The iteration ends when all Ritz values inside the radius have converged
-   * and some have beyond it. The residuals are then computed from the pencil;
-   * if one misses the tolerance, the iteration goes on. A short second process
-   * from fresh directions, with the values found deflated, then looks for
-   * missing ones; if it sees any, these directions join the block and the
-   * iteration goes on. It sees what lies well inside the radius: a missing
-   * member of a cluster at the very end of the band may escape, for which the
-   * block size should be at least the number of members.
+   * The iteration ends when all Ritz values inside the radius, and some outside, have converged. The residuals are then computed from the
+   * pencil; if one exceeds the tolerance, the iteration continues. A short second process from random directions, with the found values
+   * deflated, then searches for missing ones; if it finds any, these directions join the block and the iteration continues. It finds values
+   * well inside the radius: a missing member of a cluster at the very end of the band may remain undetected, therefore the block size
+   * should be at least the size of clusters.
    *
    * @param inverse_at_shift Q(s)⁻¹ = (s² M + s C + K)⁻¹
    *
-   * Throws SolverError, saying how many values converged and the worst
-   * residual, if max_restarts do not suffice or rounding errors keep the
-   * residuals above the tolerance.
+   * Throws SolverError with the number of converged values and the largest residual if max_restarts do not suffice or rounding errors keep
+   * the residuals above the tolerance.
    */
   QuadraticModes quadratic_modes(const QuadraticPencil       &pencil,
                                  const LinearOperator        &inverse_at_shift,
@@ -116,7 +113,7 @@ namespace Squeal
                                 const MultiVector                       &real_part,
                                 const MultiVector                       &imaginary_part);
 
-  /// Turns each complex vector so that its entry of largest modulus is real and positive; of several that are equal but for rounding, that
-  /// of the lowest row.
+  /// Rotates each complex vector so that its entry of largest modulus is real and positive; among entries that are equal up to rounding,
+  /// the one in the lowest row.
   void fix_phase(MultiVector &real_part, MultiVector &imaginary_part);
 } // namespace Squeal

@@ -9,7 +9,7 @@
 
 namespace Squeal
 {
-  /// Where a body is and how large: by it a point of one design is carried over to another one.
+  /// Position and size of a body, for mapping points from one design to another.
   struct BodyFrame
   {
     std::string      name;
@@ -23,10 +23,10 @@ namespace Squeal
     }
   };
 
-  /// Those of the disc and the pins.
+  /// Frames of the disc and the pins.
   std::vector<BodyFrame> body_frames(const Model &model);
 
-  /// Points at the same places of the bodies of another design, with the same masses; bodies that it does not have are left out. In the
-  /// disc at the same angle, at the same parts of width and thickness; in a pin at the same parts of its bounding box.
+  /// Points at corresponding positions in another design, with the same masses; bodies that it does not have are omitted. Disc points keep
+  /// their angle and their relative radial and axial positions, pin points their relative position in the bounding box.
   CommonPoints carried_over(const CommonPoints &points, const std::vector<BodyFrame> &from, const std::vector<BodyFrame> &to);
 } // namespace Squeal

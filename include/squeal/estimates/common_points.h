@@ -14,8 +14,8 @@
 
 namespace Squeal
 {
-  /// Points in the bodies of a scene at which displacements on different meshes and with different elements are compared: x_q with masses
-  /// m_q [kg], so that Σ_q m_q |u(x_q)|² is the mass integral of |u|² over all bodies.
+  /// Points in the bodies at which displacements of different meshes and elements are compared: x_q with masses m_q [kg], so that Σ_q m_q
+  /// |u(x_q)|² is the mass integral of |u|² over all bodies.
   struct CommonPoints
   {
     struct Body
@@ -45,19 +45,19 @@ namespace Squeal
   enum class Directions
   {
     cartesian,  ///< x, y, z
-    cylindrical ///< radial, circumferential, z about the disc's axis: they follow a pin that stands at another angle
+    cylindrical ///< radial, circumferential, z about the disc's axis: unchanged if a pin moves to another angle
   };
 
-  /// The points of quadrature() in all cells of a mesh, m_q = ρ |J| w_q: those of the coarsest mesh serve all finer ones. The same on every
+  /// Points of quadrature() in all cells of a mesh, m_q = ρ |J| w_q; those of the coarsest mesh serve all finer ones. The same on every
   /// process.
   CommonPoints common_points(const Model &model, const MaterialParameters &materials, unsigned int degree = 1);
 
   /**
-   * E, 3 n_q × n: the displacement at common points times √m_q from free dofs of a mesh, so that (E u)ᵀ E v is the mass
-   * product of u and v. Rows are distributed evenly over the processes, in the same way for all meshes. Nodal values alone count:
-   * incompatible modes of an element, which vanish with the square of its size, do not.
+   * E, 3 n_q × n: displacements at common points times √m_q from the free dofs of a mesh, so that (E u)ᵀ E v is the mass product of u and
+   * v. Rows are distributed evenly over the processes, equally for all meshes. Nodal values only: incompatible modes of elements, which
+   * vanish with the square of the element size, are neglected.
    *
-   * Throws MeshError if the mesh lacks a body. All processes must call; each looks for all points in its cells.
+   * Throws MeshError if the mesh lacks a body. Collective; each process searches all points in its cells.
    */
   std::unique_ptr<const SparseMatrix> displacements_at(const CommonPoints &points,
                                                        const Model        &model,
@@ -71,10 +71,10 @@ namespace Squeal
   };
 
   /**
-   * Complex modes at common points.
+   * Evaluates complex modes at common points.
    *
    * @param displacements E of the mesh of the modes
-   * @param kernel        T_c: displacements of the bodies from coupled ones
+   * @param kernel        T_c: maps coupled coordinates to displacements of the bodies
    */
   ModesAtPoints at_points(const SparseMatrix &displacements, const SparseMatrix &kernel, const ComplexModes &modes);
 } // namespace Squeal

@@ -9,19 +9,19 @@
 namespace Squeal
 {
   /**
-   * Complex modes of a system no part of which need be symmetric or definite, with right vectors of Euclidean norm one, by block Krylov at a
-   * real shift s with LU factors of Q(s), right and left.
+   * Complex modes of a system without a symmetric or definite part, with right vectors of Euclidean norm one: right and left block Krylov
+   * at a real shift s with LU factors of Q(s).
    *
-   * The eigenvalue has the condition number κ = w ‖ψ‖ ‖φ‖ / (|λ| |ψᵀQ'(λ)φ|) of F. Tisseur, *Backward error and condition of polynomial
+   * Condition number of an eigenvalue: κ = w ‖ψ‖ ‖φ‖ / (|λ| |ψᵀQ'(λ)φ|) of F. Tisseur, *Backward error and condition of polynomial
    * eigenvalue problems*, Linear Algebra and its Applications 309 (2000) 339–361, with ψ dual to all φ of the band,
    * ψ_iᵀ ((λ_i + λ_j) M + C) φ_j = δ_ij, w as in backward_errors(), and the relative error κ max(η, ε), of first order.
    *
    * @param value  of the varied parameter
-   * @param source of the system, for messages: "file brake/system.json"
+   * @param source origin of the system, for messages: "file brake/system.json"
    *
-   * Where no mode oscillates in the band there are none, and no vectors.
+   * Empty if no mode oscillates in the band.
    *
-   * Throws SolverError if Q(s) is singular to working precision, or if right and left eigenvalues differ in number.
+   * Throws SolverError if Q(s) is singular to working precision, or if the numbers of right and left eigenvalues differ.
    */
   JudgedModes direct_modes(const CoupledSystem    &system,
                            double                  value,

@@ -10,79 +10,79 @@
 
 namespace Squeal
 {
-  /// What a second, coarser mesh says of a mode.
+  /// Discretisation error of a mode, estimated from a coarser mesh.
   struct DiscretisationError
   {
     bool   has_counterpart = false;
-    bool   in_cluster      = false; ///< the mesh decides which of several modes is the counterpart
-    double overlap         = 0.;    ///< of both shapes [-]
-    double frequency       = 0.;    ///< estimated error, relative [-]
+    bool   in_cluster      = false; ///< one of several modes that mix from mesh to mesh: no individual counterpart
+    double overlap         = 0.;    ///< of both shapes, MAC [-]
+    double frequency       = 0.;    ///< estimated relative error [-]
     double divergence      = 0.;    ///< estimated error of the divergence rate [-]
 
-    /// Whether the mode grows, as far as mesh and solver tell.
+    /// Growth within the estimated errors of mesh and solver.
     Verdict verdict = Verdict::undecided;
 
-    /// Whether both errors are known and within limits.
+    /// True if both errors are known and within the limits.
     bool is_within(double frequency_limit, double divergence_limit) const;
   };
 
   /**
-   * Estimated errors of modes λ = R + iω by those of a coarser mesh, from differences between counterparts (estimates/mode_pairing.h):
+   * Estimates errors of modes λ = R + iω from a coarser mesh, by differences between counterparts (estimates/mode_pairing.h):
    *
    *   |ω − ω*| ≈ s |ω − ω_c|,   |ξ − ξ*| ≈ s |ξ − ξ_c|,   ξ = R / ω.
    *
-   * With s = 1 / (c − 1) that holds where the coarser mesh is off by c times as much, and is too large where it is by more.
+   * With s = 1 / (c − 1) this holds if the errors of the coarser mesh are c times as large, and is conservative if they are larger.
    *
-   * Two modes whose distance Δω changes by itself or more from mesh to mesh, |Δω − Δω_c| ≥ |Δω|, may meet on finer meshes. They may
-   * exchange their shapes on the way: of their errors of ξ the largest counts for both, as for a growing mode and its decaying partner.
-   * Two modes that neither grow nor decay, as without damping, may begin to where they meet; since their coupling does not make them
-   * flutter at a distance of Δω, they then grow by |Δω| / 2 at most, which counts as an error of ξ, too.
+   * Two modes whose distance Δω changes by 100 % or more from mesh to mesh, |Δω − Δω_c| ≥ |Δω|, may coalesce on finer meshes. They may
+   * exchange their shapes: the larger of their errors of ξ then applies to both, as for a growing mode and its decaying partner. Two modes
+   * that neither grow nor decay, as without damping, may become a growing and a decaying one if they coalesce; since their coupling does
+   * not cause flutter at a distance of Δω, the growth rate is at most |Δω| / 2, which also counts as an error of ξ.
    *
-   * A mode is unstable if verdict_of() with the error of the solver says so and R is beyond the estimated error; it is stable if R
-   * decays beyond it, or is neutral and the estimated error of ξ is below weak_divergence. All else is undecided, and so is a mode
-   * without counterpart.
+   * A mode is unstable if verdict_of() with the error of the solver finds it so and R exceeds the estimated error; it is stable if it
+   * decays by more than the estimated error, or is neutral with an estimated error of ξ below weak_divergence. All other modes, also those
+   * without counterpart, are undecided.
    *
-   * @param coarse        modes on the coarser mesh, in a band that reaches further
+   * @param coarse        modes on the coarser mesh, in a wider band
    * @param fine          modes on the finer mesh, at the same points
    * @param share         s [-]
-   * @param solver_errors estimated |δλ| / |λ| of the fine modes by the solver; empty: rounding errors [-]
+   * @param solver_errors estimated |δλ| / |λ| of the fine modes by the solver [-]; empty: rounding errors
    */
   std::vector<DiscretisationError> discretisation_errors(const ModesAtPoints       &coarse,
                                                          const ModesAtPoints       &fine,
                                                          double                     share,
                                                          const std::vector<double> &solver_errors);
 
-  /// Orders of convergence that are plausible [-].
+  /// Plausible orders of convergence [-].
   struct OrderRange
   {
     double smallest = 0.5, largest = 6.;
   };
 
-  /// What a sequence of values on finer and finer meshes tends to.
+  /// Limit of a sequence of values on finer and finer meshes.
   struct Extrapolation
   {
     double                             limit;           ///< v of the mesh width 0
     double                             order;           ///< p, observed or assumed
-    std::vector<std::optional<double>> observed_orders; ///< of three consecutive values each; nothing where there is no plausible one
-    bool                               is_trustworthy;  ///< p was observed, and its range and the three finest values are plausible
+    std::vector<std::optional<double>> observed_orders; ///< from three consecutive values each; nothing if there is no plausible one
+    bool                               is_trustworthy;  ///< p was observed, its range is plausible, and so are the three finest values
     double                             uncertainty;     ///< of the limit, estimated
     std::vector<double>                errors;          ///< |v_k − limit| of each value
   };
 
   /**
-   * Richardson's extrapolation of values on meshes of decreasing widths, v_k = v + c h_k^p. Three or more values give the order:
+   * Richardson extrapolation of values on meshes of decreasing widths, v_k = v + c h_k^p. Three or more values give the order:
    *
    *   (v_1 − v_2) / (v_2 − v_3) = (h_1^p − h_2^p) / (h_2^p − h_3^p)
    *
-   * of the three finest, for any ratios of h (L. F. Richardson 1911; P. J. Roache 1998). Where that has no solution in @p
-   * plausible, as where the values are not monotone, the result is not trustworthy and the assumed order is taken.
+   * from the three finest, for any ratios of h (L. F. Richardson 1911; P. J. Roache 1998). If there is no solution in @p plausible, for
+   * example because the values are not monotone, the result is not trustworthy and the assumed order is used.
    *
-   * The limit is uncertain by its difference from the limit with the assumed order; where it is not trustworthy, moreover by the
-   * difference of the two finest values. Differences that are rounding errors of the values count as none: the finest value is the limit.
+   * Uncertainty of the limit: the difference from the limit with the assumed order; if not trustworthy, plus the difference of the two
+   * finest values. If differences are rounding errors of the values, the finest value is the limit.
    *
    * @param widths        h_k > 0, strictly decreasing, two or more [any unit]
    * @param values        v_k
-   * @param assumed_order p where it cannot be observed
+   * @param assumed_order p if it cannot be observed
    */
   Extrapolation extrapolate(const std::vector<double> &widths,
                             const std::vector<double> &values,

@@ -11,21 +11,21 @@
 
 namespace Squeal
 {
-  /// What the residuals of reduced eigentriples at full order say about their λ; see estimate_eigenvalues().
+  /// Error estimates for λ of reduced eigentriples from their full-order residuals; see estimate_eigenvalues().
   struct EigenvalueEstimates
   {
-    std::vector<std::complex<double>> corrections;   ///< δλ: λ + δλ is the better value [rad/s]
+    std::vector<std::complex<double>> corrections;   ///< δλ: λ + δλ is more accurate [rad/s]
     std::vector<double>               errors;        ///< |δλ| / |λ| [-]
     std::vector<double>               conditions;    ///< κ [-]
-    std::vector<bool>                 claimed;       ///< no coalescence within reach: δλ means something
-    std::vector<double>               uncertainties; ///< |δλ| and what close modes add to it [rad/s]
+    std::vector<bool>                 claimed;       ///< no coalescence within reach: δλ is meaningful
+    std::vector<double>               uncertainties; ///< |δλ| plus the effect of close modes [rad/s]
     std::vector<Verdict>              verdicts;
     std::vector<double>               energy_residuals; ///< ε_res of φ, eq. (16) [-]
     std::vector<double>               left_residuals;   ///< ε_res of ψ [-]
     ComplexDenseMatrix                couplings;        ///< D, k × k: D_ij = L_iᵀ K_c⁻¹ R_j / ψ_iᵀQ'(λ_i)φ_i [rad/s]
   };
 
-  /// Residuals of reduced eigentriples at full order, n × 2k: real, then imaginary parts.
+  /// Full-order residuals of reduced eigentriples, n × 2k: real, then imaginary parts.
   struct ResidualVectors
   {
     MultiVector right_forces, left_forces;               ///< R_F and L_F
@@ -40,32 +40,29 @@ namespace Squeal
                                    const ReducedModes   &modes);
 
   /**
-   * Errors of reduced eigenvalues from right and left residuals, R_F = Q(λ)φ and
-   * L_F = Q(λ)ᵀψ with φ = T φ_r, ψ = T ψ_r: the next Galerkin step changes λ by
+   * Estimates errors of reduced eigenvalues from right and left residuals, R_F = Q(λ)φ and L_F = Q(λ)ᵀψ with φ = T φ_r, ψ = T ψ_r. A
+   * Galerkin step that adds K_c⁻¹ R_F and K_c⁻¹ L_F changes λ by
    *
    *   ψᵀQ'(λ)φ δλ + ψᵀMφ δλ² = L_Fᵀ K_c⁻¹ R_F,
    *
-   * of which the smaller root is taken.
+   * where the smaller root is taken.
    *
    * The condition number of an eigenvalue,
    *
    *   κ = 2 |λ| ‖ψ‖_M ‖φ‖_M / |ψᵀQ'(λ)φ|,
    *
-   * is one for a symmetric problem and infinite at a coalescence: a relative
-   * change ε of the matrices moves λ by κ ε/2 |λ| at most. Two modes may coalesce
-   * within the error of the reduction if
+   * is one for a symmetric problem and infinite at a coalescence: a relative change ε of the matrices moves λ by at most κ ε/2 |λ|. Two
+   * modes may coalesce within the error of the reduction if
    *
    *   4 |g_ij g_ji| s² ≥ |λ_i − λ_j|²,   g_ij = L_iᵀ K_c⁻¹ R_j / ψ_iᵀQ'(λ_i)φ_i,
    *
-   * with the safety factor s = error_safety. An estimate is not claimed where that is so or
-   * where κ > 1000. The uncertainty of λ_i is |δλ_i| + Σ |g_ij| over the modes j
-   * that may coalesce with it (Gershgorin's bound).
+   * with the safety factor s = error_safety. In this case, or if κ > 1000, the estimate is not claimed. The uncertainty of λ_i is |δλ_i| +
+   * Σ |g_ij| over the modes j that may coalesce with it (Gershgorin's bound).
    *
-   * The verdict is that of verdict_of() with this uncertainty, undecided where
-   * κ > 1000. A coalescence is within reach as above or because
-   * s |δλ_i − δλ_j| ≥ |λ_i − λ_j|.
+   * The verdict is that of verdict_of() with this uncertainty; it is undecided if κ > 1000. A coalescence is also within reach if s |δλ_i −
+   * δλ_j| ≥ |λ_i − λ_j|.
    *
-   * Where the inverse has a shift, its stiffness stands for K_c.
+   * If the inverse has a shift, the shifted stiffness replaces K_c.
    */
   EigenvalueEstimates estimate_eigenvalues(const ReducedModes &modes, const ResidualProducts &products);
 

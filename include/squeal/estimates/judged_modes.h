@@ -11,44 +11,43 @@
 
 namespace Squeal
 {
-  /// Complex modes at one friction coefficient and which of them grow.
+  /// Complex modes at one friction coefficient with their verdicts.
   struct JudgedModes
   {
     ComplexModes         modes;
-    std::vector<Verdict> verdicts; ///< with the uncertainty of λ
-    std::vector<bool>    unstable; ///< beyond their uncertainty
+    std::vector<Verdict> verdicts; ///< within the uncertainty of λ
+    std::vector<bool>    unstable; ///< growth exceeds the uncertainty
     Conditioning         conditioning;
-    int n_slow = 0; ///< pairs of λ that count as zero but belong to no rigid body, such as slow decay against strong dampers
+    int n_slow = 0; ///< pairs of λ that count as zero but are no rigid-body modes, for example slow decay due to strong dampers
 
     std::size_t n_unstable() const;
 
-    /// Modes of this verdict.
+    /// Number of modes with this verdict.
     std::size_t n_of(Verdict verdict) const;
 
-    /// Real eigenvalues λ > 0: static divergence.
+    /// Number of real eigenvalues λ > 0: static divergence.
     std::size_t n_growing_real() const;
   };
 
-  /// |λ|² up to this many times what rounding hides: a slow mode, whose digits cancellation takes [-].
+  /// A mode is slow if |λ|² is below this multiple of the unresolved square: cancellation in the stiffness costs digits [-].
   inline constexpr double slow_square = 1e4;
 
   bool is_slow(const CoupledSystem &system, const std::complex<double> &lambda);
 
-  /// Largest error of the modes that are not slow.
+  /// Largest error of all modes that are not slow.
   double largest_error(const CoupledSystem &system, const ComplexModes &modes, const Conditioning &conditioning);
 
-  /// Relative errors of λ by which growth is judged. The largest of all counts for every mode, since that of a single one may be much too
-  /// small by chance; but a slow mode, of which cancellation in the stiffness takes many digits, has its own.
+  /// Relative errors of λ for the verdicts. The largest error applies to every mode, because an individual estimate may be far too small by
+  /// chance; slow modes, which lose digits by cancellation in the stiffness, have their own.
   std::vector<double> uncertainties(const CoupledSystem &system, const ComplexModes &modes, const Conditioning &conditioning);
 
-  /// Decides which of @p modes grow, each by its own error in @p conditioning.
+  /// Verdicts of @p modes, each with its own error in @p conditioning.
   JudgedModes judged_by_errors(ComplexModes modes, Conditioning conditioning, bool has_damping);
 
-  /// Decides which of @p modes grow, however they were found.
+  /// Verdicts of @p modes, for any solver.
   JudgedModes judged_modes(const CoupledSystem &system, const SystemModes &frictionless, ComplexModes modes);
 
-  /// Complex modes of the system, those that the band lists, by the solver that the parameters choose. Throws SolverError if none
-  /// oscillates there.
+  /// Complex modes of the system in the band, by the solver chosen in the parameters. Throws SolverError if no mode oscillates in the band.
   JudgedModes modes_with_friction(const CoupledSystem    &system,
                                   const SystemModes      &frictionless,
                                   double                  mu,

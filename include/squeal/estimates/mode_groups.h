@@ -16,11 +16,11 @@
 namespace Squeal
 {
   /**
-   * Share [-] of some dofs in the energy of each mode u e^(λt), kinetic and strain energy together,
+   * Share [-] of a set of dofs in the energy of each mode u e^(λt), kinetic and strain energy together,
    *
    *   Σ_i ū_i (|λ|² M u + K u)_i / uᴴ (|λ|² M + K) u,   i over those dofs.
    *
-   * M and K do not couple these dofs with the others, as those of different bodies.
+   * M and K must not couple these dofs with the others: for example dofs of different bodies.
    *
    * @param selection n × 1, one at these dofs, zero at the others
    * @param lambda    of the modes [rad/s]
@@ -32,26 +32,26 @@ namespace Squeal
                                     const MultiVector                       &real_part,
                                     const MultiVector                       &imaginary_part);
 
-  /// Share of the disc, with the foundation that holds it, in the energy of coupled modes; the remainder is that of the pins [-].
+  /// Share of the disc and its mounts in the energy of coupled modes; the remainder belongs to the pins [-].
   std::vector<double> disc_shares(const Model             &model,
                                   const SecondOrderSystem &bodies,
                                   const SparseMatrix      &kernel,
                                   const ComplexModes      &modes);
 
   /**
-   * Groups of the frictionless problem (figures 10 to 13 of the paper): `disc` where the disc has at least half of the energy, else
-   * family and rank of the pin modes (`F1`, `T1`).
+   * Groups of the frictionless problem (figures 10 to 13 of the paper): `disc` if the disc has at least half of the energy, else family and
+   * rank of the pin modes (`F1`, `T1`).
    *
    * @param disc_shares see disc_shares()
-   * @param pin_labels  of each mode among the modes of the pins alone; of no matter where the disc has the energy
+   * @param pin_labels  of each mode among the modes of the pins alone; unused if the disc has the energy
    */
   std::vector<std::string> frictionless_groups(const std::vector<double> &disc_shares, const std::vector<ModeLabel> &pin_labels);
 
   /**
-   * Groups with friction (figures 14 to 18): `disc` where the disc has at least half of the energy; of the others `unstable pins`,
-   * which grow with a divergence rate above weak_divergence, `weakly unstable pins`, which grow more slowly, and `other pins`.
+   * Groups with friction (figures 14 to 18): `disc` if the disc has at least half of the energy; else `unstable pins` with divergence rates
+   * above weak_divergence, `weakly unstable pins` that grow more slowly, and `other pins`.
    *
-   * @param unstable whether each mode grows beyond its uncertainty
+   * @param unstable for each mode, growth exceeds the uncertainty
    */
   std::vector<std::string> friction_groups(const std::vector<double>               &disc_shares,
                                            const std::vector<std::complex<double>> &lambda,
@@ -68,6 +68,6 @@ namespace Squeal
    */
   Eigen::VectorXd squared_cosines(const ComplexDenseMatrix &A, const ComplexDenseMatrix &B, const ComplexDenseMatrix &C);
 
-  /// ‖Pψ‖² / ‖ψ‖² for the projection P on the span of vectors with Gram matrix A, of which C are the products with all ψ; B those of ψ.
+  /// ‖Pψ‖² / ‖ψ‖² for the projection P on the span of vectors with Gram matrix A; C: their products with all ψ, B: products of ψ.
   Eigen::RowVectorXd shares_in_span(const ComplexDenseMatrix &A, const ComplexDenseMatrix &C, const ComplexDenseMatrix &B);
 } // namespace Squeal

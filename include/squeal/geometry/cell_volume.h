@@ -6,9 +6,9 @@
 
 namespace Squeal
 {
-  /// Volume of a cell by the map of its nodes [m³].
+  /// Volume of a cell, from the map of its nodes [m³].
   double volume_of(const Mesh &mesh, const Mesh::Cell &cell);
 
-  /// Least det(∂x/∂ξ) of that map at the points of quadrature() and, where it is clearly negative there, at nodes [m³].
+  /// Smallest det(∂x/∂ξ) of that map at the points of quadrature() and, if clearly negative there, at the nodes [m³].
   double worst_determinant(const Mesh &mesh, const Mesh::Cell &cell);
 } // namespace Squeal

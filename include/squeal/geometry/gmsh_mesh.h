@@ -15,7 +15,7 @@
 
 namespace Squeal
 {
-  /// What Gmsh holds: nodes, and elements by physical group. No two groups of a dimension share a name.
+  /// Mesh from Gmsh: nodes, and elements by physical group. Groups of the same dimension have different names.
   struct GmshMesh
   {
     struct Element
@@ -33,8 +33,8 @@ namespace Squeal
     struct Group
     {
       int                                         dimension;
-      int                                         number;   ///< the least where several groups bear the name
-      std::string                                 name;     ///< empty where the group has only a number
+      int                                         number;   ///< the smallest if several groups share the name
+      std::string                                 name;     ///< empty if the group has only a number
       std::map<std::string, std::vector<Element>> elements; ///< by Gmsh's name of the type, e.g. "Quadrilateral 4"; ascending by tag
 
       template <typename Archive>
@@ -48,10 +48,10 @@ namespace Squeal
     std::vector<Group>                 groups;                        ///< by dimension, then in the order of their numbers
     std::size_t                        n_unnamed_volume_elements = 0; ///< 3-D elements in no physical group
 
-    /// What the system lacks that keeps Gmsh from running programs and writing files; empty: nothing, or it was not asked for.
+    /// Missing system feature that keeps Gmsh from being confined (no programs, no file output); empty: confined, or not requested.
     std::string why_not_confined;
 
-    /// The highest dimension that has a physical group; 0 without any.
+    /// Highest dimension with a physical group; 0 without groups.
     int dimension() const;
 
     template <typename Archive>
@@ -61,20 +61,20 @@ namespace Squeal
     }
   };
 
-  /// A mesh as bytes, for another process on the same machine.
+  /// Serialises a mesh for another process on the same machine.
   std::string to_bytes(const GmshMesh &mesh);
 
-  /// The mesh of to_bytes(). Throws std::length_error where bytes are missing.
+  /// Mesh from to_bytes(). Throws std::length_error if bytes are missing.
   GmshMesh from_bytes(const std::string &bytes);
 
-  /// First byte of the mesher's reply on its standard output; a text or a mesh follows. The mesher reads its script from standard input.
+  /// First byte of the mesher's reply on standard output, before a text or a mesh. The mesher reads its script from standard input.
   enum class MesherReply : char
   {
-    mesh          = 'm', ///< to_bytes() of a GmshMesh
-    failure       = 'f', ///< what Gmsh reports
+    mesh          = 'm', ///< a GmshMesh by to_bytes()
+    failure       = 'f', ///< error message of Gmsh
     out_of_memory = 'o'  ///< nothing follows
   };
 
-  /// Arguments of the mesher that say whether the geometry may do what confine() forbids.
+  /// Command-line arguments of the mesher: confined by confine() or not.
   inline constexpr const char *mesher_confined = "confined", *mesher_free = "free";
 } // namespace Squeal

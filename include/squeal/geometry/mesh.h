@@ -17,8 +17,8 @@
 namespace Squeal
 {
   /**
-   * A mesh with named parts: the one form in which every geometry (built in, a user's .geo, a user's .msh) enters the program. Cells are Lagrange
-   * elements of one degree; nodes of different bodies are never shared.
+   * A mesh with named parts, common to all geometries (built-in, .geo, .msh). Cells are Lagrange elements of one degree; different bodies
+   * share no nodes.
    */
   struct Mesh
   {
@@ -42,14 +42,14 @@ namespace Squeal
     unsigned int              degree = 1;
     std::vector<Point>        points; ///< coordinates [m]
     std::vector<Cell>         cells;
-    std::vector<Face>         faces; ///< on named surfaces only; once for each name that a face bears
+    std::vector<Face>         faces; ///< on named surfaces only; once for each name
     std::vector<std::string>  volume_names;
     std::vector<std::string>  body_names;     ///< the disc's first
     std::vector<unsigned int> body_of_volume; ///< of each volume, see find_bodies()
     std::vector<std::string>  surface_names;
     std::vector<TiedPair>     tied;         ///< surfaces that are bonded
-    std::vector<std::string>  notes;        ///< what was corrected, for the user
-    std::vector<std::size_t>  element_tags; ///< of the cells in the file, for messages; empty without one
+    std::vector<std::string>  notes;        ///< automatic corrections, for the user
+    std::vector<std::size_t>  element_tags; ///< tags of the cells in the file, for messages; empty without a file
 
     unsigned int body_of(const Cell &cell) const
     {
@@ -62,49 +62,50 @@ namespace Squeal
     }
   };
 
-  /// How many cells there are of each shape, as text: "180 tetrahedra, 20 wedges".
+  /// Number of cells of each shape, as text: "180 tetrahedra, 20 wedges".
   std::string cell_counts(const Mesh &mesh);
 
-  /// Of the places of the nodes, to 1e-8 of the size or less (a nanometre for some decimetres): tells two meshes with the same
-  /// numbers of nodes apart.
+  /// Checksum of the nodal coordinates, rounded to 1e-8 of the mesh size or less (about a nanometre for a brake disc): distinguishes meshes
+  /// with equal numbers of nodes.
   std::uint64_t checksum(const Mesh &mesh);
 
   /**
-   * Finds the bodies: volumes that share nodes or are tied, and all volumes of the disc, which comes first; the others follow in the order of their first
-   * volumes. A body bears the name of its volume; one of several volumes what their names have in common up to the end of a word, as `pin_1`
-   * of `pin_1_lining` and `pin_1_backplate`, or, where nothing is or another part has that name, the name of the first. The disc is `disc`.
+   * Finds the bodies: volumes that share nodes or are tied form one body, and so do all volumes of the disc, which comes first; the others
+   * follow in the order of their first volumes. A body of one volume has its name; a body of several volumes has the common beginning of
+   * their names, up to the end of a word, as `pin_1` for `pin_1_lining` and `pin_1_backplate`; without one, or if another part has that
+   * name, the name of the first volume. The disc is `disc`.
    */
   void find_bodies(Mesh &mesh);
 
-  /// Pairs of nodes that join what Mesh::tied bonds.
+  /// Pairs of nodes that connect the tied surfaces in Mesh::tied.
   std::vector<std::pair<unsigned int, unsigned int>> tied_links(const Mesh &mesh);
 
-  /// Index of the body that each node belongs to.
+  /// Body of each node.
   std::vector<unsigned int> body_of_nodes(const Mesh &mesh);
 
   /// A face of a cell.
   struct CellFace
   {
     std::size_t                 cell;   ///< index among the cells
-    unsigned int                number; ///< among the faces of the cell
+    unsigned int                number; ///< index among the faces of the cell
     unsigned int                body;
     unsigned int                n_corners;
-    std::array<unsigned int, 4> corners; ///< nodes around the face, outwards by the right-hand rule; a triangle repeats the last
+    std::array<unsigned int, 4> corners; ///< nodes, outwards by the right-hand rule; a triangle repeats the last one
     std::array<unsigned int, 4> key;     ///< see face_key()
   };
 
-  /// The same for each face with these corners: their nodes in ascending order, of a triangle the last one twice.
+  /// Key of a face, the same for all faces with these corners: ascending node numbers, the last one twice for a triangle.
   std::array<unsigned int, 4> face_key(const Mesh::Face &face);
 
   CellFace face_of_cell(const Mesh &mesh, std::size_t cell, unsigned int number);
 
-  /// Those of all cells, ascending by key: the two of a face between cells follow each other.
+  /// Faces of all cells, ascending by key: both sides of an internal face are adjacent.
   std::vector<CellFace> all_faces(const Mesh &mesh);
 
-  /// Those that belong to one cell only.
+  /// Faces that belong to only one cell.
   std::vector<CellFace> outer_faces(const Mesh &mesh);
 
-  /// Centre of a face [m] and its normal times its area [m²], of its corners.
+  /// Centre of a face [m] and its normal times its area [m²], from its corners.
   struct FaceGeometry
   {
     Mesh::Point          centre;
@@ -114,39 +115,39 @@ namespace Squeal
   FaceGeometry face_geometry(const Mesh &mesh, const CellFace &face);
   FaceGeometry face_geometry(const Mesh &mesh, const Mesh::Face &face);
 
-  /// Reference coordinates of a point by Newton's method on the map of the nodes; nothing for points that are more than about three quarters of
-  /// the cell's extent away. Nodes' places are those of a Lagrange element of the given shape and degree.
+  /// Reference coordinates of a point by Newton's method on the isoparametric map; nothing for points farther than about 0.75 of the cell's
+  /// extent. Nodes in the order of the Lagrange element of this shape and degree.
   std::optional<Mesh::Point> reference_coordinates(Shape                           shape,
                                                    unsigned int                    degree,
                                                    const std::vector<Mesh::Point> &nodes,
                                                    const Mesh::Point              &point);
 
-  /// How deep a point is in a cell, below the nearest face; negative outside.
+  /// Distance of a point inside a cell from the nearest face; negative outside.
   struct Depth
   {
-    double relative; ///< to the extent of the cell across that face [-]
+    double relative; ///< relative to the extent of the cell across that face [-]
     double length;   ///< [m]
   };
 
-  /// Number, volume and place of a cell, for messages.
+  /// Number, volume and position of a cell, for messages.
   std::string describe_cell(const Mesh &mesh, std::size_t cell);
 
   /// Mean of the corners [m].
   Mesh::Point centre(const Mesh &mesh, const Mesh::Cell &cell);
 
-  /// Of the cell with straight edges between its corners; nothing where reference_coordinates() finds none.
+  /// Depth in the cell with straight edges between its corners; nothing if reference_coordinates() fails.
   std::optional<Depth> depth_in_cell(const Mesh &mesh, const Mesh::Cell &cell, const Mesh::Point &point);
 
-  /// Index of a pin among the names of the bodies, the disc's first; throws ParameterError naming @p parameter and all pins.
+  /// Index of a pin among the body names, the disc's first; throws ParameterError naming @p parameter and all pins.
   unsigned int pin_number(const std::vector<std::string> &body_names, const std::string &pin, const char *parameter);
 
-  /// Physical names that every geometry uses.
+  /// Physical names common to all geometries.
   namespace PhysicalNames
   {
     inline constexpr const char *disc         = "disc";         ///< volume: the disc, or part of it; other parts begin with disc_
     inline constexpr const char *pin_prefix   = "pin_";         ///< surfaces of a plan: every pin or pad
-    inline constexpr const char *disc_contact = "disc_contact"; ///< surface: the disc's side of every contact
-    inline constexpr const char *pin_contact  = "pin_contact";  ///< surface: the pins' side of every contact
+    inline constexpr const char *disc_contact = "disc_contact"; ///< surface: disc side of all contacts
+    inline constexpr const char *pin_contact  = "pin_contact";  ///< surface: pin side of all contacts
     inline constexpr const char *pin_clamp    = "pin_clamp";    ///< surface: clamped outer faces of the pins
     inline constexpr const char *pin_side     = "pin_side";     ///< surface, optional: lateral faces of the pins
     inline constexpr const char *disc_bore    = "disc_bore";    ///< surface, optional: inner boundary of the disc

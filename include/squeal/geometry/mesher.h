@@ -10,40 +10,37 @@
 
 namespace Squeal
 {
-  /// What a process that runs Gmsh on a geometry may take and do.
+  /// Resource limits and confinement of the Gmsh process.
   struct MesherLimits
   {
     double seconds;     ///< wall time [s]
     double bytes;       ///< address space [byte]
-    bool   is_confined; ///< no programs, no files, no network, where the system can do that
+    bool   is_confined; ///< no programs, no files, no network, if the system supports it
   };
 
-  /// A confined process tried what it may not.
+  /// A confined process attempted a forbidden action.
   class ForbiddenAction : public std::runtime_error
   {
   public:
     using std::runtime_error::runtime_error;
   };
 
-  /// What Gmsh opens in that process.
+  /// Input of the Gmsh process.
   struct MesherInput
   {
     std::string                   file;    ///< a mesh or geometry; may be empty
-    std::string                   script;  ///< text of a geometry that is read before
-    std::map<std::string, double> numbers; ///< values for DefineNumber[..., Name "..."], by that name
+    std::string                   script;  ///< geometry commands that are read first
+    std::map<std::string, double> numbers; ///< values for DefineNumber[..., Name "..."], by this name
   };
 
   /**
-   * Opens a geometry or mesh in a process of its own, meshes it as mesh_geometry()
-   * does (a solid where there are physical volumes, else a plan), and returns
-   * what Gmsh then holds. Whatever happens to Gmsh there leaves this process and, if
-   * confined, the user's files alone. The process sees none of the user's
-   * environment if confined, and ends with this one. No temporary file is made.
+   * Opens a geometry or mesh in a separate process, meshes it by mesh_geometry() (a solid if there are physical volumes, else a plan), and
+   * returns the resulting mesh. A crash of Gmsh does not affect this process nor, if confined, the user's files. A confined process does
+   * not inherit the environment, and it ends with this process. No temporary file is created.
    *
-   * @param where name of the geometry that errors quote
+   * @param where name of the geometry, for error messages
    *
-   * Throws MeshError where Gmsh fails, crashes, ends by itself or exceeds its limits;
-   * ForbiddenAction; FileError where the process cannot be started.
+   * Throws MeshError if Gmsh fails, crashes, exits or exceeds its limits; ForbiddenAction; FileError if the process cannot be started.
    */
   GmshMesh run_mesher(const MesherInput &input, const std::string &where, const MesherLimits &limits);
 } // namespace Squeal

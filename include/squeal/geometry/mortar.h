@@ -17,7 +17,7 @@ namespace Squeal
     Mesh::Nodes nodes; ///< indices into SurfacePatch::points, in the order of reference_nodes(); outwards by the right-hand rule
   };
 
-  /// One side of a contact; its elements have one degree.
+  /// One side of a contact; all its elements have the same degree.
   struct SurfacePatch
   {
     std::vector<dealii::Point<3>> points; ///< [m]
@@ -27,23 +27,23 @@ namespace Squeal
   /// Nodes with weights [-].
   using NodeWeights = std::vector<std::pair<unsigned int, double>>;
 
-  /// The multiplier j of a slave node; formulas at mortar().
+  /// Multiplier j of a slave node; formulas at mortar().
   struct MortarRow
   {
     unsigned int node;         ///< of the slave
     double       area;         ///< D_j = ∫ ψ_j over the overlap, positive [m²]
     NodeWeights  slave;        ///< B_ji; the sum is one
     NodeWeights  master;       ///< W_jl = ∫ ψ_j N_l / D_j; the sum is one, entries below 1e-13 are dropped
-    NodeWeights  left_inverse; ///< G_ji, not the transpose of B
+    NodeWeights  left_inverse; ///< G_ji, not the transpose of B in general
   };
 
   struct Mortar
   {
-    std::vector<MortarRow> rows;         ///< by ascending node; slave nodes without a row are free of contact
+    std::vector<MortarRow> rows;         ///< by ascending node; slave nodes without a row are not in contact
     double                 slave_area;   ///< of all slave elements [m²]
-    double                 overlap_area; ///< of the part that faces the master [m²]
-    double                 coarseness;   ///< largest ratio of element sizes, slave to master above it [-]
-    double                 largest_gap;  ///< or penetration, along the normals of the slave [m]
+    double                 overlap_area; ///< part opposite the master [m²]
+    double                 coarseness;   ///< largest ratio of element sizes, slave to opposite master [-]
+    double                 largest_gap;  ///< largest gap or penetration, along the normals of the slave [m]
   };
 
   /**
@@ -53,7 +53,8 @@ namespace Squeal
    *
    *     g_j = Σ_i B_ji u_i − Σ_l W_jl u_l
    *
-   * with forces f_i = Σ_j B_ji r_j on the slave and −Σ_j W_jl r_j on the master. The former determine it: r_j = Σ_i G_ji f_i, G Bᵀ = I.
+   * with forces f_i = Σ_j B_ji r_j on the slave and −Σ_j W_jl r_j on the master. The slave forces determine r_j: r_j = Σ_i G_ji f_i, G Bᵀ =
+   * I.
    * On flat faces g vanishes for linear displacements, and a constant pressure gives both sides their consistent nodal forces. If the
    * meshes match, W = B.
    *
@@ -64,8 +65,8 @@ namespace Squeal
    *     Ñ_v = N_v + α Σ_e N_e,   Ñ_e = (1 − 2 α) N_e,   ũ_v = u_v,   ũ_e = (u_e − α (u_v + u_v')) / (1 − 2 α)
    *     r_v = f_v + α Σ_e f_e,   r_e = (1 − 2 α) f_e
    *
-   * for corners v and the nodes e in the middle of an edge v v'. 9-node quadrilaterals of such a slave are transformed as well, because
-   * they share edges with triangles; their centre node is unchanged. B u = ũ.
+   * for corners v and mid-edge nodes e of an edge v v'. 9-node quadrilaterals of such a slave are transformed as well, because they share
+   * edges with triangles; their centre node is unchanged. B u = ũ.
    *
    * At the edge of the overlap D_j may be small or negative. A multiplier with less than a tenth of the ∫ Ñ_j of the whole elements is
    * added to the neighbour with the largest D: the rows of B and W become their means weighted by D, D and the rows of G are summed.
@@ -82,10 +83,10 @@ namespace Squeal
    */
   Mortar mortar(const SurfacePatch &slave, const SurfacePatch &master, double search_distance);
 
-  /// Half the mean size of the slave's faces: up to this gap surfaces count as touching [m].
+  /// Half the mean size of the slave faces: surfaces with a smaller gap count as touching [m].
   double largest_gap(const SurfacePatch &slave);
 
-  /// What a user should know about a coupling of two named surfaces: the overlap, and gaps and sizes of faces that harm.
+  /// Notes for the user on a coupling of two named surfaces: overlap, and gaps and face sizes that reduce the accuracy.
   std::vector<std::string> coupling_notes(const Mortar      &coupling,
                                           double             largest_gap, ///< of the slave
                                           const std::string &slave,

@@ -18,10 +18,9 @@ namespace Squeal
   struct PinRings;
 
   /**
-   * Disc and pins seen along the axis: quadrilaterals that cover the annulus,
-   * those under each pin, and the named parts of the annulus' boundary. A face
-   * may lie under a top and a bottom pin, also where the two are not exactly
-   * opposite: then both are displaced from their common place in the plan.
+   * Plan view of disc and pins: quadrilaterals that cover the annulus, the faces under each pin, and the named parts of the boundary of the
+   * annulus. A face may be under a top and a bottom pin, even if these are not exactly opposite: both are then displaced from a common
+   * position in the plan.
    */
   struct Plan
   {
@@ -40,9 +39,9 @@ namespace Squeal
       std::string               name; ///< "pin_top..." or "pin_bottom..."
       Side                      side = Side::top;
       std::vector<unsigned int> faces;              ///< indices into Plan::faces, ascending
-      Point                     displacement;       ///< from the place in the plan to that on the disc [m]
-      bool                      is_round   = false; ///< filled by fill_pin(): it may turn about its centre
-      std::vector<unsigned int> ring_nodes = {};    ///< inside its outline, of rings: smoothing leaves them where they are
+      Point                     displacement;       ///< from the position in the plan to the position on the disc [m]
+      bool                      is_round   = false; ///< filled by fill_pin(): may rotate about its centre
+      std::vector<unsigned int> ring_nodes = {};    ///< nodes of the rings inside the outline; not moved by smoothing
     };
 
     struct Curve
@@ -60,35 +59,31 @@ namespace Squeal
   };
 
   /**
-   * The plan in a meshed two-dimensional model with these physical groups:
+   * Plan from a meshed two-dimensional model with these physical groups:
    *
-   * - surface `disc`: the annulus, with or without what is under the pins;
+   * - surface `disc`: the annulus, with or without the faces under the pins;
    * - surfaces `pin_top*`, `pin_bottom*`: the faces under that pin;
    * - curves `pin_top*`, `pin_bottom*`: a closed curve around a hole of the
    *   surfaces, which is filled by fill_pin();
-   * - points `pin_top*`, `pin_bottom*`: where the centre of the pin of that
-   *   name is on its side of the disc, if it is not the centre of its curve;
+   * - points `pin_top*`, `pin_bottom*`: centre of the pin of this name on its side of the disc, if it is not the centre of its curve;
    * - other curves: parts of the annulus' boundary.
    *
-   * Throws MeshError, naming @p where, for other names and for a plan that
-   * does not fit together: other elements than four-node quadrilaterals,
-   * surfaces that are not joined, open curves, pins of one side that touch, a
-   * named curve inside the annulus, no pin.
+   * Throws MeshError, naming @p where, for other names and for inconsistent plans: elements other than four-node quadrilaterals,
+   * disconnected surfaces, open curves, touching pins on one side, a named curve inside the annulus, no pin.
    */
   Plan make_plan(const GmshMesh &mesh, const PinRings &rings, const std::string &where);
 
   /**
-   * Moves the nodes of round outlines away from their centres until the polygon has the area of the circle: by
-   * √(π r² / A), A the polygon's area with its nodes on the circle. For n equal sides, θ = 2π/n, the polar moment of area then
-   * exceeds the circle's by θ⁴/180 only (4e-4 for 12 sides) and the second moments by as much, while with nodes on the circle
-   * area and moments are too small by θ²/6 and θ²/3.
+   * Moves the nodes of round outlines outwards until the polygon has the area of the circle: by √(π r² / A), A the polygon's area with its
+   * nodes on the circle. For n equal sides, θ = 2π/n, the polar moment of area then exceeds the circle's by only θ⁴/180 (4e-4 for 12
+   * sides), and the second moments by as much, while with nodes on the circle area and moments are too small by θ²/6 and θ²/3.
    *
-   * Round is a pin whose outline, or a named curve of the plan that closes, lies on one circle. A pin's inner nodes move with
+   * Round outlines are those of pins, or closed named curves of the plan, with all nodes on one circle. The inner nodes of a pin move with
    * its outline.
    */
   void enlarge_to_true_area(Plan &plan);
 
-  /// Edges that belong to one of the given faces only, in the sense of rotation of that face.
+  /// Edges that belong to only one of the given faces, oriented like that face.
   std::vector<Plan::Edge> boundary_edges(const std::vector<Plan::Face> &faces);
 
   /// Nodes of faces or edges.
@@ -111,13 +106,11 @@ namespace Squeal
   };
 
   /**
-   * Disc and pins over their plan: the disc from z = -thickness/2 to
-   * +thickness/2, each pin outwards from the face of its side. Pins have nodes
-   * of their own, at exactly the places of the disc's.
+   * Extrudes the plan: the disc from z = -thickness/2 to +thickness/2, each pin outwards from the face of its side. Pins have their own
+   * nodes, coincident with those of the disc.
    *
-   * Volumes: disc, then the pins in the order of the plan. Surfaces:
-   * disc_contact, pin_contact, pin_clamp, pin_side, then one for each curve of
-   * the plan.
+   * Volumes: disc, then the pins in the order of the plan. Surfaces: disc_contact, pin_contact, pin_clamp, pin_side, then one for each
+   * curve of the plan.
    */
   Mesh extrude(const Plan &plan, const GeometryParameters &parameters);
 } // namespace Squeal

@@ -9,29 +9,24 @@
 namespace Squeal
 {
   /**
-   * Moves nodes inside the disc and inside the pins until no badly shaped face
-   * gets better by moving one of its nodes. Nodes on the boundary of the
-   * annulus, on the outlines of pins and of their rings stay.
+   * Moves nodes inside the disc and inside the pins until no badly shaped face improves by moving one of its nodes. Nodes on the boundary
+   * of the annulus and on the outlines of pins and their rings are fixed.
    *
-   * The shape at the corner between edges a and b is 2 a x b / (a² + b²): 1 for
-   * a square, 0 for a flat corner or an edge of length 0, negative if inverted.
-   * A node moves to where the least shape of the faces around it is greatest.
+   * The shape quality at the corner between edges a and b is 2 a x b / (a² + b²): 1 for a square, 0 for a flat corner or an edge of length
+   * 0, negative if inverted. A node moves to maximise the smallest quality of the adjacent faces.
    *
-   * Gmsh halves elements after meshing and then puts new nodes of round
-   * outlines on the circle; with few nodes on a circle and a neighbour close to
-   * it, the elements between them would be flat or inverted without this.
+   * Needed because Gmsh halves elements after meshing and then moves new nodes of round outlines onto the circle: with few nodes on a
+   * circle and a close neighbour, the elements in between would be flat or inverted.
    */
   void smooth(Plan &plan);
 
   /**
-   * Points of the plan as they are on one face of the disc: the pins of that
-   * side at their places, the boundary of the annulus where it was, and the
-   * rest displaced evenly in between and smoothed. Where that leaves bad faces,
-   * round pins turn about their own centres as well.
+   * Points of the plan for one face of the disc: pins of that side at their positions, the boundary of the annulus unchanged, and the
+   * remaining nodes displaced by interpolation and smoothed. If bad faces remain, round pins also rotate about their centres.
    */
   std::vector<Plan::Point> points_on_side(const Plan &plan, const Plan::Side side);
 
-  /// Nodes that keep their distances and turn together about a centre: a pin's.
+  /// Nodes that move as a rigid body about a centre: those of a pin.
   struct TurningPart
   {
     std::vector<unsigned int> nodes;
@@ -39,21 +34,17 @@ namespace Squeal
   };
 
   /**
-   * Turns faces over that are inverted or nearly flat, where smooth() finds no
-   * way because several nodes must move at once. Nodes around such faces and
-   * whole parts move so that the energy of all corners becomes least,
+   * Untangles inverted or nearly flat faces that smooth() cannot improve because several nodes must move simultaneously. Nodes around such
+   * faces and whole parts move so as to minimise the energy of all corners,
    *
    *   Σ (a² + b²) / χ(a × b),  χ(D) = (D + √(ε² + D²)) / 2
    *
-   * for the edges a, b of a corner; ε decreases, so that inverted corners, of
-   * finite energy at first, are pressed to the other side, which they cannot
-   * leave again (V. Garanzha, I. Kaporin, L. Kudryavtseva, F. Protais, N. Ray,
-   * D. Sokolov, ACM Trans. Graph. 40 (2021) 154).
+   * for the edges a, b of a corner; ε decreases, so that inverted corners, initially with finite energy, are turned over and cannot invert
+   * again (V. Garanzha, I. Kaporin, L. Kudryavtseva, F. Protais, N. Ray, D. Sokolov, ACM Trans. Graph. 40 (2021) 154).
    *
-   * Points stay as they are, to the last bit, where no face is bad, and where
-   * bad faces cannot be avoided.
+   * Points are unchanged, to the last bit, if no face is bad or bad faces cannot be avoided.
    *
-   * @param fixed nodes that move only with a part
+   * @param fixed nodes that move only with their part
    */
   void untangle(const std::vector<Plan::Face>  &faces,
                 const std::vector<bool>        &fixed,

@@ -10,7 +10,7 @@
 
 namespace Squeal
 {
-  /// The nodes of a closed curve one behind the other, from the least on; none where the edges are not one closed curve.
+  /// Nodes of a closed curve in order, starting with the smallest number; empty if the edges do not form one closed curve.
   std::vector<unsigned int> closed_polygon(const std::vector<std::array<unsigned int, 2>> &edges);
 
   /// Area of a polygon, given by the indices of its nodes, positive if they are counter-clockwise [m²].
@@ -27,7 +27,7 @@ namespace Squeal
     return twice / 2.;
   }
 
-  /// Mean of points, given by their indices, which must not be none [m].
+  /// Mean of points, given by their indices, of which there must be at least one [m].
   dealii::Point<2> mean_point(const std::vector<unsigned int> &nodes, const std::vector<dealii::Point<2>> &points);
 
   struct Circle
@@ -36,8 +36,7 @@ namespace Squeal
     double           radius; ///< [m]
   };
 
-  /// The circle on which all points lie, to 1e-6 of its radius, in any unit of length: by linear least squares, x² + y² = 2 a x + 2 b y +
-  /// c. None if there is no such circle, and none through fewer than six different points, since four corners of a square lie on a circle
-  /// as well.
+  /// Circle through all points within 1e-6 of its radius, in any unit of length, by linear least squares, x² + y² = 2 a x + 2 b y + c.
+  /// Nothing if there is none, or for fewer than six different points, because four corners of a square also lie on a circle.
   std::optional<Circle> circle_through(const std::vector<dealii::Point<2>> &points);
 } // namespace Squeal

@@ -13,34 +13,34 @@
 
 namespace Squeal
 {
-  /// About how large a scene is; real numbers, because what is asked for may exceed every integer.
+  /// Approximate size of a model; real numbers, because requested sizes may exceed every integer.
   struct ProblemSize
   {
     double cells, dofs, contact_nodes;
     double row_length = 65.; ///< entries of K per dof
 
-    /// Memory that the scene takes until its modes are computed [byte]: the program itself, matrices per entry, factors per dof, columns of
-    /// K_c^-1 A per contact node where they are kept, and modes.
+    /// Memory of the model up to the computation of modes [byte]: program, matrix entries, factors, columns of K_c^-1 A if kept (one per
+    /// contact node), and modes.
     double memory(double n_modes) const;
   };
 
-  /// Of the supplied plan, from the parameters alone.
+  /// Size of the supplied plan, from the parameters alone.
   ProblemSize expected_size(const GeometryParameters &parameters);
 
-  /// Of a plan once it is extruded.
+  /// Size of an extruded plan.
   ProblemSize expected_size(const Plan &plan, const GeometryParameters &parameters);
 
-  /// Of a mesh, with elements of the given degree.
+  /// Size of a mesh with elements of this degree.
   ProblemSize expected_size(const Mesh &mesh, unsigned int degree);
 
   /// Throws MeshError with these numbers if the memory exceeds what is available on the machines of the processes.
   void check_memory(const ProblemSize &size, double n_modes, const std::string &where, MPI_Comm communicator = MPI_COMM_SELF);
 
-  /// Whether at least half of the disc's lateral surface is round about z, n·(e_z × x) ≈ 0. Throws MeshError, naming @p where, where
-  /// clearly more of it is round about another axis, which the second moments of the surface give.
+  /// True if at least half of the disc's lateral surface is a surface of revolution about z, n·(e_z × x) ≈ 0. Throws MeshError, naming @p
+  /// where, if clearly more of it is one about another axis, found from the second moments of the surface.
   bool is_round_about_z(const Mesh &mesh, const std::string &where);
 
-  /// Throws ParameterError where an element, of given @p degree, is so long that less than one distance of nodes fits into a shear wave of
-  /// @p largest_circular_frequency [rad/s]: the modes at the end of the band are those of the mesh.
+  /// Throws ParameterError if an element of this @p degree is so long that a shear wave at @p largest_circular_frequency [rad/s] has less
+  /// than one nodal spacing per wavelength: modes at the end of the band would be artefacts of the mesh.
   void check_wave_resolution(const Mesh &mesh, const MaterialParameters &materials, unsigned int degree, double largest_circular_frequency);
 } // namespace Squeal

@@ -7,22 +7,22 @@
 namespace Squeal
 {
   /**
-   * The mesh with a node at the middle of every edge, at the centre of every quadrilateral face and of every hexahedron. One that has them is
-   * returned as it is.
+   * Adds nodes at the middle of every edge, at the centre of every quadrilateral face and of every hexahedron. A mesh that already has them
+   * is returned unchanged.
    *
-   * New nodes follow cylinders: where all corners of a named surface (disc_bore, disc_rim; pin_side, pin by pin) lie on a circular cylinder
-   * about an axis parallel to z, its edges and faces are moved onto it. So are
+   * New nodes follow cylinders: if all corners of a named surface (disc_bore, disc_rim; pin_side, pin by pin) lie on a circular cylinder
+   * about an axis parallel to z, its edges and faces are moved onto it. The same applies to
    *
-   * - faces of pins behind them that lie on a cylinder about the same axis, ring by ring of hexahedra: a ring that is thinner than the arc is
-   *   high would otherwise be squeezed between a curved and a straight face. A cell with two such faces side by side, whose edges would meet
-   *   at 180 degrees, keeps them straight;
-   * - coincident edges of the contact faces on the other side, so that contact nodes pair in degree 2 as well.
+   * - inner faces of pins on a cylinder about the same axis, ring by ring of hexahedra: a ring thinner than the height of the arc would
+   * otherwise be squeezed between a curved and a straight face. A cell with two such adjacent faces, whose edges would meet at 180 degrees,
+   * keeps them straight;
+   * - coincident edges of the contact faces on the other side, so that contact nodes also match in degree 2.
    *
-   * Centres of other faces and cells follow their edges by transfinite interpolation. Surfaces of any other shape keep straight edges.
+   * Centres of other faces and cells follow their edges by transfinite interpolation. Other surfaces keep straight edges.
    */
   Mesh second_order(Mesh mesh);
 
-  /// Gives serendipity elements, of a mesh of degree 2, the nodes that they lack at centres of quadrilateral faces and of hexahedra, where their
-  /// own functions put them. Returns their number.
+  /// Adds the missing nodes of serendipity elements, in a mesh of degree 2, at the centres of quadrilateral faces and hexahedra, at the
+  /// positions given by their shape functions. Returns the number of nodes.
   std::size_t add_centres(Mesh &mesh);
 } // namespace Squeal

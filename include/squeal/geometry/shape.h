@@ -22,8 +22,8 @@ namespace Squeal
     hexahedron
   };
 
-  /// Corners, edges and faces of a shape; numbers are those of Gmsh. Reference coordinates are deal.II's: unit triangle and tetrahedron,
-  /// unit square and cube, wedge = triangle × [0, 1], pyramid on [−1, 1]² with its apex at (0, 0, 1).
+  /// Corners, edges and faces of a shape, with the numbering of Gmsh. Reference coordinates are those of deal.II: unit triangle and
+  /// tetrahedron, unit square and cube, wedge = triangle × [0, 1], pyramid on [−1, 1]² with its apex at (0, 0, 1).
   struct Topology
   {
     const char                          *name; ///< plural
@@ -31,7 +31,7 @@ namespace Squeal
     std::vector<dealii::Point<3>>        corners;
     std::vector<std::array<unsigned, 2>> edges;
 
-    /// Corners around each, outwards by the right-hand rule; of a triangle or quadrilateral: itself.
+    /// Corners of each face, outwards by the right-hand rule; a triangle or quadrilateral is its own face.
     std::vector<std::vector<unsigned int>> faces;
   };
 
@@ -42,13 +42,13 @@ namespace Squeal
     return n_corners == 3 ? Shape::triangle : Shape::quadrilateral;
   }
 
-  /// Nodes of a Lagrange element of degree 1 or 2: its corners; then, in degree 2, the middles of its edges, the centres of its quadrilateral faces
-  /// and of a hexahedron.
+  /// Nodes of a Lagrange element of degree 1 or 2: corners; in degree 2 then the middles of edges, centres of quadrilateral faces and of a
+  /// hexahedron.
   std::vector<dealii::Point<3>> reference_nodes(Shape shape, unsigned int degree);
 
   inline constexpr unsigned int most_nodes = 27;
 
-  /// Numbers of the nodes of a face among those of its cell, in the order of the face's own shape.
+  /// Indices of the nodes of a face among those of its cell, in the order of the face's own shape.
   const std::vector<unsigned int> &nodes_of_face(Shape cell, unsigned int degree, unsigned int face);
 
   /**
@@ -67,7 +67,7 @@ namespace Squeal
 
     virtual double value(unsigned int i, const dealii::Point<3> &x) const = 0;
 
-    /// With respect to reference coordinates; the third component is zero for faces.
+    /// Gradient with respect to reference coordinates; the third component is zero for faces.
     virtual dealii::Tensor<1, 3> gradient(unsigned int i, const dealii::Point<3> &x) const = 0;
   };
 
@@ -78,7 +78,7 @@ namespace Squeal
     double           weight;
   };
 
-  /// Rule exact for the mass of an undistorted element of the degree, with positive weights: Gauss' with degree + 1 points a direction,
-  /// that of Witherden and Vincent (2015) on triangles and tetrahedra.
+  /// Quadrature rule with positive weights, exact for the mass of an undistorted element of this degree: Gauss with degree + 1 points per
+  /// direction; Witherden and Vincent (2015) on triangles and tetrahedra.
   std::vector<QuadraturePoint> quadrature(Shape shape, unsigned int degree);
 } // namespace Squeal

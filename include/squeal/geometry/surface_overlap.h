@@ -8,13 +8,13 @@
 
 namespace Squeal
 {
-  /// Most nodes of a face.
+  /// Largest number of nodes of a face.
   inline constexpr int most_face_nodes = 9;
 
   using FaceVector = Eigen::Matrix<double, most_face_nodes, 1>;
   using FaceMatrix = Eigen::Matrix<double, most_face_nodes, most_face_nodes>;
 
-  /// Integrals over the part of a slave element that faces the master, with the area of the slave; entries beyond the nodes are zero.
+  /// Integrals over the part of a slave element that is opposite the master; entries beyond the nodes are zero.
   struct ElementOverlap
   {
     FaceMatrix                                       mass = FaceMatrix::Zero(); ///< ∫ N_i N_j [m²]
@@ -34,8 +34,8 @@ namespace Squeal
     double                      largest_gap; ///< see Mortar
   };
 
-  /// Sums over segments: intersections of slave and master elements, projected onto the plane of the slave element. Elements of degree
-  /// 2 are cut into four by their nodes first. Quadrature points are mapped to both elements along the normal of that plane. Throws
+  /// Sums over segments: intersections of slave and master elements, projected onto the plane of the slave element. Elements of degree 2
+  /// are first divided into four by their nodes. Quadrature points are mapped to both elements along the normal of that plane. Throws
   /// MeshError if the reference coordinates of a point cannot be found.
   SurfaceOverlap overlap(const SurfacePatch &slave, const SurfacePatch &master, double search_distance);
 

@@ -5,23 +5,21 @@
 namespace Squeal
 {
   /**
-   * Sets the number of threads with which this process runs dense kernels, if
-   * the BLAS library is OpenBLAS. Threads only pay on idle cores: they made a
-   * factorisation 15 times slower while other processes held the cores.
-   * Returns the number that the library reports afterwards, 0 if it cannot be
-   * asked.
+   * Sets the number of threads of dense kernels in this process if the BLAS library is OpenBLAS. Threads pay off only on idle cores: they
+   * made a factorisation 15 times slower while other processes used the cores. Returns the number reported by the library, 0 if it is not
+   * OpenBLAS.
    */
   int set_blas_threads(int n_threads);
 
-  /// That number as it is.
+  /// Current number of BLAS threads.
   int blas_threads();
 
-  /// Rows of a matrix from which on the fronts of its factors are large enough for several threads.
+  /// Number of rows above which the fronts of a factorisation are large enough for several threads.
   constexpr int rows_of_large_matrices = 100000;
 
-  /// As long as it lives, the BLAS library has the threads of tasks where a matrix that is factorised has so many rows that they pay. Else
-  /// parallel regions of OpenMP that begin on this thread have this thread alone: CHOLMOD has four for every front otherwise, whatever
-  /// OMP_NUM_THREADS says, which wait for each other longer than they work.
+  /// During its lifetime, BLAS uses the threads of tasks if the matrix to be factorised is large enough. Otherwise OpenMP regions started
+  /// by this thread are serial: CHOLMOD would use four threads for every front, regardless of OMP_NUM_THREADS, which spend more time
+  /// waiting than working.
   class ThreadsOfFactorization
   {
   public:
@@ -31,7 +29,7 @@ namespace Squeal
     ThreadsOfFactorization &operator=(const ThreadsOfFactorization &) = delete;
 
   private:
-    int blas_before   = 0;  ///< 0: nothing was changed
-    int levels_before = -1; ///< of parallel regions; -1: nothing was changed
+    int blas_before   = 0;  ///< 0: unchanged
+    int levels_before = -1; ///< nesting levels of parallel regions; -1: unchanged
   };
 } // namespace Squeal

@@ -13,23 +13,23 @@ namespace Squeal
   /// Rank of this process.
   int this_process(MPI_Comm communicator);
 
-  /// Whether this process has no other to communicate with. In a run of one process it asks nobody, so that any thread may call it.
+  /// True if this is the only process. Needs no MPI call in a serial run, so that any thread may call it.
   bool is_alone(MPI_Comm communicator);
 
-  /// Replaces n numbers, double or int, by their sums over the processes, or by the smallest of all processes.
+  /// Replaces n numbers, double or int, by their sums, or minima, over the processes.
   template <typename Number>
   void sum_over_processes(MPI_Comm communicator, Number *values, std::size_t n);
   template <typename Number>
   void smallest_of_processes(MPI_Comm communicator, Number *values, std::size_t n);
 
-  /// The largest of the numbers of all processes.
+  /// Largest value of all processes.
   double largest_of_processes(MPI_Comm communicator, double value);
 
-  /// Replaces bytes by those of process 0.
+  /// Broadcasts bytes from process 0.
   void copy_from_root(MPI_Comm communicator, void *bytes, std::size_t n);
 
-  /// Replaces n numbers by those of process 0. Rounding may differ between processes where the same numbers are computed on all; decisions
-  /// must be taken on the same bits.
+  /// Broadcasts n numbers from process 0. Identical computations may round differently on different processes; decisions must use the same
+  /// bits.
   template <typename Number>
   void agree(const MPI_Comm communicator, Number *values, const std::size_t n)
   {

@@ -10,7 +10,7 @@
 
 namespace Squeal
 {
-  /// Small dense matrices, the same on every process: reduced quantities and contact nodes, never n × n.
+  /// Small dense matrices, identical on every process: reduced quantities and contact nodes, never n × n.
   using DenseMatrix        = Eigen::MatrixXd;
   using ComplexDenseMatrix = Eigen::MatrixXcd;
 
@@ -21,20 +21,20 @@ namespace Squeal
     return {values.data(), static_cast<Eigen::Index>(values.size())};
   }
 
-  /// Largest absolute entry; 0 for an empty matrix, NaN if there is one.
+  /// Largest absolute entry; 0 for an empty matrix, NaN if an entry is NaN.
   template <typename Derived>
   double max_norm(const Eigen::MatrixBase<Derived> &A)
   {
     return A.size() == 0 ? 0. : A.cwiseAbs().template maxCoeff<Eigen::PropagateNaN>();
   }
 
-  /// A linear operation on the columns of X, where those of zeros cost nothing: the imaginary parts of neutral modes are such.
+  /// Applies a linear operation to the nonzero columns of X only: the imaginary parts of neutral modes are zero.
   DenseMatrix sparing_zeros(const DenseMatrix &X, const std::function<DenseMatrix(const DenseMatrix &)> &operation);
 
-  /// A X in this way, rows of zeros spared as well: those of terms that vanish, and of a basis that has grown since.
+  /// A X without zero columns and rows: those of terms that vanish, and of a basis that has been extended since.
   DenseMatrix multiply_sparing_zeros(const DenseMatrix &A, const DenseMatrix &X);
 
-  /// A X of a real and a complex matrix: one real product with [Re X, Im X].
+  /// A X of a real and a complex matrix, as one real product with [Re X, Im X].
   ComplexDenseMatrix multiply(const DenseMatrix &A, const ComplexDenseMatrix &X);
 
   /// [Re X, Im X].
@@ -49,7 +49,7 @@ namespace Squeal
   /// [X Y]; X may be empty.
   DenseMatrix append_columns(const DenseMatrix &X, const DenseMatrix &Y);
 
-  /// The matrix with rows of zeros appended, or its last rows left out.
+  /// The matrix with zero rows appended, or its last rows removed.
   template <typename Derived>
   typename Derived::PlainObject with_rows(const Eigen::MatrixBase<Derived> &A, const Eigen::Index n_rows)
   {

@@ -31,13 +31,13 @@ namespace Squeal
   };
   SingularValues singular_values(DenseMatrix A);
 
-  /// Eigenvalues of a real square matrix A, and right and left eigenvectors of norm one of those that are wanted: A x = λ x, yᴴ A = λ yᴴ.
-  /// With a value goes its conjugate.
+  /// Eigenvalues of a real square matrix A, and right and left eigenvectors of norm one for selected ones: A x = λ x, yᴴ A = λ yᴴ. The
+  /// conjugate of a selected value is selected, too.
   struct DenseEigenpairs
   {
-    std::vector<std::complex<double>> values;      ///< all of them
+    std::vector<std::complex<double>> values;      ///< all eigenvalues
     std::vector<int>                  numbers;     ///< of the values with vectors, ascending
-    ComplexDenseMatrix                right, left; ///< one column for each of these
+    ComplexDenseMatrix                right, left; ///< one column for each entry of numbers
   };
   DenseEigenpairs eigenpairs(
     DenseMatrix                                              A,

@@ -8,14 +8,14 @@
 
 namespace Squeal
 {
-  /// LU factors of a small square matrix, singular ones included, with an estimate of ‖A⁻¹‖₁.
+  /// LU factors of a small square matrix, possibly singular, with an estimate of ‖A⁻¹‖₁.
   template <typename Matrix>
   class DenseLU
   {
   public:
     explicit DenseLU(const Matrix &A);
 
-    /// A⁻¹ B, and A⁻ᵀ B; only if the reciprocal condition is not zero. B may have no columns.
+    /// A⁻¹ B and A⁻ᵀ B; only if the reciprocal condition is nonzero. B may have no columns.
     [[nodiscard]] Matrix solve(const Matrix &B) const;
     [[nodiscard]] Matrix solve_transposed(const Matrix &B) const;
 
@@ -28,7 +28,7 @@ namespace Squeal
     /// Estimate of ‖A⁻¹‖₁; infinite if A is singular to working precision.
     double inverse_norm() const;
 
-    /// A logarithm of det A: the sum of those of the pivots, its imaginary part in (−π, π]; −∞ for a zero pivot.
+    /// Logarithm of det A: the sum of the logarithms of the pivots, imaginary part in (−π, π]; −∞ for a zero pivot.
     std::complex<double> log_determinant() const;
 
   private:
@@ -39,9 +39,9 @@ namespace Squeal
   using RealLU    = DenseLU<DenseMatrix>;
   using ComplexLU = DenseLU<ComplexDenseMatrix>;
 
-  /// Factors of a matrix that has to be regular. Throws SolverError naming @p what if it is singular to working precision.
+  /// LU factors of a regular matrix. Throws SolverError naming @p what if it is singular to working precision.
   RealLU regular_lu(const DenseMatrix &A, const char *what);
 
-  /// S⁻¹ A S with a positive diagonal S that brings its norm down: row and column of an index of the same norm (Osborne).
+  /// S⁻¹ A S with a positive diagonal S that reduces its norm: equal norms of row i and column i (Osborne).
   ComplexDenseMatrix balanced(ComplexDenseMatrix A);
 } // namespace Squeal

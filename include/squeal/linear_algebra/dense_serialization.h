@@ -8,7 +8,7 @@
 #include <boost/serialization/complex.hpp>
 #include <boost/serialization/vector.hpp>
 
-/// Boost's archives of dense matrices: both sizes and the entries by columns.
+/// Boost serialisation of dense matrices: both sizes, then entries by columns.
 namespace boost::serialization
 {
   template <class Archive, typename Number>

@@ -11,23 +11,21 @@
 
 namespace Squeal
 {
-  /// The inverse of a sparse matrix, by a direct factorisation.
+  /// Inverse of a sparse matrix by a direct factorisation.
   class Factorization : public LinearOperator
   {
   public:
     /// Y = A⁻ᵀ X.
     virtual void apply_transpose(const MultiVector &X, MultiVector &Y) const = 0;
 
-    /// Entries of the factors; 0 where the library does not tell.
+    /// Number of entries of the factors; 0 if the library does not report it.
     virtual double n_factor_entries() const = 0;
   };
 
   /**
-   * Cholesky (CHOLMOD) or LDLᵀ (MUMPS) factors of a symmetric positive definite
-   * matrix, of which only one triangle is read. Throws SolverError naming
-   * @p what if the matrix is not positive definite to working precision (a
-   * pivot that is negative, or rounding error of its diagonal entry) or if the
-   * library cannot be used here.
+   * Cholesky (CHOLMOD) or LDLᵀ (MUMPS) factors of a symmetric positive definite matrix; only one triangle is read. Throws SolverError
+   * naming @p what if the matrix is not positive definite to working precision (a pivot is negative, or a rounding error of its diagonal
+   * entry) or if the library cannot be used.
    */
   std::unique_ptr<Factorization> factorize_positive_definite(const SparseMatrix &A, FactorizationLibrary library, const std::string &what);
 
@@ -35,10 +33,9 @@ namespace Squeal
   std::unique_ptr<Factorization> factorize_general(const SparseMatrix &A, const std::string &what);
 
   /**
-   * Number of negative eigenvalues of a symmetric matrix by Sylvester's law of
-   * inertia: negative pivots of LDLᵀ with 2 × 2 pivoting (MUMPS).
-   * @p n_null receives the number of pivots that vanish to working precision;
-   * if it is null, such pivots throw SolverError naming @p what.
+   * Number of negative eigenvalues of a symmetric matrix by Sylvester's law of inertia: negative pivots of LDLᵀ with 2 × 2 pivoting
+   * (MUMPS). @p n_null receives the number of pivots that vanish to working precision; if it is null, such pivots throw SolverError naming
+   * @p what.
    */
   int count_negative_eigenvalues(const SparseMatrix &A, const std::string &what, int *n_null = nullptr);
 } // namespace Squeal

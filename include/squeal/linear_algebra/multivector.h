@@ -10,24 +10,24 @@
 
 namespace Squeal
 {
-  /// Vectors in bulk: n × k, distributed by rows, the columns of a process one after the other. A view refers to columns of another one; a
-  /// copy of a view has columns of its own, and an assignment to a view changes what it refers to.
+  /// A block of vectors: n × k, distributed by rows, stored by columns. A view refers to columns of another block; a copy of a view owns
+  /// its columns, and an assignment to a view changes the original.
   class MultiVector
   {
   public:
     using Local      = Eigen::Map<DenseMatrix>;
     using ConstLocal = Eigen::Map<const DenseMatrix>;
 
-    /// @param zero whether the entries are zero; else what they are is open
+    /// @param zero initialise the entries with zeros; else uninitialised
     MultiVector(const RowMap &map, int n_columns, bool zero = true);
 
-    /// A view of numbers that belong to somebody else, n_local × k.
+    /// A view of external data, n_local × k.
     MultiVector(const RowMap &map, double *values, int n_columns);
 
     MultiVector(const MultiVector &X);
     MultiVector(MultiVector &&X);
 
-    /// Throws SolverError if this is a view and X has another shape.
+    /// Throws SolverError if this is a view and the shape of X differs.
     MultiVector &operator=(const MultiVector &X);
     MultiVector &operator=(MultiVector &&X);
 
@@ -73,7 +73,7 @@ namespace Squeal
       return {values + static_cast<std::size_t>(j) * n_rows, n_rows};
     }
 
-    /// Entry of the row at place @p i of this process.
+    /// Entry in the local row @p i of this process.
     double &operator()(const int i, const int j)
     {
       return values[i + static_cast<std::size_t>(j) * n_rows];
@@ -88,10 +88,10 @@ namespace Squeal
     MultiVector &operator-=(const MultiVector &X);
     MultiVector &operator*=(double factor);
 
-    /// Puts the columns of X behind those that are there. Large blocks grow without being copied. Views of this cease to be valid.
+    /// Appends the columns of X. Large blocks grow without copying. Invalidates views of this block.
     void append(const MultiVector &X);
 
-    /// Columns [first, first + n), n ≥ 0, as a view; this must outlive it.
+    /// View of columns [first, first + n), n ≥ 0; this block must outlive it.
     friend MultiVector view(const MultiVector &X, int first, int n);
 
   private:
@@ -109,8 +109,8 @@ namespace Squeal
   /// XᵀY, k_X × k_Y, the same on every process.
   DenseMatrix gram(const MultiVector &X, const MultiVector &Y);
 
-  /// The small dense result of process 0, on all. Rounding of the same LAPACK call may differ between processes, with the alignment of
-  /// memory for instance; eigenvectors of a multiple eigenvalue then differ altogether.
+  /// The small dense result of process 0, on all processes. The same LAPACK call may round differently on different processes, for example
+  /// by the alignment of memory; eigenvectors of a multiple eigenvalue then differ completely.
   RealPairs agreed(MPI_Comm communicator, RealPairs pairs);
 
   /// Y = alpha X S + beta Y; X and Y must not share memory.
@@ -125,31 +125,31 @@ namespace Squeal
   MultiVector operator-(MultiVector X, const MultiVector &Y);
 
   MultiVector view(const MultiVector &X, int first, int n);
-  MultiVector view(const MultiVector &&, int, int) = delete; ///< a view of what ceases to be
+  MultiVector view(const MultiVector &&, int, int) = delete; ///< a view of a temporary would dangle
 
   /// [X Y ...]: the columns of all, copied.
   MultiVector join(const std::vector<const MultiVector *> &parts);
   MultiVector join_all(const std::vector<MultiVector> &parts);
 
-  /// x_jᵀ y_j of corresponding columns.
+  /// x_jᵀ y_j of each pair of columns.
   std::vector<double> column_products(const MultiVector &X, const MultiVector &Y);
 
   /// Euclidean norms of the columns.
   std::vector<double> column_norms(const MultiVector &X);
 
-  /// Numbers of the columns that are not zero.
+  /// Indices of the nonzero columns.
   std::vector<int> nonzero_columns(const MultiVector &X);
 
-  /// Some columns, copied, by their numbers.
+  /// Copy of selected columns.
   MultiVector selected(const MultiVector &X, const std::vector<int> &columns);
 
-  /// The identity matrix as vectors, for maps of a few rows (contact nodes).
+  /// Identity matrix as vectors, for maps with few rows (contact nodes).
   MultiVector unit_vectors(const RowMap &map);
 
-  /// Deterministic pseudo-random entries in [-1, 1], the same vectors however the rows are distributed.
+  /// Deterministic pseudo-random entries in [-1, 1], independent of the distribution of the rows.
   MultiVector random_vectors(const RowMap &map, int n_vectors, unsigned int seed = 1);
 
-  /// A linear map on distributed vectors, y = A x, for many vectors at once.
+  /// A linear operator on distributed vectors, y = A x, applied to many vectors at once.
   class LinearOperator
   {
   public:
@@ -158,19 +158,19 @@ namespace Squeal
     /// Y = A X; X and Y have the same map and number of columns and do not alias.
     virtual void apply(const MultiVector &X, MultiVector &Y) const = 0;
 
-    /// Distribution of the rows of Y, and of those of X where A is square.
+    /// Distribution of the rows of Y, and of X if A is square.
     virtual const RowMap &map() const = 0;
   };
 
   /// All rows of a short distributed X (contact nodes, not dofs) on every process.
   DenseMatrix replicate(const MultiVector &X);
 
-  /// The rows of a replicated matrix that @p map owns here.
+  /// Rows of a replicated matrix that this process owns by @p map.
   MultiVector distribute(const DenseMatrix &X, const RowMap &map);
 
-  /// All rows of X on process 0, in the order of their numbers; no rows on the others.
+  /// All rows of X on process 0, by row number; no rows on the others.
   DenseMatrix gather(const MultiVector &X);
 
-  /// The rows of a matrix on process 0 that @p map owns here; @p X does not matter on the other processes.
+  /// Distributes the rows of a matrix on process 0; @p X is ignored on the other processes.
   MultiVector scatter(const DenseMatrix &X, const RowMap &map);
 } // namespace Squeal

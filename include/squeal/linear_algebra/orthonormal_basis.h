@@ -6,15 +6,15 @@
 
 namespace Squeal
 {
-  /// Orthonormal basis of the span of the columns of X, none of them zero and as independent as they may be, by Householder's reflections.
+  /// Orthonormal basis of the span of the columns of X, which must be nonzero and linearly independent, by Householder reflections.
   DenseMatrix orthonormal_columns(const DenseMatrix &X);
 
-  /// X = Q R with orthonormal columns of Q, but for zeros where a column of X is dependent up to rounding: there R_jj = 0.
+  /// X = Q R with orthonormal columns of Q, except zero columns where a column of X is dependent up to rounding: there R_jj = 0.
   struct OrthonormalBasis
   {
     ComplexDenseMatrix Q, R;
   };
 
-  /// By Cholesky factors where that is safe, else by the Gram-Schmidt process.
+  /// Uses Cholesky factors if that is safe, else the Gram-Schmidt process.
   OrthonormalBasis orthonormal_basis(const ComplexDenseMatrix &X);
 } // namespace Squeal

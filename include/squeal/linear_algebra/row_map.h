@@ -11,27 +11,27 @@
 
 namespace Squeal
 {
-  /// Which rows of distributed vectors and matrices each process has: rows 0, 1, ... in pieces, that of process 0 first. A row has a number
-  /// among all, and a place 0, 1, ... among those of its process.
+  /// Distribution of rows over the processes: contiguous ranges, beginning with process 0. A row has a global number and a local index on
+  /// its process.
   class RowMap
   {
   public:
     /// No rows.
     RowMap() = default;
 
-    /// @p n_local rows on this process. All processes must call.
+    /// @p n_local rows on this process. Collective.
     RowMap(int n_local, MPI_Comm communicator);
 
-    /// @p n rows in pieces of nearly equal size.
+    /// @p n rows in ranges of nearly equal size.
     static RowMap even(int n, MPI_Comm communicator);
 
-    /// Rows of all processes.
+    /// Global number of rows.
     int n() const
     {
       return starts.back();
     }
 
-    /// Rows of this process.
+    /// Number of rows of this process.
     int n_local() const
     {
       return starts[process + 1] - starts[process];
@@ -43,19 +43,19 @@ namespace Squeal
       return starts[process];
     }
 
-    /// Number of the row at a place of this process.
+    /// Global number of a local row.
     int number(const int place) const
     {
       return first() + place;
     }
 
-    /// Place of a row; -1 if it belongs to another process or the number is negative.
+    /// Local index of a row; -1 if it belongs to another process or the number is negative.
     int place(const int number) const
     {
       return number >= first() && number < first() + n_local() ? number - first() : -1;
     }
 
-    /// The process that has a row.
+    /// Process that owns a row.
     int owner(int number) const;
 
     MPI_Comm communicator() const
@@ -63,7 +63,7 @@ namespace Squeal
       return processes;
     }
 
-    /// This process among those of the communicator.
+    /// Rank of this process in the communicator.
     int rank() const
     {
       return process;
@@ -74,7 +74,7 @@ namespace Squeal
       return static_cast<int>(starts.size()) - 1;
     }
 
-    /// Whether all processes have the same rows.
+    /// True if all processes have the same rows.
     bool operator==(const RowMap &other) const
     {
       return starts == other.starts;
@@ -83,43 +83,42 @@ namespace Squeal
   private:
     MPI_Comm         processes = MPI_COMM_SELF;
     int              process   = 0;
-    std::vector<int> starts    = {0, 0}; ///< number of the first row of each process, and of all rows
+    std::vector<int> starts    = {0, 0}; ///< global number of the first row of each process, then the total number of rows
   };
 
-  /// Brings rows of vectors from where they are to where they are wanted: from any process to those that own them, and back. Who sends what
-  /// to whom is found once; all processes must call.
+  /// Moves rows of vectors from any process to their owners, and back. The communication pattern is determined once. Collective.
   class RowDelivery
   {
   public:
-    /// @param numbers of the rows here, in the order in which they lie; several processes may have the same
+    /// @param numbers of the local rows, in their order; several processes may have the same row
     RowDelivery(const std::vector<int> &numbers, const RowMap &owners);
 
-    /// Whether no process has a row here.
+    /// True if no process has a row.
     bool empty() const
     {
       return nothing;
     }
 
-    /// Own rows become those that are here.
+    /// Sends the rows to their owners.
     void deliver(const Eigen::Ref<const DenseMatrix> &here, Eigen::Ref<DenseMatrix> own) const
     {
       exchange(places_here, here, places_owned, own, false);
     }
 
-    /// The same, but what is here is added to the own rows, process after process.
+    /// Adds the rows to those of their owners, process after process.
     void add(const Eigen::Ref<const DenseMatrix> &here, Eigen::Ref<DenseMatrix> own) const
     {
       exchange(places_here, here, places_owned, own, true);
     }
 
-    /// Rows here become those of their owners.
+    /// Fetches the rows from their owners.
     void fetch(const Eigen::Ref<const DenseMatrix> &own, Eigen::Ref<DenseMatrix> here) const
     {
       exchange(places_owned, own, places_here, here, false);
     }
 
   private:
-    /// Of the rows that are exchanged with each process.
+    /// Local indices of the rows that are exchanged with each process.
     using Places = std::map<unsigned int, std::vector<int>>;
 
     void exchange(const Places                        &from,

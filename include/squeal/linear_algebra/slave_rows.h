@@ -8,10 +8,9 @@
 
 namespace Squeal
 {
-  /// u_slave = Σ coefficient u_master: (master, coefficient) of each slave, a number of any kind such as of a dof.
+  /// u_slave = Σ coefficient u_master: (master, coefficient) for each slave, numbered by dof or otherwise.
   using SlaveRows = std::map<int, std::vector<std::pair<int, double>>>;
 
-  /// Replaces masters that are slaves of other rows by their masters. Returns whether that ends: false where slaves depend on each other in
-  /// a circle.
+  /// Replaces masters that are slaves of other rows by their masters. Returns false if slaves depend on each other circularly.
   bool resolve(SlaveRows &rows);
 } // namespace Squeal

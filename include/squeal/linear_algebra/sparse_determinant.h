@@ -10,7 +10,7 @@
 
 namespace Squeal
 {
-  /// det(K + λ C + λ² M) of real sparse matrices at complex λ, from the pivots of a sparse complex LU factorisation for every λ (UMFPACK;
+  /// det(K + λ C + λ² M) of real sparse matrices at complex λ, from the pivots of a sparse complex LU factorisation for each λ (UMFPACK;
   /// one process).
   class SparseDeterminant
   {
@@ -20,7 +20,7 @@ namespace Squeal
 
     ~SparseDeterminant();
 
-    /// A logarithm of the determinant, its imaginary part in [−π, π]; −∞ if it vanishes. Throws SolverError if UMFPACK fails.
+    /// Logarithm of the determinant, imaginary part in [−π, π]; −∞ if it vanishes. Throws SolverError if UMFPACK fails.
     std::complex<double> logarithm(std::complex<double> lambda) const;
 
   private:

@@ -15,10 +15,10 @@
 
 namespace Squeal
 {
-  /// Rows of a sparse matrix on one process; columns ascend in each.
+  /// Rows of a sparse matrix on one process, with ascending columns.
   using SparseRows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
-  /// A sparse matrix, distributed by rows, constant once it is there.
+  /// A sparse matrix, distributed by rows, immutable.
   class SparseMatrix : public LinearOperator
   {
   public:
@@ -28,23 +28,23 @@ namespace Squeal
     /**
      * @param rows    distribution of the rows, and of A X
      * @param columns distribution of X
-     * @param fill    appends the entries of the row at a place of this process to an empty row; entries of one column are added
+     * @param fill    appends the entries of a local row to an empty row; duplicate entries are added
      */
     SparseMatrix(const RowMap &rows, const RowMap &columns, const std::function<void(int place, Row &row)> &fill);
 
-    /// From the rows of this process, with the columns of all. All processes must call.
+    /// From the rows of this process, with global column numbers. Collective.
     SparseMatrix(const RowMap &rows, const RowMap &columns, SparseRows by_number);
 
-    /// Columns that the rows here have and other processes own.
+    /// Columns that occur in the local rows but belong to other processes.
     struct Halo;
 
-    /// For linear_algebra/ alone: rows of this process, columns by their places; those of the halo are behind the own ones.
+    /// For linear_algebra/ only: local rows, local column indices; halo columns follow the own ones.
     const SparseRows &by_place() const
     {
       return local;
     }
 
-    /// For linear_algebra/ alone: null where one process has the matrix.
+    /// For linear_algebra/ only: null if one process has the whole matrix.
     const Halo *halo() const
     {
       return columns_elsewhere.get();
@@ -64,7 +64,7 @@ namespace Squeal
       return column_map;
     }
 
-    /// Of all processes.
+    /// Global number of rows.
     int n_rows() const
     {
       return row_map.n();
@@ -75,7 +75,7 @@ namespace Squeal
       return column_map.n();
     }
 
-    /// Of all processes.
+    /// Global number of entries.
     long long n_entries() const;
 
     MPI_Comm communicator() const
@@ -83,7 +83,7 @@ namespace Squeal
       return row_map.communicator();
     }
 
-    /// Replaces @p row by the entries of the row at a place of this process, in no certain order.
+    /// Replaces @p row by the entries of a local row, in no particular order.
     void get_row(int place, Row &row) const;
 
     void apply(const MultiVector &X, MultiVector &Y) const override
@@ -116,7 +116,7 @@ namespace Squeal
   /// Aᵀ X.
   MultiVector transpose_times(const SparseMatrix &A, const MultiVector &X);
 
-  /// op(A) op(B), op = transpose where asked; rows distributed like those of op(A).
+  /// op(A) op(B), op = transpose if requested; rows are distributed like those of op(A).
   std::shared_ptr<SparseMatrix> multiply(const SparseMatrix &A, const SparseMatrix &B, bool transpose_A = false, bool transpose_B = false);
 
   /// Aᵀ.
@@ -128,13 +128,13 @@ namespace Squeal
   /// |A|, entry by entry.
   std::shared_ptr<SparseMatrix> moduli(const SparseMatrix &A);
 
-  /// diag(f(0), f(1), ...) A, of the numbers of the rows.
+  /// diag(f(0), f(1), ...) A, with f of the global row number.
   std::shared_ptr<SparseMatrix> scale_rows(const SparseMatrix &A, const std::function<double(int number)> &f);
 
   /// alpha A + beta B for matrices of the same shape and distribution; the patterns may differ.
   std::shared_ptr<SparseMatrix> add(double alpha, const SparseMatrix &A, double beta, const SparseMatrix &B);
 
-  /// Σ factor A of one matrix at least, all of the same shape and distribution.
+  /// Σ factor A of at least one matrix, all of the same shape and distribution.
   std::shared_ptr<SparseMatrix> linear_combination(const std::vector<std::pair<double, const SparseMatrix *>> &summands);
 
   /// Largest absolute entry.
@@ -146,16 +146,16 @@ namespace Squeal
   /// A copy as a dense matrix, the same on every process: for small matrices only.
   DenseMatrix to_dense(const SparseMatrix &A);
 
-  /// Rows of this process with the columns of all.
+  /// Rows of this process with global column numbers.
   SparseRows local_rows(const SparseMatrix &A);
 
-  /// Xᵀ A Y, with A times some columns of Y at a time: all of A Y would take as much memory as Y.
+  /// Xᵀ A Y, with A applied to a few columns of Y at a time: all of A Y would take as much memory as Y.
   DenseMatrix weighted_gram(const MultiVector &X, const SparseMatrix &A, const MultiVector &Y);
 
-  /// Xᵀ A X for a symmetric A, one half of it computed.
+  /// Xᵀ A X for a symmetric A; only one half is computed.
   DenseMatrix weighted_gram(const MultiVector &X, const SparseMatrix &A);
 
-  /// Calls f(first, n) for blocks of columns so narrow that a copy of one takes little memory.
+  /// Calls f(first, n) for blocks of columns narrow enough to copy.
   template <typename Function>
   void for_column_blocks(const int n_columns, const Function &f)
   {
@@ -168,12 +168,12 @@ namespace Squeal
   void multiply_in_place(MultiVector &X, const DenseMatrix &S);
 
   /**
-   * ω² [rad²/s²] up to which rounding errors of K hide the frequency of a motion, K φ = ω² M φ, whatever the band,
+   * ω² [rad²/s²] below which rounding errors of K hide the frequency of a motion of K φ = ω² M φ, independent of the band,
    *
    *   100 ε ρ,   ρ: geometric mean over the rows, weighted by mass, of Σ_j |K_ij| / Σ_j |M_ij|.
    *
-   * φᵀKφ of a motion like that of a rigid body sums entries of K that cancel, of size ρ φᵀMφ; its error is some ε ρ at most. The
-   * mean is that of the heavy bodies: those that are light and stiff take no part in such a motion. All processes must call.
+   * φᵀKφ of a nearly rigid motion is a sum of cancelling terms of size ρ φᵀMφ, with an error of at most about ε ρ φᵀMφ. The mean is that of
+   * the heavy bodies: light stiff ones do not determine such a motion. Collective.
    */
   double unresolved_square(const SparseMatrix &K, const SparseMatrix &M);
 } // namespace Squeal

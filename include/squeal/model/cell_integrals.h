@@ -13,15 +13,15 @@
 
 namespace Squeal
 {
-  /// Adds to the matrix of a cell or face, as large as it has dofs: those of node i are 3 i, 3 i + 1, 3 i + 2. Several threads call it.
+  /// Adds an element integral to the matrix of a cell or face; dofs of node i are 3 i, 3 i + 1, 3 i + 2. Called by several threads.
   using ElementIntegral = std::function<void(const ElementValues &, dealii::FullMatrix<double> &)>;
 
-  /// Matrices on the free dofs, one for each integral: its sum over the elements, which are all that the process has of their kind.
+  /// Assembled matrices on the free dofs, one for each integral, over the given elements of this process.
   std::vector<std::shared_ptr<const SparseMatrix>> assemble(const Model                             &model,
                                                             const std::vector<const NodalElement *> &elements,
                                                             const std::vector<ElementIntegral>      &integrals);
 
-  /// Adds ∫ integrand(i, j, q) of shape functions of the same direction.
+  /// Adds ∫ integrand(i, j, q) for shape functions of the same direction.
   template <typename Integrand>
   void add_in_each_direction(const ElementValues &values, dealii::FullMatrix<double> &matrix, const Integrand &integrand)
   {

@@ -10,16 +10,16 @@
 namespace Squeal
 {
   /**
-   * Adds the stiffness of one cell over Young's modulus, K_ij = ∫ ε(φ_i) : C/E : ε(φ_j) dV.
+   * Adds the stiffness of one cell divided by Young's modulus, K_ij = ∫ ε(φ_i) : C/E : ε(φ_j) dV.
    *
-   * Hexahedra with incompatible modes (E. L. Wilson, R. L. Taylor et al. 1973; R. L. Taylor, P. J. Beresford, E. L. Wilson 1976)
-   * have in each cell nine displacements more, (1 − ξ_a²) e_b with ξ in [−1, 1]³, which neighbours do not share:
+   * Hexahedra with incompatible modes (E. L. Wilson, R. L. Taylor et al. 1973; R. L. Taylor, P. J. Beresford, E. L. Wilson 1976) have nine
+   * additional internal displacements, (1 − ξ_a²) e_b with ξ in [−1, 1]³, which are condensed:
    *
    *   K = K_uu − K_uα K_αα⁻¹ K_αu,
    *
-   * so that bending of a cell costs no shear. With the Jacobian J₀ of the cell's centre in their gradients,
-   * ∇(1 − ξ_a²) := (det J₀ / det J) J₀⁻ᵀ ∇_ξ (1 − ξ_a²), their mean over the cell vanishes: states of constant strain are exact in
-   * hexahedra of any shape. They have no mass. Other cells have no such modes.
+   * This avoids shear locking in bending. With the Jacobian J₀ of the cell's centre in their gradients, ∇(1 − ξ_a²) := (det J₀ / det J)
+   * J₀⁻ᵀ ∇_ξ (1 − ξ_a²), their mean over the cell vanishes, so that constant strains are exact in hexahedra of any shape. They have no
+   * mass. Other cells have no such modes.
    */
   void add_stiffness(const ElementValues &values, Element element, const ElasticLaw &law, dealii::FullMatrix<double> &stiffness);
 } // namespace Squeal

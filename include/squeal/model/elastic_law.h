@@ -10,23 +10,23 @@
 
 namespace Squeal
 {
-  /// Number of a pair of directions in Voigt's order xx, yy, zz, yz, xz, xy.
+  /// Index of a pair of directions in Voigt's order xx, yy, zz, yz, xz, xy.
   inline constexpr unsigned int voigt[3][3] = {{0, 5, 4}, {5, 1, 3}, {4, 3, 2}};
 
-  /// Hooke's law of a material over its Young's modulus (E_1 if orthotropic).
+  /// Hooke's law of a material, divided by its Young's modulus (E_1 if orthotropic).
   class ElasticLaw
   {
   public:
     using Stiffness = Eigen::Matrix<double, 6, 6>; ///< C_ijkl in row voigt[i][j] and column voigt[k][l]
 
-    /// The axes of an orthotropic material are made orthonormal by Gram and Schmidt.
+    /// Orthonormalises the axes of an orthotropic material by Gram-Schmidt.
     explicit ElasticLaw(const Material &material);
 
-    /// C/E at a place; on the z axis, the radial direction is x.
+    /// C/E at a point; on the z axis, the radial direction is x.
     Stiffness at(const dealii::Point<3> &x) const;
 
   private:
-    Stiffness stiffness; ///< in the axes of the material if it is cylindrical, else in x, y and z
+    Stiffness stiffness; ///< in the axes of the material if they are cylindrical, else in x, y and z
     bool      is_cylindrical = false;
   };
 } // namespace Squeal

@@ -8,7 +8,7 @@
 
 namespace Squeal
 {
-  /// The uncoupled bodies as a list of terms, with values of their parameters.
+  /// Terms of the uncoupled bodies and the values of their parameters.
   struct BodyTerms
   {
     std::vector<Term> terms;
@@ -18,7 +18,7 @@ namespace Squeal
   /// Names of the parameters of body_terms() and add_rotation().
   namespace BodyParameter
   {
-    std::string young_modulus(const std::string &volume);  ///< E [Pa]; if orthotropic E_1, with which all moduli grow in proportion
+    std::string young_modulus(const std::string &volume);  ///< E [Pa]; if orthotropic E_1, and all moduli scale with it
     std::string density(const std::string &volume);        ///< ρ [kg/m³]
     std::string rayleigh_alpha(const std::string &volume); ///< α [1/s]
     std::string rayleigh_beta(const std::string &volume);  ///< β [s]
@@ -26,14 +26,14 @@ namespace Squeal
     inline constexpr const char *angular_velocity = "angular velocity of the disc"; ///< Ω [rad/s], positive about e_z
   }                                                                                 // namespace BodyParameter
 
-  /// A number of a mount in a direction of the disc's axis that is not zero: a parameter of its term.
+  /// A nonzero coefficient of a mount in a direction about the disc's axis: a parameter of its term.
   struct MountParameter
   {
     std::string name;  ///< among ParameterValues
-    std::string path;  ///< how a user finds it: "Mounts/Elastic mounts: disc_bore radial"
-    const char *unit;  ///< per area
+    std::string path;  ///< name in parameter files: "Mounts/Elastic mounts: disc_bore radial"
+    const char *unit;  ///< per unit area
     double      value; ///< k [N/m³] of springs, c [N s/m³] of dashpots, m [kg/m²] of masses
-    int         power; ///< of λ in its term
+    int         power; ///< power of λ in its term
     std::string surface;
     int         direction; ///< 0 radial, 1 tangential, 2 axial, 3 all
   };
@@ -41,8 +41,8 @@ namespace Squeal
   std::vector<MountParameter> mount_parameters(const MaterialParameters &materials);
 
   /**
-   * Terms of every volume and mount on the free dofs, sparse and symmetric, at unit coefficients; E, ρ, α and β are
-   * parameters of each volume, such as "density, pin_top_1":
+   * Terms of every volume and mount on the free dofs, sparse and symmetric, at unit coefficients; E, ρ, α and β are parameters of each
+   * volume, such as "density, pin_top_1":
    *
    *   E K_b,   K_b,ij = ∫ ε(φ_i) : C/E : ε(φ_j) dV; C/E depends on Poisson's ratios, and on ratios of moduli if orthotropic
    *   k K_e,   K_e,ij = ∫_mount (e·φ_i) (e·φ_j) dA, e the radial, tangential or axial direction about the z axis, k [N/m³]
@@ -50,28 +50,28 @@ namespace Squeal
    *   λ β E K_b + λ α ρ M_b
    *   λ² ρ M_b,  M_b,ij = ∫ φ_i · φ_j dV
    *
-   * Elements with incompatible modes: K_b of add_stiffness(). Points of quadrature().
+   * Elements with incompatible modes use K_b of add_stiffness(). Integrated at the points of quadrature().
    *
    * Throws MeshError if a mounted surface does not exist or an element is inverted.
    */
   BodyTerms body_terms(const Model &model, const MaterialParameters &materials);
 
-  /// Those of a volume: stiffness, mass, damping by stiffness and by mass.
+  /// Terms of a volume: stiffness, mass, stiffness- and mass-proportional damping.
   std::vector<Term> volume_terms(const Model &model, unsigned int volume, const Material &material);
 
-  /// Values of the parameters of body_terms(), but for stiffnesses of zero.
+  /// Values of the parameters of body_terms(), except zero stiffnesses.
   ParameterValues body_values(const Model &model, const MaterialParameters &materials);
 
   /**
-   * Adds what the rotation of the disc about the z axis does in the fixed frame, where its material moves with
-   * u̇ + Ω ∂_θ u, ∂_θ u = −y ∂_x u + x ∂_y u of Cartesian components, so that the base vectors turn, too:
+   * Adds the rotation of the disc about the z axis in the fixed frame, where its material moves with u̇ + Ω ∂_θ u, ∂_θ u = −y ∂_x u + x ∂_y
+   * u for Cartesian components, which includes the rotation of the base vectors:
    *
    *   λ Ω ρ G,  G_ij = ∫ φ_i · ∂_θ φ_j − ∂_θ φ_i · φ_j dV      skew: gyroscopic forces, 2 Ω ∫ ρ φ_i · ∂_θ φ_j of a body of revolution
    *   −Ω² ρ N,  N_ij = ∫ ∂_θ φ_i · ∂_θ φ_j dV                  symmetric: convective stiffness
    *
-   * Stresses from centrifugal forces are left out.
+   * Centrifugal prestress is not included.
    *
-   * @param bodies           with the density of the disc
+   * @param bodies           must contain the density of the disc
    * @param angular_velocity Ω [rad/s], positive about e_z
    */
   void add_rotation(BodyTerms &bodies, const Model &model, double angular_velocity);

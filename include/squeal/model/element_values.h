@@ -9,7 +9,7 @@
 
 namespace Squeal
 {
-  /// Shape functions of a cell or face at its quadrature points, as an isoparametric element of its nodes.
+  /// Isoparametric shape functions of a cell or face at its quadrature points.
   class ElementValues
   {
   public:
@@ -17,10 +17,10 @@ namespace Squeal
       : ElementValues(model, model.degree())
     {}
 
-    /// @param degree of the rule, see quadrature()
+    /// @param degree of the quadrature rule, see quadrature()
     ElementValues(const Model &model, unsigned int degree);
 
-    /// Of an element of the model, at the points of quadrature().
+    /// Evaluates an element of the model at the points of quadrature().
     void reinit(const NodalElement &element);
 
     unsigned int n_nodes() const
@@ -38,19 +38,19 @@ namespace Squeal
       return now->values[q * now->n_nodes + i];
     }
 
-    /// ∇N_i of a cell [1/m].
+    /// ∇N_i in a cell [1/m].
     const dealii::Tensor<1, 3> &gradient(const unsigned int i, const unsigned int q) const
     {
       return gradients[q * now->n_nodes + i];
     }
 
-    /// Volume or area times weight [m³ or m²]; not positive where a cell is turned inside out.
+    /// Volume or area element times quadrature weight [m³ or m²]; not positive in an inverted cell.
     double JxW(const unsigned int q) const
     {
       return weights[q];
     }
 
-    /// Place of a quadrature point [m].
+    /// Position of a quadrature point [m].
     const dealii::Point<3> &point(const unsigned int q) const
     {
       return places[q];
@@ -62,7 +62,7 @@ namespace Squeal
       return normals[q];
     }
 
-    /// ∂x/∂ξ of a cell.
+    /// ∂x/∂ξ in a cell [m].
     const dealii::Tensor<2, 3> &jacobian(const unsigned int q) const
     {
       return jacobians[q];
@@ -73,17 +73,17 @@ namespace Squeal
       return now->points[q].x;
     }
 
-    /// The element of the last reinit().
+    /// Element of the last reinit().
     const NodalElement &element() const
     {
       return *current;
     }
 
-    /// Place of a node of that element [m].
+    /// Position of a node of that element [m].
     dealii::Point<3> node(unsigned int i) const;
 
   private:
-    /// What elements of one shape have in common.
+    /// Data shared by all elements of one shape.
     struct Table
     {
       unsigned int                      n_nodes = 0;
@@ -95,7 +95,7 @@ namespace Squeal
     const Table &table(Shape shape);
 
     const Model                      &model;
-    unsigned int                      degree; ///< of the rule
+    unsigned int                      degree; ///< of the quadrature rule
     std::array<Table, 6>              tables;
     const Table                      *now     = nullptr;
     const NodalElement               *current = nullptr;

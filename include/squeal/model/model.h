@@ -18,10 +18,10 @@
 
 namespace Squeal
 {
-  /// Dofs of a node with its factor in a sum.
+  /// Dofs of a node and its weight in a sum.
   struct WeightedDofs
   {
-    std::array<int, 3> dofs; ///< numbers among the free dofs; -1 where clamped
+    std::array<int, 3> dofs; ///< free dof numbers; -1: clamped
     double             weight;
 
     template <class Archive>
@@ -31,22 +31,22 @@ namespace Squeal
     }
   };
 
-  /// One finite element node: a support point of the displacement, with its three dofs.
+  /// A finite element node: a support point of the displacement with three dofs.
   struct Node
   {
     std::array<double, 3>     position;  ///< [m]
-    std::array<int, 3>        dofs;      ///< numbers among the free dofs; -1 where clamped or tied
+    std::array<int, 3>        dofs;      ///< free dof numbers; -1: clamped or tied
     unsigned int              component; ///< 0: the disc; k ≥ 1: pin k
-    std::int64_t              number;    ///< tells the nodes of all processes apart; ascends in the order of the cells
-    bool                      is_own;    ///< every node is that of one process, which has the rows of its dofs
-    std::vector<WeightedDofs> masters;   ///< of a tied node: u = Σ weight u of these; empty for others
+    std::int64_t              number;    ///< unique over all processes; ascends in the order of the cells
+    bool                      is_own;    ///< owned by this process, which also owns the rows of its dofs; every node has one owner
+    std::vector<WeightedDofs> masters;   ///< of a tied node: u = Σ weight u_master; empty for others
 
     bool is_clamped() const
     {
       return dofs[0] < 0 && masters.empty();
     }
 
-    /// Calls visit(dof, weight) for each free dof of which the displacement along axis @p direction is the weighted sum.
+    /// Calls visit(dof, weight) for each free dof in the weighted sum for the displacement along axis @p direction.
     template <typename Visit>
     void for_each_dof(const unsigned int direction, const Visit &visit) const
     {
@@ -64,14 +64,14 @@ namespace Squeal
     }
   };
 
-  /// A Lagrange element of the model's degree: a cell, or a face of one.
+  /// A Lagrange element of the model's degree: a cell or a face.
   struct NodalElement
   {
     Shape        shape;
-    Mesh::Nodes  nodes;     ///< places among the nodes of the model
-    unsigned int component; ///< as that of a node
-    std::int64_t number;    ///< tells those of all processes apart, ascends in the order of the cells
-    bool         is_own;    ///< every one is that of one process
+    Mesh::Nodes  nodes;     ///< indices into the nodes of the model
+    unsigned int component; ///< as in Node
+    std::int64_t number;    ///< unique over all processes; ascends in the order of the cells
+    bool         is_own;    ///< owned by this process; every element has one owner
   };
 
   struct Cell : NodalElement
@@ -79,24 +79,24 @@ namespace Squeal
     unsigned int volume; ///< index into volume_names()
   };
 
-  /// A face that belongs to one cell only, outwards by the right-hand rule.
+  /// A face of only one cell, outwards by the right-hand rule.
   struct Face : NodalElement
   {
-    std::vector<unsigned int> surfaces; ///< that it is on: indices into the names of surfaces
+    std::vector<unsigned int> surfaces; ///< named surfaces that contain it: indices into the surface names
   };
 
   /**
-   * The discretised bodies: cells and outer faces on nodes with displacement dofs, numbered without the clamped and the tied ones, which
-   * never reach a matrix. Cells are isoparametric.
+   * The discretised bodies: isoparametric cells and outer faces, with nodal displacement dofs. Clamped and tied dofs have no number and do
+   * not enter the matrices.
    *
-   * All is distributed: a process has its cells and those that meet at a node of its own, with their faces. Process 0 makes the parts.
+   * Distributed: a process has its own cells and all cells at nodes that it owns, with their faces. Process 0 partitions the mesh.
    */
   class Model
   {
   public:
     /**
-     * @param mesh         with named parts; other processes than 0 need the names only
-     * @param element      of degree 2: see second_order()
+     * @param mesh         with named parts; processes other than 0 need only the names
+     * @param element      for degree 2, the mesh is extended by second_order()
      * @param communicator processes that share the work
      */
     Model(const Mesh &mesh, Element element, MPI_Comm communicator);
@@ -123,16 +123,16 @@ namespace Squeal
       return components;
     }
 
-    /// Names of the volumes of which the bodies are made.
+    /// Names of all volumes.
     const std::vector<std::string> &volume_names() const
     {
       return volumes;
     }
 
-    /// Those of a body.
+    /// Indices of the volumes of a body.
     std::vector<unsigned int> volumes_of(unsigned int component) const;
 
-    /// Nodes of the cells that this process has, in the order of these.
+    /// Nodes of the cells of this process, in the order of the cells.
     const std::vector<Node> &nodes() const
     {
       return node_table;
@@ -148,10 +148,10 @@ namespace Squeal
       return face_table;
     }
 
-    /// Those of a named surface; throws MeshError naming the known surfaces if there is none of this name.
+    /// Faces of a named surface; throws MeshError with all known surfaces if the name is unknown.
     std::vector<const Face *> faces_of(const std::string &surface) const;
 
-    /// Nodes of all processes in the order of their numbers, on process 0: for files of small models.
+    /// Nodes of all processes in the order of their numbers, on process 0: for output files of small models.
     std::vector<Node> gathered_nodes() const;
 
     /// Distribution of the free dofs.
@@ -160,13 +160,13 @@ namespace Squeal
       return map;
     }
 
-    /// Number of all dofs, clamped and tied ones included.
+    /// Number of all dofs, including clamped and tied ones.
     unsigned int n_dofs() const
     {
       return n_all_dofs;
     }
 
-    /// How tied faces were coupled, for the user; on process 0.
+    /// Notes on the coupling of tied faces, for the user; on process 0.
     const std::vector<std::string> &notes() const
     {
       return tied_notes;

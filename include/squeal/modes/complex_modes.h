@@ -13,26 +13,25 @@
 
 namespace Squeal
 {
-  /// Eigenvalues of the coupled system with friction in a band, however they were found: the complex modes, 0 < Im λ ≤ the band's end and
-  /// those that Band lists, ascending in frequency, with coupled displacements φ_c, φᴴ M_c φ = 1; and the real eigenvalues up to
-  /// the same radius.
+  /// Eigenvalues of the coupled system with friction in a band, from any solver: the complex modes in the Band, ascending in frequency,
+  /// with coupled displacements φ_c, φᴴ M_c φ = 1; and the real eigenvalues up to the same radius.
   struct ComplexModes
   {
-    std::vector<std::complex<double>> lambda;                         ///< [rad/s]
-    std::shared_ptr<MultiVector>      real_part, imaginary_part;      ///< φ_c, n × k
-    std::shared_ptr<MultiVector> left_real_part, left_imaginary_part; ///< ψ, ψᵀQ(λ) = 0, ψᴴM_cψ = 1; null where the method gives none
+    std::vector<std::complex<double>> lambda;                    ///< [rad/s]
+    std::shared_ptr<MultiVector>      real_part, imaginary_part; ///< φ_c, n × k
+    std::shared_ptr<MultiVector> left_real_part, left_imaginary_part; ///< ψ, ψᵀQ(λ) = 0, ψᴴM_cψ = 1; null if the method does not compute it
     std::vector<double>          residuals;                           ///< ‖Q(λ)φ‖ / ‖Kφ‖ [-]
     std::vector<double>          energy_residuals;                    ///< ε_res, eq. (16) of the paper [-]
-    std::vector<double>          estimated_errors;                    ///< |δλ| / |λ| [-]; empty where the method gives none
+    std::vector<double>          estimated_errors;                    ///< |δλ| / |λ| [-]; empty if the method gives no estimates
     int                          n_rigid_body = 0;                    ///< modes with λ = 0
     std::vector<double>          real_values;                         ///< real λ ≠ 0, |λ| ≤ the band's radius, ascending [1/s]
-    std::string                  summary;                             ///< how they were found, one phrase
+    std::string                  summary;                             ///< method and its cost, one phrase
   };
 
-  /// Re xᴴy of corresponding complex vectors, columns 0 ... k-1 the real, k ... 2k-1 the imaginary parts.
+  /// Re xᴴy of each pair of complex vectors; columns 0 ... k-1 are real, k ... 2k-1 imaginary parts.
   std::vector<double> complex_products(const MultiVector &X, const MultiVector &Y);
 
-  /// Force residuals Q(λ) φ (or Q(λ)ᵀ φ) of complex vectors, kept alike.
+  /// Force residuals Q(λ) φ (or Q(λ)ᵀ φ) of complex vectors, stored in the same way.
   MultiVector force_residuals(const CoupledSystem                     &system,
                               const ParameterValues                   &values,
                               const std::vector<std::complex<double>> &lambda,
@@ -41,22 +40,22 @@ namespace Squeal
                               bool                                     left = false);
 
   /**
-   * Normalises right and left modes to φᴴ M_c φ = 1 with the entry of largest
-   * modulus real (fix_phase()), sorts them by frequency, and computes both residuals:
+   * Normalises right and left modes to φᴴ M_c φ = 1 with the entry of largest modulus real (fix_phase()), sorts them by frequency, and
+   * computes both residuals:
    *
    *   ‖Q(λ)φ‖₂ / ‖K_c φ‖₂  and  ε_res = |R_Uᴴ R_F| / (φᴴ K φ),  R_F = Q(λ)φ,  R_U = K_c⁻¹ R_F
    *
-   * (eqs. (14) to (16) of the paper). Where K_c is singular R_U uses the shifted stiffness of @p inverse.
+   * (eqs. (14) to (16) of the paper). If K_c is singular, R_U uses the shifted stiffness of @p inverse.
    */
   void finish_modes(const CoupledSystem &system, const ParameterValues &values, const UpdatedInverse &inverse, ComplexModes &modes);
 
-  /// Whether a mode grows. Tables call a neutral mode stable.
+  /// Growth of a mode. Tables list a neutral mode as stable.
   enum class Verdict
   {
-    stable, ///< it decays
+    stable, ///< decays
     unstable,
-    undecided, ///< at the accuracy of λ
-    neutral    ///< it neither grows nor decays but by rounding errors
+    undecided, ///< cannot be decided at the accuracy of λ
+    neutral    ///< neither grows nor decays, up to rounding errors
   };
 
   template <>
@@ -68,21 +67,20 @@ namespace Squeal
   /// Divergence rates |ξ| up to this are rounding errors of a neutral mode [-].
   inline constexpr double negligible_divergence = 1e-8;
 
-  /// An estimated error of λ may be that much too small [-].
+  /// Safety factor: an estimated error of λ may be too small by this factor [-].
   inline constexpr double error_safety = 3.;
 
   /**
-   * Whether a mode with λ = R + iω, ω ≥ 0, grows, where λ is known up to @p error [rad/s]. With u = 3 error and ε = 10⁻⁸
-   * it is
+   * Verdict on a mode with λ = R + iω, ω ≥ 0, known up to @p error [rad/s]. With u = 3 error and ε = 10⁻⁸ it is
    *
    *   unstable   if R − u > ε ω,
-   *   stable     if R + u ≤ ε ω, and neutral if moreover |R| ≤ ε ω,
+   * stable     if R + u ≤ ε ω, and neutral if also |R| ≤ ε ω,
    *   undecided  otherwise, and if λ or the error is NaN.
    *
-   * Without an error rounding alone decides, as while a branch is followed: R = ± ε ω is neutral still.
+   * Without an error, only rounding decides, as along a branch: R = ± ε ω is still neutral.
    *
-   * @param growth_needs_coalescence Without damping −λ̄ is an eigenvalue beside λ: R = 0 stays zero, whatever the error of
-   *   ω, unless two modes coalesce. If none is within reach, u does not count against R ≤ ε ω.
+   * @param growth_needs_coalescence without damping, −λ̄ is an eigenvalue as well as λ: R = 0 remains zero, whatever the error of ω, unless
+   * two modes coalesce. If no coalescence is within reach, u is not applied to R ≤ ε ω.
    */
   Verdict verdict_of(const std::complex<double> &lambda, double error = 0., bool growth_needs_coalescence = false);
 } // namespace Squeal

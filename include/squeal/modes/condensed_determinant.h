@@ -11,38 +11,36 @@
 
 namespace Squeal
 {
-  /// Where in the λ-plane a CondensedDeterminant is wanted, and how accurately.
+  /// Range of λ and accuracy of a CondensedDeterminant.
   struct CondensedDeterminantRequest
   {
-    std::vector<std::complex<double>> lambda; ///< the farthest from the origin and from the real axis [rad/s]
+    std::vector<std::complex<double>> lambda; ///< points farthest from the origin and from the real axis [rad/s]
     double                            largest_friction_coefficient = 0.;
-    double                            tolerance                    = 1e-6; ///< largest spectral norm of what is left out of N [-]
+    double                            tolerance                    = 1e-6; ///< largest spectral norm of the truncation error of N [-]
   };
 
   /**
-   * The pencil with friction, Q(λ) = S(λ) + E G(λ) with S = K_c + λ² M_c, condensed to the
-   * terms θ λ^p L diag(d) Rᵀ of low rank, those of the contact above all:
+   * The pencil with friction, Q(λ) = S(λ) + E G(λ) with S = K_c + λ² M_c, condensed to the low-rank terms θ λ^p L diag(d) Rᵀ, mainly those
+   * of the contact:
    *
    *   det Q(λ) = det S(λ) det N(λ),   N(λ) = I + G(λ) S(λ)⁻¹ E
    *
-   * E has the factors L as columns; G has for each of them the rows Σ θ λ^p diag(d) Rᵀ of its terms. Friction makes
-   * −μ (V_K + λ² V_M) of those for A.
+   * E has the factors L as columns; G has for each of them the rows Σ θ λ^p diag(d) Rᵀ of its terms. For A, friction gives the rows −μ (V_K
+   * + λ² V_M).
    *
-   * S(λ)⁻¹ is summed over the real modes up to ω_d, Φ with Φᵀ S Φ = D = diag(ω_j² + λ²); on
-   * their M-orthogonal complement it is a Chebyshev series in H = (K_c + s M_c)⁻¹ M_c, whose
-   * eigenvalues there are 1 / w at most, w = ω_d² + s:
+   * S(λ)⁻¹ is summed over the real modes up to ω_d, Φ with Φᵀ S Φ = D = diag(ω_j² + λ²); on their M-orthogonal complement it is a Chebyshev
+   * series in H = (K_c + s M_c)⁻¹ M_c, whose eigenvalues there are at most 1 / w, w = ω_d² + s:
    *
    *   S⁻¹ = Φ D⁻¹ Φᵀ + S_⊥⁻¹,   S_⊥⁻¹ = Σ_k c_k T_k(2 w H − I) P (K_c + s M_c)⁻¹
    *   c_k = (2 − δ_k0) ((1 − r) / (1 + r))ᵏ / r,   r = √((ω_d² + λ²) / w),   Re r > 0
    *
-   * so that the determinant falls into one that varies little in the band, N_⊥, and a small one with
-   * poles at the real modes, λ = ±iω_j, W:
+   * The determinant is thus a product of N_⊥, which varies little in the band, and of W, a small matrix with poles at the real modes, λ =
+   * ±iω_j:
    *
    *   det N = det N_⊥ det W,   N_⊥ = I + G S_⊥⁻¹ E,   W = I + D⁻¹ Φᵀ E N_⊥⁻¹ G Φ
    *
-   * The series converges for all λ but ±iω, ω ≥ ω_d. The matrices V_K T_k ... E are
-   * small and serve every μ. Since |T_k| ≤ 1 in the inner product of K_c + s M_c,
-   * what m terms leave out of N is bounded by
+   * The series converges for all λ except ±iω, ω ≥ ω_d. The matrices V_K T_k ... E are small and serve every μ. Because |T_k| ≤ 1 in the
+   * inner product of K_c + s M_c, the truncation error of N after m terms is bounded by
    *
    *   ‖G (K_c + s M_c)^−½‖ Σ_{k > m} |c_k| ‖(K_c + s M_c)^−½ E‖   on the complement.
    */
@@ -50,13 +48,13 @@ namespace Squeal
   {
   public:
     /**
-     * @param modes          all real modes up to @p deflation_end, of at least one
+     * @param modes          all real modes up to @p deflation_end, at least one
      * @param deflation_end  ω_d [rad/s]
      * @param inverse        (K_c + s M_c)⁻¹
      * @param shift          s ≥ 0 [rad²/s²]
      *
-     * Throws SolverError if there are sparse terms but K_c and M_c, such as damping of the bodies. The system must outlive
-     * it.
+     * Throws SolverError if there are sparse terms other than K_c and M_c, such as damping of the bodies. The system must outlive the
+     * object.
      */
     CondensedDeterminant(const CoupledSystem               &system,
                          const SymmetricModes              &modes,
@@ -68,28 +66,28 @@ namespace Squeal
     /// N_⊥(λ).
     ComplexDenseMatrix complement(std::complex<double> lambda, double mu) const;
 
-    /// W(λ), and what bounds the inverse of N.
+    /// W(λ), and bounds for the inverse of N.
     struct OnModes
     {
-      ComplexDenseMatrix                matrix;             ///< W, as large as there are modes
+      ComplexDenseMatrix                matrix;             ///< W, size: number of modes
       std::vector<std::complex<double>> resonances;         ///< D⁻¹
       double                            complement_inverse; ///< bound of ‖N_⊥⁻¹‖
       double                            gain;               ///< ‖N⁻¹‖ ≤ ‖N_⊥⁻¹‖ + gain ‖W⁻¹ D⁻¹‖
     };
     OnModes on_modes(std::complex<double> lambda, double mu) const;
 
-    /// Bound of the spectral norm of what is left out of N(λ) [-].
+    /// Bound of the spectral norm of the truncation error of N(λ) [-].
     double truncation(std::complex<double> lambda, double mu) const;
 
-    std::vector<double> frequencies;   ///< ω_j of the modes that are summed [rad/s], 0 for rigid-body modes
+    std::vector<double> frequencies;   ///< ω_j of the summed modes [rad/s], 0 for rigid-body modes
     int                 n_moments = 0; ///< terms of the series
 
   private:
-    /// Rows of G that stem from one term.
+    /// Rows of G from one term.
     struct Block
     {
       const Term              *term;
-      int                      first_row; ///< in N
+      int                      first_row; ///< row index in N
       DenseMatrix              on_modes;  ///< RᵀΦ
       std::vector<DenseMatrix> moments;   ///< Rᵀ T_k P (K + s M)⁻¹ E
       double                   norm;      ///< of diag(d) Rᵀ (K + s M)^−½ on the complement
@@ -98,7 +96,7 @@ namespace Squeal
     const CoupledSystem &system;
     double               deflation_square, shift;
     std::vector<Block>   blocks;
-    int                  n_rows      = 0;  ///< of N
+    int                  n_rows      = 0;  ///< size of N
     double               forces_norm = 0.; ///< ‖(K + s M)^−½ E‖ on the complement
     ComplexDenseMatrix   modes_forces;     ///< ΦᵀE
   };

@@ -14,52 +14,52 @@ namespace Squeal
   /// Oscillating modes of a reduced model, eq. (12) of the paper, right and left, in the coordinates of its basis.
   struct ReducedModes
   {
-    ParameterValues values;          ///< of the parameters of the system
-    ReducedPencil   pencil;          ///< there
-    DenseMatrix     mass, stiffness; ///< TᵀM_cT and TᵀK_cT: the norms
+    ParameterValues values;          ///< parameter values of the system
+    ReducedPencil   pencil;          ///< at these values
+    DenseMatrix     mass, stiffness; ///< TᵀM_cT and TᵀK_cT, for the norms
 
     std::vector<std::complex<double>> lambda; ///< Im λ > 0, ascending by Im, then Re [rad/s]
     ComplexDenseMatrix                right;  ///< φ_r, r × k
     ComplexDenseMatrix                left;   ///< ψ_r, r × k: ψ_rᵀ Q_r(λ) = 0, no conjugate
 
-    std::vector<double> real_values; ///< real λ but zero, ascending [1/s]
-    int                 n_zeros = 0; ///< λ = 0: two for each rigid-body mode without damping
+    std::vector<double> real_values; ///< real λ ≠ 0, ascending [1/s]
+    int                 n_zeros = 0; ///< number of λ = 0: two for each rigid-body mode without damping
   };
 
-  /// Whether modes beyond the end of the band are left out.
+  /// Treatment of modes beyond the end of the band.
   enum class BandEnd
   {
     cut,
-    open ///< reduced modes are kept whatever their frequency: counterparts of reference modes lie among them
+    open ///< all reduced modes are kept: they may be counterparts of reference modes
   };
 
-  /// All modes of @p model at friction coefficient @p mu. Real λ and zeros, those of rigid-body motions, are told apart from oscillating
-  /// modes by parts of @p largest_circular_frequency [rad/s], the end of the band.
+  /// All modes of @p model at the friction coefficient @p mu. Real λ and zeros of rigid-body motions are separated from oscillating modes
+  /// by thresholds relative to @p largest_circular_frequency [rad/s], the end of the band.
   ReducedModes reduced_modes(const ReducedModel &model, double mu, double largest_circular_frequency, BandEnd end = BandEnd::cut);
 
-  /// The same at any values of the parameters, on this process alone: vectors of a multiple eigenvalue may differ from those that another
-  /// process finds.
+  /// Modes at any values of the parameters, on this process only: vectors of a multiple eigenvalue may differ from those on another
+  /// process.
   ReducedModes local_reduced_modes(const ReducedModel    &model,
                                    const ParameterValues &values,
                                    double                 largest_circular_frequency,
                                    BandEnd                end = BandEnd::cut);
 
-  /// The same by the QR algorithm on all modes, without separating the band first.
+  /// local_reduced_modes() by the QR algorithm on all modes, without separating the band first.
   ReducedModes local_reduced_modes_by_qr(const ReducedModel    &model,
                                          const ParameterValues &values,
                                          double                 largest_circular_frequency,
                                          BandEnd                end = BandEnd::cut);
 
-  /// The same with vectors and matrices in the coordinates of ReducedModel::modal(); nothing if the band cannot be separated.
+  /// Modes of the band with vectors and matrices in the coordinates of ReducedModel::modal(); nothing if the band cannot be separated.
   std::optional<ReducedModes> modal_modes_of_band(const ReducedModel    &model,
                                                   const ParameterValues &values,
                                                   double                 largest_circular_frequency);
 
-  /// The real eigenvalues of @p model with their vectors, zeros excluded, that the band lists: static divergence and overdamped
-  /// motions. Without damping that with λ > 0 stands for both of ±λ.
+  /// Nonzero real eigenvalues of @p model in the band, with their vectors: static divergence and overdamped motions. Without damping only λ
+  /// > 0 of each pair ±λ.
   ReducedModes real_eigenvalue_modes(const ReducedModel &model, double mu, const Band &band);
 
-  /// The same without friction and damping, λ = iω and ψ = φ, from the symmetric eigenproblem of TᵀK_cT and TᵀM_cT.
+  /// Modes without friction and damping, λ = iω and ψ = φ, from the symmetric eigenproblem of TᵀK_cT and TᵀM_cT.
   ReducedModes reduced_real_modes(const ReducedModel &model, double largest_circular_frequency, BandEnd end = BandEnd::cut);
 
   /// Some of the modes, in the order of @p chosen.

@@ -14,30 +14,30 @@
 
 namespace Squeal
 {
-  /// Modes of a coupled system without friction, and the inverse that serves them and every μ: terms are all that they need, no mesh.
+  /// Modes of a coupled system without friction, and the inverse for every μ; computed from terms, without a mesh.
   struct SystemModes
   {
-    double                          shift = 0.; ///< of the inverse [rad/s]; positive if a body is free
+    double                          shift = 0.; ///< of the inverse [rad/s]; positive if a body has rigid-body motions
     std::shared_ptr<UpdatedInverse> inverse;
     SymmetricModes                  real;                    ///< in the band and its margin
     Cost                            factorisation, solution; ///< of the inverse, and of the real modes
   };
 
-  /// How the parameters want real modes of @p what to be found, shifted by @p shift [rad/s] where bodies are free.
+  /// Solver options for the real modes of @p what, with @p shift [rad/s] if bodies have rigid-body motions.
   SymmetricModesOptions real_modes_options(const SolverParameters &solvers, const std::string &what, double shift);
 
-  /// Counts the modes of the band as a step of @p progress, and refuses more than the parameters allow before any is computed (throws
-  /// ParameterError): counting them takes one factorisation.
+  /// Counts the modes of the band by one factorisation, as a step of @p progress. Throws ParameterError if there are more than the
+  /// parameters allow.
   ModeCount number_of_modes(const CoupledSystem    &system,
                             double                  largest_circular_frequency,
                             const SolverParameters &solvers,
                             Progress               &progress);
 
   /**
-   * The factorisation and the real modes of the system, as steps of @p progress. Throws SolverError if none lies in the band.
+   * Factorises the system and computes its real modes, as steps of @p progress. Throws SolverError if no mode is in the band.
    *
-   * @param shift s ≥ 0 [rad/s] with which K_c + s² M_c is positive definite; without damping in the system unless it is zero
-   * @param count of the band and its margin
+   * @param shift s ≥ 0 [rad/s] that makes K_c + s² M_c positive definite; with damping it must be zero
+   * @param count number of modes in the band and its margin
    */
   SystemModes system_modes(const CoupledSystem    &system,
                            double                  shift,
@@ -47,24 +47,24 @@ namespace Squeal
                            const SolverParameters &solvers,
                            Progress               &progress);
 
-  /// Modes inside the band, of ascending @p eigenvalues [rad²/s²].
+  /// Number of ascending @p eigenvalues [rad²/s²] in the band.
   std::size_t n_in_band(const std::vector<double> &eigenvalues, double largest_eigenvalue);
 
-  /// The rectangle of the band in which count_by_contour() counts modes of a system of which @p frictionless are modes without damping.
+  /// Rectangle of the band for count_by_contour(); @p frictionless are the modes of the system without damping.
   ContourOptions contour_of_band(const CoupledSystem    &system,
                                  const SystemModes      &frictionless,
                                  const Band             &band,
                                  const SolverParameters &solvers);
 
   /**
-   * Complex modes at full order by shift-invert block Krylov on the sparse nonsymmetric quadratic pencil at friction coefficient @p mu: the
-   * reference.
+   * Reference complex modes at full order by shift-invert block Krylov on the sparse nonsymmetric quadratic pencil at the friction
+   * coefficient @p mu.
    *
    * @param inverse    factor and attachment modes of the frictionless system at @p shift
-   * @param n_expected real modes in the band, which tells how many to look for
-   * @param real_modes these, from which the process then starts; null: none
+   * @param n_expected number of real modes in the band, an estimate of the number of complex modes
+   * @param real_modes these modes, as starting vectors; null: none
    *
-   * Where the stiffness with friction is almost singular without a shift, a factor with a shift is made for this μ.
+   * If the stiffness with friction is almost singular, it is factorised with a shift for this μ.
    *
    * Throws SolverError if a mode misses the tolerance, or if there is modal damping and the shift is not zero.
    */

@@ -16,77 +16,77 @@
 
 namespace Squeal
 {
-  /// Names of files, seen from a folder, and their sizes [byte].
+  /// Names of files relative to a folder, and their sizes [byte].
   using FileSizes = std::map<std::string, std::uintmax_t>;
 
-  /// What a run was: enough to repeat it and to compare its cost.
+  /// Metadata to repeat a run and to compare its cost.
   struct RunRecord
   {
-    std::string                                 command;     ///< that repeats it in a shell
+    std::string                                 command;     ///< shell command that repeats it
     int                                         n_processes; ///< of MPI
     unsigned int                                n_threads;
     int                                         blas_threads;
     std::vector<std::pair<std::string, long>>   counts;               ///< elements, dofs, contact nodes, modes, ...
     std::vector<std::pair<std::string, double>> quantities;           ///< worst element quality, ...
-    std::vector<std::string>                    warnings;             ///< doubts about the input
-    FileSizes                                   files    = {};        ///< what the run has written, but for the record itself
+    std::vector<std::string>                    warnings;             ///< questionable input
+    FileSizes                                   files    = {};        ///< files written by the run, except the record
     std::string                                 revision = "unknown"; ///< of the program's sources
   };
 
-  /// Names and versions of the libraries that this build uses.
+  /// Names and versions of the libraries in this build.
   std::vector<std::pair<std::string, std::string>> library_versions();
 
-  /// Versions, revision, machine, counts, time and peak memory of each step, and files, as JSON.
+  /// Writes versions, revision, machine, counts, time and peak memory of each step, and files, as JSON.
   void write_run_record(std::ostream &stream, const RunRecord &record, const Progress &progress);
 
-  /// The files that a record lists; nothing if it lists none or cannot be read.
+  /// Files listed in a record; nothing if it lists none or cannot be read.
   std::optional<FileSizes> read_file_list(const std::filesystem::path &record);
 
   /**
-   * The folder of the results of a run. Files are written into its folder `.unfinished` and moved to their place when the run is complete, the
-   * run record last. A run that fails leaves former results as they are; what a killed one leaves in `.unfinished`, the next one clears away.
-   * A lock on the folder keeps a second run out.
+   * Result folder of a run. Files are written to its subfolder `.unfinished` and moved to their place when the run is complete, the run
+   * record last. A failed run leaves former results unchanged; after a killed run, the next one clears `.unfinished`. The folder is locked
+   * against a second run.
    *
-   * Of former results, the files that the record lists are replaced or removed; the user's own files stay. A folder without a record that holds
-   * anything else is never written to.
+   * Former results that the record lists are replaced or removed; the user's own files are kept. A folder without a record but with other
+   * content is never written to.
    */
   class ResultFolder
   {
   public:
     /**
-     * Makes the folder and tries whether files can be written there.
+     * Creates the folder and checks that it is writable.
      *
-     * @param is_root process that creates, moves and removes
+     * @param is_root process that creates, moves and removes files
      *
-     * Throws FileError if @p directory holds something other than results, cannot be written to, or is in use.
+     * Throws FileError if @p directory contains anything other than results, is not writable, or is in use.
      */
     ResultFolder(const std::string &directory, bool is_root);
 
-    /// Removes what was not committed.
+    /// Removes uncommitted files.
     ~ResultFolder();
 
     ResultFolder(const ResultFolder &)            = delete;
     ResultFolder &operator=(const ResultFolder &) = delete;
 
-    /// Writes a file on the root process; throws FileError with the cause if it could not be written to the end.
+    /// Writes a file on the root process; throws FileError with the cause if it cannot be written completely.
     void write(const std::string &name, const std::function<void(std::ostream &)> &writer) const;
 
-    /// What the run has written so far, with sizes; for its record.
+    /// Files written so far, with sizes, for the run record.
     const FileSizes &files() const;
 
     /**
-     * Moves the files to their place, unless one of them was removed or changed meanwhile. Returns what the user should know, one line each.
+     * Moves the files to their place, unless one of them was removed or changed meanwhile. Returns notes for the user, one line each.
      *
-     * @param afterwards done when the results are in their place, on all processes
+     * @param afterwards called on all processes once the results are in place
      *
-     * Throws FileError if files are missing, or cannot be moved; in the latter case the message says where they are.
+     * Throws FileError if files are missing or cannot be moved; in the latter case the message says where they are.
      */
     std::vector<std::string> commit(const std::function<void()> &afterwards = {});
 
-    /// Name of the folder, as the user has it.
+    /// Name of the folder as given by the user.
     const std::string &name() const;
 
-    /// File that marks a folder as the result of a run, and lists its files; scripts add the pictures that they draw of them.
+    /// File that marks a folder as the result of a run, and lists its files; scripts add the pictures they draw.
     static constexpr const char *run_record = "run.json";
 
   private:
@@ -95,13 +95,13 @@ namespace Squeal
     std::vector<std::string> put_in_place() const;
     void                     remove_traces();
 
-    const std::string     shown; ///< name as the user has it
+    const std::string     shown; ///< name as given by the user
     const bool            is_root;
     std::filesystem::path place, unfinished;
     bool                  is_new   = false; ///< made by this run
     bool                  is_stuck = false; ///< complete, but could not be moved
-    int                   lock     = -1;    ///< descriptor of the folder, which is locked
+    int                   lock     = -1;    ///< descriptor of the locked folder
 
-    mutable FileSizes written; ///< whoever may write to the folder adds to the list
+    mutable FileSizes written; ///< files written so far
   };
 } // namespace Squeal

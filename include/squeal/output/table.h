@@ -12,15 +12,15 @@
 
 namespace Squeal
 {
-  /// A text as one field of comma-separated values, in quotes where a comma, a quote or a line break would end it.
+  /// A text as a field of comma-separated values, quoted if it contains a comma, quote or line break.
   std::string csv_field(const std::string &text);
 
-  /// Nothing, a text, a count, or a number.
+  /// A table entry: empty, a text, a count, or a number.
   struct Entry : std::variant<std::monostate, std::string, long, double>
   {
     Entry() = default;
 
-    /// A value of any type: what is neither number nor text is named by its to_string().
+    /// Entry for a value of any type; other than numbers and texts, its to_string().
     template <typename Value>
     Entry(const Value &value)
     {
@@ -42,7 +42,7 @@ namespace Squeal
     }
   };
 
-  /// What a column shows of a row: a member of it, or a function.
+  /// A column of a table: a member of the row, or a function of it.
   template <typename Row>
   struct Column
   {
@@ -60,7 +60,7 @@ namespace Squeal
   class Table
   {
   public:
-    /// Shows @p columns of @p rows, a range of Row; throws Error if a number is not finite, naming its column.
+    /// Builds a table of @p columns from @p rows, a range of Row; throws Error naming the column if a number is not finite.
     template <typename Row, typename Rows>
     Table(const Columns<Row> &columns, const Rows &rows)
     {
@@ -80,7 +80,7 @@ namespace Squeal
     void print(std::ostream &stream) const;
 
   private:
-    /// What a column shows but its cells.
+    /// Properties of a column without its entries.
     struct Head
     {
       std::string name;
@@ -88,7 +88,7 @@ namespace Squeal
       bool        scientific;
     };
 
-    /// @p cell, of the last column.
+    /// @p cell after checking it as an entry of the last column.
     Entry checked(const Entry &cell) const;
 
     std::vector<Head>               heads;

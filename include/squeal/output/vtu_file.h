@@ -13,31 +13,31 @@
 
 namespace Squeal
 {
-  /// Cells of this process, or faces of them, with shared vertices, as a file of fields has them. All nodes are vertices: elements of
-  /// degree 2 are divided into linear cells on their nodes. Normals of faces point out of the body.
+  /// Cells of this process, or their faces, with shared vertices, for a field file. All nodes are vertices: elements of degree 2 are
+  /// divided into linear cells on their nodes. Normals of faces point out of the body.
   struct FieldMesh
   {
     std::vector<Node>         nodes;      ///< vertices
-    std::vector<std::uint8_t> types;      ///< of each cell, number of VTK
-    std::vector<std::int32_t> corners;    ///< places among the vertices, cell by cell in the order of VTK
-    std::vector<std::int32_t> ends;       ///< of each cell, behind its last corner
+    std::vector<std::uint8_t> types;      ///< VTK cell type of each cell
+    std::vector<std::int32_t> corners;    ///< vertex indices, cell by cell in VTK order
+    std::vector<std::int32_t> ends;       ///< of each cell, end of its range in corners
     std::vector<std::int32_t> components; ///< of each cell, see Node
-    std::vector<std::int32_t> volumes;    ///< of each cell, see Cell; empty where every body is one volume, and for faces
+    std::vector<std::int32_t> volumes;    ///< of each cell, see Cell; empty for faces, or if every body has only one volume
   };
 
-  /// All bodies, or those of a component.
+  /// Mesh of all bodies, or of one component.
   FieldMesh body_mesh(const Model &model, const std::optional<Component> &component);
 
-  /// The surface of all bodies.
+  /// Surface mesh of all bodies.
   FieldMesh surface_mesh(const Model &model);
 
-  /// The pins' contact faces.
+  /// Mesh of the contact faces of the pins.
   FieldMesh contact_face_mesh(const Model &model);
 
-  /// Points alone, each a cell of its own.
+  /// Points, each as a single cell.
   FieldMesh point_mesh(const std::vector<Node> &points);
 
-  /// Values of the vertices of a mesh, vertex by vertex.
+  /// Values at the vertices of a mesh, vertex by vertex.
   struct VertexField
   {
     std::string        name;
@@ -45,9 +45,9 @@ namespace Squeal
     std::vector<float> values;
   };
 
-  /// What a process has of a file of VTK (.vtu): a mesh with the cell field `component`, where a body has several volumes `volume`, and
-  /// fields, all compressed by zlib. Copies share nothing, so that files on one mesh begin with a copy of a piece without fields. Cells
-  /// are sorted into columns along z: consecutive cells then share nodes, which compresses better.
+  /// The part of a VTK file (.vtu) on this process: a mesh with the cell field `component`, also `volume` if a body has several volumes,
+  /// and fields, all compressed by zlib. Copies are independent, so that files on one mesh start from a copy of a piece without fields.
+  /// Cells are sorted into columns along z: consecutive cells then share nodes, which compresses better.
   class VtuPiece
   {
   public:
@@ -55,8 +55,8 @@ namespace Squeal
 
     void add(const std::vector<VertexField> &fields);
 
-    /// Writes the pieces of all processes, which all must call, as one file, and a @p title unless it is empty; process 0 has one piece
-    /// at a time beside the file. Throws FileError, there, with the cause if it cannot be written.
+    /// Writes the pieces of all processes as one file, with a @p title unless it is empty. Collective; process 0 holds one piece at a time.
+    /// Throws FileError on process 0 with the cause if the file cannot be written.
     void write(const ResultFolder &folder, const std::string &name, const std::string &title, MPI_Comm communicator) const;
 
   private:
@@ -66,13 +66,13 @@ namespace Squeal
       std::string  place; ///< PointData, CellData, Points or Cells
       std::string  name, type;
       unsigned int n_columns;
-      std::string  data; ///< compressed, behind their sizes
+      std::string  data; ///< compressed, preceded by the block sizes
     };
 
     template <typename Number>
     static Array array(const char *place, const std::string &name, const std::vector<Number> &values, unsigned int n_columns, int level);
 
-    /// The description of this piece, whose data begin at @p offset among those of all.
+    /// XML description of this piece; its data begin at @p offset in the appended data.
     std::string description(std::size_t offset) const;
 
     std::size_t        n_points, n_cells;

@@ -12,16 +12,16 @@
 
 namespace Squeal
 {
-  /// Which meshes, elements and bases a study of accuracy compares (section `Accuracy study`).
+  /// Meshes, elements and bases that an accuracy study compares (section `Accuracy study`).
   struct AccuracyStudyParameters
   {
-    std::vector<double>      factors         = {0.5, 1., 1.5}; ///< how many times as fine as the mesh of the scene [-]
+    std::vector<double>      factors         = {0.5, 1., 1.5}; ///< mesh refinement relative to the given mesh [-]
     std::vector<Element>     elements        = {Element::trilinear, Element::incompatible_modes, Element::quadratic};
-    std::vector<Outlines>    outlines        = {Outlines::inscribed, Outlines::true_area}; ///< of elements with straight edges
+    std::vector<Outlines>    outlines        = {Outlines::inscribed, Outlines::true_area}; ///< for elements with straight edges
     std::vector<std::string> bases           = {"real + 1st-ord. two-sided", "residual-grown"};
-    double                   grown_tolerance = 1e-4;   ///< of residual-grown bases [-]
-    double                   largest_dofs    = 150000; ///< of a mesh that is solved, clamped dofs included
-    double                   margin          = 0.1;    ///< by which bands are longer, so that no mode lacks its partner [-]
+    double                   grown_tolerance = 1e-4;   ///< of bases grown by residuals [-]
+    double                   largest_dofs    = 150000; ///< largest number of dofs of a mesh, clamped dofs included
+    double                   margin          = 0.1;    ///< relative extension of the bands, so that all modes have counterparts [-]
 
     void declare(Declarations &declarations);
 
@@ -31,10 +31,10 @@ namespace Squeal
 
   struct Parameters;
 
-  /// How accurate the user wants frequencies to be (`set Accuracy`).
+  /// Requested accuracy of frequencies (`set Accuracy`).
   enum class AccuracyGoal
   {
-    as_given, ///< mesh, element and tolerances are those of the parameters
+    as_given, ///< mesh, element and tolerances from the parameters
     five_percent,
     one_percent,
     a_tenth_percent,
@@ -48,29 +48,29 @@ namespace Squeal
                                                                         {AccuracyGoal::a_tenth_percent, "0.1 %"},
                                                                         {AccuracyGoal::a_hundredth_percent, "0.01 %"}};
 
-  /// Errors at which modes count as converged.
+  /// Error limits below which modes count as converged.
   struct AccuracyLimits
   {
-    double frequency;  ///< relative [-]
-    double divergence; ///< of the divergence rate [-]: a tenth of it
+    double frequency;  ///< relative error of the frequency [-]
+    double divergence; ///< absolute error of the divergence rate [-]: a tenth of the frequency limit
   };
 
-  /// Those of a goal, which must be one.
+  /// Limits of a goal other than as_given.
   AccuracyLimits limits_of(AccuracyGoal goal);
 
-  /// Error of a goal's mesh over its difference from the coarser one that goes with it [-], somewhat more than what the default scene shows
-  /// (doc/accuracy.md): 2/3 for elements with eight nodes, 1/3 for quadratic ones. Without a goal 1: the difference itself.
+  /// Ratio of the error of a goal's mesh to the difference from its coarser mesh [-], slightly larger than observed for the default model
+  /// (doc/accuracy.md): 2/3 for elements with eight nodes, 1/3 for quadratic ones; 1 without a goal.
   double error_by_difference(AccuracyGoal goal);
 
   /**
-   * Parameters with the element, mesh, solver and tolerances that a goal asks for, in place of those that were given: from
-   * doc/accuracy.md, where the default scene shows what each costs and reaches. Elements of the disc are a part of the shortest of
-   * bending and shear waves at the end of the band, layers no thicker than that, and tall pins have as many layers more. Without a
-   * goal nothing changes.
+   * Parameters with the element, mesh, solver and tolerances of a goal, which replace the given values; based on doc/accuracy.md, which
+   * shows their cost and accuracy for the default model. Element sizes of the disc are a fraction of the shorter of the bending and shear
+   * wavelengths at the end of the band, layers are at most as thick, and tall pins have proportionally more layers. Unchanged without a
+   * goal.
    */
   Parameters with_goal(const Parameters &given);
 
-  /// The same scene on the coarser mesh of a goal or, without one, on the coarser mesh that is given, in a band that reaches somewhat
-  /// further, since frequencies on coarse meshes are higher. One of the two must be there. Throws ParameterError.
+  /// The same model on the coarser mesh of a goal or, without a goal, on the given coarser mesh, in a slightly wider band because coarse
+  /// meshes have higher frequencies. Throws ParameterError; one of the two must be given.
   Parameters with_coarser_mesh(const Parameters &given);
 } // namespace Squeal

@@ -37,18 +37,18 @@ namespace Squeal
     void check() const;
   };
 
-  /// Ways to the complex modes.
+  /// Solvers for complex modes.
   enum class ComplexSolver
   {
     krylov,            ///< shift-invert block Krylov on the quadratic pencil: the reference
-    residual_iteration ///< basis of real modes grown by right and left residuals
+    residual_iteration ///< basis of real modes, extended by right and left residuals
   };
 
   template <>
   inline constexpr EnumName<ComplexSolver> enum_table<ComplexSolver>[] = {{ComplexSolver::krylov, "Krylov"},
                                                                           {ComplexSolver::residual_iteration, "residual iteration"}};
 
-  /// How the shifted pencil is inverted for the Krylov solver.
+  /// Inverse of the shifted pencil in the Krylov solver.
   enum class ShiftInverse
   {
     updated_cholesky, ///< one Cholesky factor of K_c and a correction of rank n_c
@@ -64,7 +64,7 @@ namespace Squeal
   {
     RealSolver           real_solver         = RealSolver::lanczos;
     double               real_tolerance      = 1e-10; ///< on ‖Kφ - ω²Mφ‖ / ‖Kφ‖ [-]
-    unsigned int         maximum_modes       = 500;   ///< in the band
+    unsigned int         maximum_modes       = 500;   ///< limit on the number of modes in the band
     ComplexSolver        complex_solver      = ComplexSolver::krylov;
     ShiftInverse         shift_inverse       = ShiftInverse::updated_cholesky;
     double               complex_tolerance   = 1e-9; ///< on the residual ‖Q(λ)φ‖ / ‖Kφ‖ [-]
@@ -77,7 +77,7 @@ namespace Squeal
     void declare(Declarations &declarations);
   };
 
-  /// Which complex modes are written as fields.
+  /// Complex modes to be written as fields.
   enum class FieldSelection
   {
     none,
@@ -90,7 +90,7 @@ namespace Squeal
                                                                             {FieldSelection::unstable, "unstable"},
                                                                             {FieldSelection::all, "all"}};
 
-  /// Whether the system is written as a folder that `System` reads.
+  /// Whether the system is written as a folder for the parameter `System`.
   enum class SystemOutput
   {
     none,
@@ -103,15 +103,15 @@ namespace Squeal
                                                                         {SystemOutput::full, "full"},
                                                                         {SystemOutput::reduced, "reduced"}};
 
-  /// What a run leaves behind (section `Output`).
+  /// Output of a run (section `Output`).
   struct OutputParameters
   {
     FieldSelection fields            = FieldSelection::all;
-    bool           component_fields  = false; ///< modes of disc and pins alone, too
-    bool           real_fields       = false; ///< coupled modes without friction, too
+    bool           component_fields  = false; ///< also modes of disc and pins alone
+    bool           real_fields       = false; ///< also coupled modes without friction
     unsigned int   animation_frames  = 16;    ///< per period of an unstable mode; 0: no animation
     unsigned int   animation_periods = 1;
-    bool           animation_growth  = false; ///< shown with e^{Rt}
+    bool           animation_growth  = false; ///< scaled by e^{Rt}
     bool           write_matrices    = false;
     SystemOutput   write_system      = SystemOutput::none;
 

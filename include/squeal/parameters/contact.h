@@ -9,21 +9,21 @@
 
 namespace Squeal
 {
-  /// Surfaces that rub: one of the disc, one of another body.
+  /// A pair of sliding surfaces: one of the disc, one of another body.
   struct ContactPair
   {
     std::string disc, pin;
-    double      friction_factor  = 1.; ///< friction coefficient of the pair over that of Operation/Friction coefficient [-]
-    double      normal_stiffness = 0.; ///< k of the contact [N/m³]; zero: nothing yields, the constraint
+    double      friction_factor  = 1.; ///< multiplies Operation/Friction coefficient [-]
+    double      normal_stiffness = 0.; ///< k of the contact [N/m³]; zero: rigid contact
   };
 
-  /// Surfaces that are bonded: nodes of the slave move with the master.
+  /// A pair of bonded surfaces: nodes of the slave follow the master.
   struct TiedPair
   {
     std::string slave, master;
   };
 
-  /// What rubs what, and what is bonded (section `Contact`).
+  /// Sliding and bonded surfaces (section `Contact`).
   struct ContactParameters
   {
     std::vector<ContactPair> pairs = {{"disc_contact", "pin_contact"}};

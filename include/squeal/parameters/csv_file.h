@@ -7,25 +7,25 @@
 
 namespace Squeal
 {
-  /// A table of texts as a spreadsheet exports it.
+  /// A table of texts from a spreadsheet.
   struct CsvFile
   {
     std::vector<std::string>              names;       ///< of the columns
     std::string                           where_names; ///< file and line, for messages
-    std::vector<std::vector<std::string>> rows;        ///< a text for each name, without blanks around it
-    std::vector<std::string>              where;       ///< of each row
+    std::vector<std::vector<std::string>> rows;        ///< one text for each column, without surrounding blanks
+    std::vector<std::string>              where;       ///< file and line of each row, for messages
   };
 
-  /// Path of a file that a parameter names: in the folder of the parameter file or, if it is not there, in the current one.
+  /// Path of an input file: in the folder of the parameter file or, if it is not there, in the current directory.
   std::string input_path(const std::string &name, const std::string &parameter_directory);
 
   /**
-   * Reads comma-separated values: names of the columns in the first line, a row in each of the others. Empty lines are skipped.
+   * Reads comma-separated values: column names in the first line, then one row per line. Empty lines are skipped.
    *
-   * @param parameter that names the file, "Section/Name", for messages
-   * @param row       what a row is, for messages: "design"
+   * @param parameter that gives the file, "Section/Name", for messages
+   * @param row       meaning of a row, for messages: "design"
    *
-   * Throws FileError if the file cannot be read, ParameterError with the line if it is no comma-separated text in UTF-8.
+   * Throws FileError if the file cannot be read, ParameterError with the line if it is not comma-separated UTF-8 text.
    */
   CsvFile read_csv(const std::string &path, const std::string &parameter, const std::string &row);
 } // namespace Squeal

@@ -11,7 +11,7 @@
 
 namespace Squeal
 {
-  /// Bounds of a number, both included.
+  /// Inclusive bounds of a number.
   struct Range
   {
     double least    = -std::numeric_limits<double>::infinity();
@@ -24,20 +24,20 @@ namespace Squeal
   struct DeclaredParameter
   {
     std::string path;          ///< "Section/Name"
-    std::string documentation; ///< ends with "Units: m." where it is a number
+    std::string documentation; ///< ends with "Units: m." for numbers
     std::string accepted;      ///< "a number in 0 ... 10", "one of positive, negative", ...; empty: any text
 
-    std::function<std::string()> print; ///< the value, so that it reads back unchanged
+    std::function<std::string()> print; ///< value as text that parse() reads back unchanged
 
     /// Sets the value; throws ParameterError, "Operation/Friction coefficient must lie in 0 ... 10, not -0.1".
     std::function<void(const std::string &)> parse;
   };
 
-  /// Parameters in the order of their declaration. What they are bound to must outlive them.
+  /// Parameters in the order of declaration. The bound members must outlive this object.
   class Declarations
   {
   public:
-    /// Begins a section, to which belongs what is declared from now on.
+    /// Begins a section for the following declarations.
     void enter(const std::string &section);
 
     /// A number with its unit, or "none".
@@ -58,7 +58,7 @@ namespace Squeal
              const Range         &range        = {},
              std::size_t          most_numbers = std::numeric_limits<std::size_t>::max());
 
-    /// The names of an enumeration.
+    /// A value of an enumeration, by name.
     template <typename Enum>
     void add(const std::string &name, Enum &value, const std::string &documentation)
     {
@@ -67,14 +67,14 @@ namespace Squeal
         [&value](const std::string &text) { value = enum_value<Enum>(text); });
     }
 
-    /// One of several names; others do not reach @p parse.
+    /// One of several names; @p parse receives only these.
     void add_choice(const std::string                              &name,
                     const std::vector<std::string>                 &names,
                     const std::string                              &documentation,
                     const std::function<std::string()>             &print,
                     const std::function<void(const std::string &)> &parse);
 
-    /// A text with a format of its own.
+    /// A text with its own format.
     void add_text(const std::string                              &name,
                   const std::string                              &documentation,
                   const std::function<std::string()>             &print,
@@ -82,7 +82,7 @@ namespace Squeal
 
     const std::vector<DeclaredParameter> &parameters() const;
 
-    /// The parameter of this path; null if there is none.
+    /// Parameter with this path; null if there is none.
     const DeclaredParameter *find(const std::string &path) const;
 
   private:

@@ -9,17 +9,17 @@
 
 namespace Squeal
 {
-  /// Designs by the values of their variables.
+  /// Designs, defined by the values of their variables.
   struct DesignPlan
   {
-    std::vector<std::string>              names;   ///< of variables: "Section/Name", "Section/Name[k]", several joined by "+"
-    std::vector<std::vector<std::string>> designs; ///< a value of each variable; empty: as the scene has it
+    std::vector<std::string>              names;   ///< of the variables: "Section/Name", "Section/Name[k]", several joined by "+"
+    std::vector<std::vector<std::string>> designs; ///< a value for each variable; empty: unchanged
 
     std::string              where_names; ///< parameter, or file and line, for messages
-    std::vector<std::string> where;       ///< of each design of a file; empty: where the names are
+    std::vector<std::string> where;       ///< of each design in a file; empty: as where_names
   };
 
-  /// A parameter that varies: a list of values, or a range.
+  /// A varied parameter with a list of values or a range.
   struct DesignVariable
   {
     std::string              name;
@@ -27,48 +27,48 @@ namespace Squeal
     double                   first = 0., last = 0.; ///< of a range
     bool                     is_range = false, by_ratio = false;
 
-    /// The value at a part t in [0, 1] of the range, or of the list.
+    /// Value at the fraction t in [0, 1] of the range or list.
     std::string at(double t) const;
   };
 
-  /// The variables that the section `Designs` names. Throws ParameterError.
+  /// Variables of the section `Designs`. Throws ParameterError.
   std::vector<DesignVariable> design_variables(const DesignParameters &designs);
 
-  /// The first @p n points of Sobol's sequence in the unit cube, a row each, shifted as design_plan() says.
+  /// First @p n points of the Sobol sequence in the unit cube, one per row, shifted as in design_plan().
   std::vector<std::vector<double>> sobol_points(std::size_t n, std::size_t dimension, unsigned int seed);
 
   /**
-   * The designs that the section `Designs` asks for. The same on every process and machine for the same parameters.
+   * Designs from the section `Designs`. The same on every process and machine for the same parameters.
    *
-   * Latin hypercube (M. D. McKay, R. J. Beckman, W. J. Conover 1979): of n equal parts of every range each has one sample, at a random
-   * place. Sobol's sequence (I. M. Sobol 1967), with all samples shifted by one random vector modulo 1 (R. Cranley, T. N. L. Patterson
-   * 1976) unless the seed is 0. A list of n values is a range of n equal parts.
+   * Latin hypercube (M. D. McKay, R. J. Beckman, W. J. Conover 1979): each of n equal parts of every range contains one sample at a random
+   * position. Sobol sequence (I. M. Sobol 1967), with all samples shifted by one random vector modulo 1 (R. Cranley, T. N. L. Patterson
+   * 1976) unless the seed is 0. A list of n values is treated as a range of n equal parts.
    *
-   * Throws ParameterError where the variables or the file are not as the section says or set a number twice, FileError if the file
-   * cannot be read.
+   * Throws ParameterError if variables or file are invalid or set a number twice, FileError if the file cannot be read.
    */
   DesignPlan design_plan(const Parameters &parameters);
 
-  /// The plan as a CSV file that Designs/Plan = file reads.
+  /// The plan as a CSV file for Designs/Plan = file.
   std::string as_csv(const DesignPlan &plan);
 
-  /// The scene of a design, unchecked: @p parameters with the values of the variables. Throws ParameterError where there is no such
-  /// parameter, naming the nearest, or where it refuses a value.
+  /// @p parameters with the values of a design, unchecked. Throws ParameterError if a parameter is unknown, with the nearest known name, or
+  /// if it rejects a value.
   Parameters with_design(const Parameters &parameters, const std::vector<std::string> &names, const std::vector<std::string> &values);
 
-  /// The value that a variable has in a scene: that of the first of its parameters. Throws ParameterError as with_design() does.
+  /// Current value of a variable: that of its first parameter. Throws ParameterError as with_design() does.
   std::string current_value(const Parameters &parameters, const std::string &name);
 
-  /// The k-th number of @p text, counted from one; digits of names are no numbers. Throws ParameterError if there are fewer.
+  /// The k-th number in @p text, counted from one, without digits in names. Throws ParameterError if there are fewer.
   std::string number_of(const std::string &text, unsigned int k);
 
-  /// @p text with another k-th number, counted from one; digits of names are no numbers. Throws ParameterError if there are fewer.
+  /// @p text with its k-th number replaced, counted from one, without digits in names. Throws ParameterError if there are fewer.
   std::string with_number(const std::string &text, unsigned int k, const std::string &value);
 
-  /// Where the file of designs is: beside the parameter file, or in the current directory; empty where the designs come from none.
+  /// Path of the file of designs: in the folder of the parameter file, or in the current directory; empty if the designs do not come from a
+  /// file.
   std::string designs_file(const Parameters &parameters);
 
-  /// The designs of the CSV file that Designs/File names: names of the variables in its first line, a design in each of the others. Throws
-  /// FileError if it cannot be read, ParameterError with the line if it is no comma-separated text in UTF-8.
+  /// Designs from the CSV file Designs/File: names of the variables in the first line, then one design per line. Throws FileError if the
+  /// file cannot be read, ParameterError with the line if it is not comma-separated UTF-8 text.
   DesignPlan read_design_file(const Parameters &parameters);
 } // namespace Squeal

@@ -9,13 +9,13 @@
 
 namespace Squeal
 {
-  /// How the designs of a study are chosen.
+  /// Choice of the designs of a study.
   enum class DesignChoice
   {
-    full_grid,       ///< every level of every variable with every level of the others
-    one_at_a_time,   ///< the scene as it is, then every level of each variable with the others as they are
-    latin_hypercube, ///< as many equal parts of every range as there are designs, each met once
-    sobol,           ///< I. M. Sobol's sequence, shifted at random
+    full_grid,       ///< all combinations of all levels
+    one_at_a_time,   ///< the given model, then every level of each variable with the others unchanged
+    latin_hypercube, ///< one sample in each of n equal parts of every range
+    sobol,           ///< Sobol sequence (I. M. Sobol), randomly shifted
     file             ///< rows of a CSV file
   };
 
@@ -26,15 +26,15 @@ namespace Squeal
                                                                         {DesignChoice::sobol, "Sobol sequence"},
                                                                         {DesignChoice::file, "file"}};
 
-  /// The designs of a study (section `Designs`); design_plan() lists them.
+  /// Designs of a study (section `Designs`); listed by design_plan().
   struct DesignParameters
   {
     DesignChoice choice = DesignChoice::full_grid;
-    std::string  variables;        ///< parameters and their values, as written
+    std::string  variables;        ///< parameters and their values, as given
     std::string  file;             ///< CSV
     unsigned int n_samples   = 20; ///< of a Latin hypercube or a Sobol sequence
     unsigned int seed        = 1;
-    unsigned int n_processes = 0; ///< designs that are solved side by side; 0: one for each core
+    unsigned int n_processes = 0; ///< concurrent solutions of designs; 0: one per core
 
     bool is_sampled() const
     {
@@ -44,13 +44,13 @@ namespace Squeal
     void declare(Declarations &declarations);
   };
 
-  /// What a search for designs makes as good as it can.
+  /// Objective of a search for designs.
   enum class SearchGoal
   {
-    onset,           ///< the smallest μ at which a divergence rate exceeds weak_divergence: as large as possible
-    divergence_rate, ///< the largest divergence rate of the sweep: as small as possible
-    probability,     ///< of squeal with uncertain parameters: as small as possible
-    quantile         ///< of the largest divergence rate with uncertain parameters: as small as possible
+    onset,           ///< maximise the smallest μ at which a divergence rate exceeds weak_divergence
+    divergence_rate, ///< minimise the largest divergence rate of the sweep
+    probability,     ///< minimise the probability of squeal with uncertain parameters
+    quantile         ///< minimise a quantile of the largest divergence rate with uncertain parameters
   };
 
   template <>
@@ -59,10 +59,10 @@ namespace Squeal
                                                                     {SearchGoal::probability, "probability"},
                                                                     {SearchGoal::quantile, "quantile"}};
 
-  /// Methods of NLopt that need no derivatives and keep within a box.
+  /// Derivative-free methods of NLopt with bounds.
   enum class SearchMethod
   {
-    subplex, ///< T. H. Rowan 1990: simplices in subspaces; takes kinks well
+    subplex, ///< T. H. Rowan 1990: simplices in subspaces; robust for nonsmooth objectives
     cobyla,  ///< M. J. D. Powell 1994: linear models
     bobyqa   ///< M. J. D. Powell 2009: quadratic models
   };
@@ -77,11 +77,11 @@ namespace Squeal
   {
     SearchGoal   goal          = SearchGoal::divergence_rate;
     SearchMethod method        = SearchMethod::subplex;
-    unsigned int n_samples     = 10;    ///< of Sobol's sequence, before the methods start from the best of them
-    unsigned int n_evaluations = 40;    ///< at most, with those samples
-    double       quantile      = 0.95;  ///< of the goal of that name [-]
-    double       first_step    = 0.15;  ///< of the methods, part of each range [-]
-    double       smallest_step = 0.002; ///< at which they end, part of each range [-]
+    unsigned int n_samples     = 10;    ///< of the Sobol sequence; the methods start from the best one
+    unsigned int n_evaluations = 40;    ///< maximum number, including those samples
+    double       quantile      = 0.95;  ///< for the goal quantile [-]
+    double       first_step    = 0.15;  ///< of the methods, fraction of each range [-]
+    double       smallest_step = 0.002; ///< termination of the methods, fraction of each range [-]
 
     void declare(Declarations &declarations);
 

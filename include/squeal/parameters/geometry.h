@@ -15,21 +15,21 @@
 
 namespace Squeal
 {
-  /// Polygons of straight edges that stand for circles.
+  /// Approximation of circles by polygons of straight edges.
   enum class Outlines
   {
     inscribed, ///< nodes on the circle
-    true_area  ///< nodes moved outwards until area and moments of area are the circle's
+    true_area  ///< nodes moved outwards so that area and moments of area are those of the circle
   };
 
   template <>
   inline constexpr EnumName<Outlines> enum_table<Outlines>[] = {{Outlines::inscribed, "inscribed"}, {Outlines::true_area, "true area"}};
 
-  /// Where the pins of one side of the disc are.
+  /// Positions of the pins on one side of the disc.
   struct PinLayout
   {
-    std::vector<double> radii;  ///< distance of each pin's axis from the disc's [m]
-    std::vector<double> angles; ///< angle of each pin's axis [degree]
+    std::vector<double> radii;  ///< distance of each pin axis from the disc axis [m]
+    std::vector<double> angles; ///< angle of each pin axis [degree]
   };
 
   /// Shape and mesh of disc and pins (section `Geometry`).
@@ -48,65 +48,66 @@ namespace Squeal
     unsigned int disc_layers          = 3;
     double       element_size         = 0.0115; ///< in the plane of the disc [m]
     Outlines     outlines             = Outlines::inscribed;
-    unsigned int pin_rings            = 0;     ///< of elements along the outline of every pin
-    double       pin_grading          = 1.;    ///< sizes of neighbouring layers and rings, towards the edge of the held end [-]
-    double       pairing_tolerance    = 1e-6;  ///< distance of the two nodes of a contact pair [m]
-    bool         allow_shell_commands = false; ///< whether a geometry may run programs and write files
+    unsigned int pin_rings            = 0;  ///< rings of elements along the outline of each pin
+    double       pin_grading          = 1.; ///< size ratio of neighbouring layers and rings, finer towards the edge of the clamped end [-]
+    double       pairing_tolerance    = 1e-6;  ///< largest distance between the two nodes of a contact pair [m]
+    bool         allow_shell_commands = false; ///< a geometry may run programs and write files
     double       meshing_time_limit   = 600.;  ///< [s]
     double       meshing_memory_limit = 8.;    ///< [GB]
 
-    /// A number of the user's own script, and the value it is given, if any.
+    /// A number in the user's script, and its given value, if any.
     struct Variable
     {
       GeometryVariable      declaration;
       std::optional<double> value;
     };
 
-    std::string           directory; ///< where the parameter file is; a relative file is looked for there first
-    std::vector<Variable> variables; ///< of the script, those that parameters above set left out
+    std::string           directory; ///< folder of the parameter file, where a relative file name is looked for first
+    std::vector<Variable> variables; ///< variables of the script, except those set by the parameters above
 
-    /// Takes over file and directory, and the variables of the file where it is a script that exists.
+    /// Sets file and directory, and the variables of the file if it is an existing script.
     void set_file(const std::string &name, const std::string &parameter_directory);
 
-    /// Variables by which a script takes over these parameters, with their values as a script writes them.
+    /// Script variables for these parameters, with values in the units of a script.
     std::map<std::string, std::string> script_variables() const;
 
-    /// Which of script_variables() matter to the geometry: a script of Gmsh names those that it uses, a plan is extruded by those of
-    /// thickness, height and layers, and contact nodes are paired in every mesh. Reads the file, without running it. Throws MeshError if
-    /// there is none.
+    /// Those of script_variables() that affect the geometry: a Gmsh script contains the names of those that it uses, a plan is extruded
+    /// with thickness, height and layers, and contact nodes are paired in every mesh. Reads the file without running it. Throws MeshError
+    /// if it does not exist.
     std::set<std::string> used_variables() const;
 
-    /// Whether the file is a plan that is extruded, not a solid. Reads the file. Throws MeshError if there is none.
+    /// True if the file is a plan to be extruded, not a solid. Reads the file. Throws MeshError if it does not exist.
     bool is_plan() const;
 
-    /// Path of the file. Throws MeshError if there is none.
+    /// Path of the file. Throws MeshError if it does not exist.
     std::string path() const;
 
     void declare(Declarations &declarations);
 
-    /// Throws ParameterError where values or their combination make no sense.
+    /// Throws ParameterError for invalid values or combinations.
     void check() const;
   };
 
-  /// Nodes of the face of a pin that is filled by three blocks of k × k elements: 3 k (k + 1) + 1.
+  /// Nodes of a pin face filled with three blocks of k × k elements: 3 k (k + 1) + 1.
   inline unsigned int nodes_of_pin_face(const unsigned int k)
   {
     return 3 * k * (k + 1) + 1;
   }
 
-  /// The number k of elements on the edge of a block of a pin face with that many nodes, not rounded.
+  /// Number k of elements along a block edge of a pin face with this number of nodes, not rounded.
   inline double blocks_of_pin_face(const double nodes)
   {
     return (std::sqrt(12. * nodes - 3.) - 3.) / 6.;
   }
 
-  /// Throws ParameterError for a geometry whose mesh does not follow the element size and the numbers of layers, and MeshError if there is no such file.
+  /// Throws ParameterError for a geometry whose mesh does not depend on the element size and the numbers of layers, and MeshError if the
+  /// file does not exist.
   void check_follows(const GeometryParameters &geometry);
 
   /**
-   * The geometry with a mesh @p factor times as fine in every direction: elements of the size divided by it, layers times
-   * it, and pin faces of as many blocks, k × k elements each with 3 k (k + 1) + 1 nodes, and of as many rings; numbers are rounded, and one at
-   * least. Neighbouring graded layers and rings become as much more alike. A factor of 1 changes nothing.
+   * Geometry with a mesh refined by @p factor in every direction: the element size is divided by it, and the numbers of layers, rings and
+   * elements k of the pin-face blocks (3 k (k + 1) + 1 nodes) are multiplied by it, rounded, and at least one. Grading ratios of layers and
+   * rings are reduced accordingly. Unchanged for a factor of 1.
    *
    * Throws as check_follows().
    */

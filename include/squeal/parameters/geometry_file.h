@@ -9,43 +9,41 @@
 namespace Squeal
 {
   /**
-   * Where a geometry is. A relative name is looked for beside the parameter file,
-   * then in the current directory; one without a directory also among the
-   * geometries that come with the program.
+   * Path of a geometry. A relative name is looked for in the folder of the parameter file, then in the current directory; a name without a
+   * directory also among the supplied geometries.
    *
-   * Throws MeshError saying where it was looked for.
+   * Throws MeshError with the searched folders.
    */
   std::string find_geometry(const std::string &name, const std::string &parameter_directory);
 
-  /// Whether a geometry comes with the program.
+  /// True if the geometry is supplied with the program.
   bool is_supplied(const std::string &geometry);
 
-  /// Whether a file name is that of a Gmsh script rather than a mesh.
+  /// True if the file name is that of a Gmsh script, not of a mesh.
   bool is_script(const std::string &geometry);
 
-  /// A number that a Gmsh script lets others set.
+  /// A variable that a Gmsh script exports.
   struct GeometryVariable
   {
-    std::string name;        ///< in the script
-    std::string value;       ///< as the script writes it
-    std::string onelab_name; ///< of DefineNumber[..., Name "..."]; empty if another value is set by its name
+    std::string name;        ///< name in the script
+    std::string value;       ///< value as written in the script
+    std::string onelab_name; ///< of DefineNumber[..., Name "..."]; empty if the script uses the name for another value
   };
 
-  /// What a Gmsh script says, without running it: the text of the script and of the scripts that it includes by literal names, comments
-  /// left out.
+  /// Text of a Gmsh script, without running it, and of the scripts that it includes by literal names; comments are removed.
   class GeometryScript
   {
   public:
-    /// Reads a script; one that cannot be read is empty.
+    /// Reads a script; an unreadable one is empty.
     explicit GeometryScript(const std::string &file);
 
-    /// Variables of DefineConstant[...] and DefineNumber[...], lists and texts left out.
+    /// Variables of DefineConstant[...] and DefineNumber[...], without lists and texts.
     std::vector<GeometryVariable> variables() const;
 
-    /// The script itself, then the files that it names in Include and Merge and that exist.
+    /// The script itself, then existing files in its Include and Merge commands.
     std::vector<std::string> files() const;
 
-    /// File, line and text of the first line with one of the words, or several words one blank apart.
+    /// File, line and text of the first line that contains one of the words, or several words separated by single blanks.
     std::optional<std::string> find(const std::vector<std::string> &words) const;
 
   private:
@@ -60,19 +58,19 @@ namespace Squeal
     std::vector<std::string> merged; ///< files other than scripts
   };
 
-  /// A geometry with all that it includes, to be kept beside results.
+  /// A geometry and all included files, to be stored with results.
   struct GeometryCopy
   {
     struct File
     {
-      std::string from, to; ///< path now; name in the copy's folder
+      std::string from, to; ///< current path; name in the folder of the copy
     };
 
-    std::vector<File> files; ///< none of a geometry that comes with the program
-    std::string       name;  ///< with which the copy, or where there is none the geometry itself, is found again
+    std::vector<File> files; ///< empty for a supplied geometry
+    std::string       name;  ///< name of the copy or, if there is none, of the geometry itself
   };
 
-  /// What to copy of a geometry, and where to. A file that is included from outside the geometry's own folder would not be found from the
-  /// copy; then @p name is the geometry itself.
+  /// Files to copy for a geometry, and their names. A file included from outside the folder of the geometry would not be found from the
+  /// copy; @p name is then the geometry itself.
   GeometryCopy copy_of(const std::string &geometry);
 } // namespace Squeal

@@ -10,11 +10,11 @@
 
 namespace Squeal
 {
-  /// A system of matrices in the place of a mesh (parameters `System` and `System values`).
+  /// A system of matrices instead of a mesh (parameters `System` and `System values`).
   struct GivenSystemParameters
   {
     std::string                   file;      ///< folder with a system.json, or that file; empty: the system comes from a mesh
-    std::map<std::string, double> values;    ///< of its parameters, where they differ from those of the file
+    std::map<std::string, double> values;    ///< of its parameters, if different from those in the file
     std::string                   directory; ///< of the parameter file
 
     explicit operator bool() const

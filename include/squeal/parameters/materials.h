@@ -11,14 +11,14 @@
 
 namespace Squeal
 {
-  /// Engineering constants besides E_1 and ν_12, where ν_ij = −ε_j/ε_i under stress along axis i and ν_ij/E_i = ν_ji/E_j.
+  /// Engineering constants in addition to E_1 and ν_12, where ν_ij = −ε_j/ε_i under stress along axis i and ν_ij/E_i = ν_ji/E_j.
   struct Orthotropy
   {
     double E2 = 0., E3 = 0.;             ///< [Pa]
     double nu13 = 0., nu23 = 0.;         ///< [-]
     double G12 = 0., G13 = 0., G23 = 0.; ///< [Pa]
 
-    /// A vector along axis 1 and another one in the plane of axes 1 and 2; none: 1 radial, 2 tangential, 3 axial about the z axis.
+    /// A vector along axis 1 and a second one in the plane of axes 1 and 2; none: 1 radial, 2 tangential, 3 axial about the z axis.
     std::optional<std::array<double, 6>> axes = {};
   };
 
@@ -37,21 +37,21 @@ namespace Squeal
 
     bool has_fixed_axes() const;
 
-    /// The least of the shear moduli and of Young's moduli if orthotropic, else G: ρ c² of the slowest wave along an axis, or less [Pa].
+    /// Lower bound of ρ c² of the slowest wave along an axis [Pa]: G, or the smallest of the shear and Young's moduli if orthotropic.
     double least_wave_modulus() const;
 
-    /// Mean of Poisson's ratios, weighted so that it is 1/2 where the material is incompressible; ν if isotropic.
+    /// Mean Poisson's ratio, weighted so that it is 1/2 for an incompressible material; ν if isotropic.
     double mean_poisson_ratio() const;
   };
 
-  /// Springs or dashpots between a named surface and the ground, per area [N/m³] or [N s/m³]. Their directions are those of the disc's axis
-  /// (z): radial, tangential (circumferential) and axial.
+  /// Springs or dashpots between a named surface and the ground, per area [N/m³] or [N s/m³], in the radial, tangential (circumferential)
+  /// and axial directions of the disc axis (z).
   struct Mount
   {
     std::string surface;
     double      radial, tangential, axial;
 
-    /// The number of direction 0, 1 or 2.
+    /// Coefficient in direction 0, 1 or 2.
     double along(const int direction) const
     {
       return direction == 0 ? radial : direction == 1 ? tangential : axial;
@@ -64,17 +64,17 @@ namespace Squeal
     std::string volume;
   };
 
-  /// Directions of an orthotropic material, as in Orthotropy::axes.
+  /// Material axes of an orthotropic volume, as in Orthotropy::axes.
   struct MaterialAxes
   {
     std::string           volume;
     std::array<double, 6> vectors = {};
   };
 
-  /// Whether a volume of this name is one of the disc: `disc`, or `disc_` with more.
+  /// True for the names of volumes of the disc: `disc`, or names that begin with `disc_`.
   bool is_of_disc(const std::string &volume);
 
-  /// Mass on a named surface that moves with it, per area.
+  /// Mass per area that moves with a named surface.
   struct SurfaceMass
   {
     std::string surface;
@@ -86,9 +86,9 @@ namespace Squeal
   {
     Material                    disc = {210e9, 0.3, 7850.};
     Material                    pin  = {1.90e9, 0.25, 3070.};
-    std::vector<VolumeMaterial> volumes;                                        ///< of those that differ
-    std::vector<VolumeMaterial> orthotropic;                                    ///< their axes are in the list below
-    std::vector<MaterialAxes>   axes;                                           ///< of those that are not cylindrical
+    std::vector<VolumeMaterial> volumes;                                        ///< volumes with their own material
+    std::vector<VolumeMaterial> orthotropic;                                    ///< orthotropic volumes; their axes are in the list below
+    std::vector<MaterialAxes>   axes;                                           ///< of orthotropic volumes whose axes are not cylindrical
     std::vector<Mount>          mounts = {{"disc_bore", 0., 7.80e10, 1.88e10}}; ///< springs
     std::vector<Mount>          dashpots;
     std::vector<SurfaceMass>    masses;
@@ -98,37 +98,37 @@ namespace Squeal
     /// Throws ParameterError.
     void check() const;
 
-    /// That of a volume of its own, else that of the disc or of the pins.
+    /// Material of a volume: its own, or else that of the disc or of the pins.
     Material of(const std::string &volume) const;
 
     bool has_own(const std::string &volume) const;
 
-    /// The parameter that sets the material of a volume: "Materials/Orthotropic", "Pin material", ...
+    /// Parameter that sets the material of a volume: "Materials/Orthotropic", "Pin material", ...
     std::string section_of(const std::string &volume) const;
 
     bool is_damped() const;
 
-    /// All of them, to be changed: those of the disc and of the pins, of volumes, orthotropic ones.
+    /// Mutable pointers to all materials: disc, pins, volumes, orthotropic volumes.
     std::vector<Material *> each();
 
-    /// All materials, each with the section and the volume that set it.
+    /// All materials, each with its section and volume.
     std::vector<std::pair<std::string, Material>> all() const;
 
-    /// The numbers of all springs, dashpots and masses.
+    /// Mutable pointers to the values of all springs, dashpots and masses.
     std::vector<double *> mount_values();
 
-    /// Names of the surfaces that carry springs, dashpots or masses.
+    /// Names of the surfaces with springs, dashpots or masses.
     std::vector<std::string> mounted_surfaces() const;
   };
 
-  /// Damping ratio of modes of one frequency.
+  /// Damping ratio of modes at a frequency.
   struct ModalDampingRatio
   {
     double frequency; ///< [Hz]
     double ratio;     ///< ζ [-]
   };
 
-  /// Damping given mode by mode (section `Damping`). That of the materials is with the materials, that of the contact with the operation.
+  /// Modal damping (section `Damping`). Material damping is in the materials, contact damping in the operation.
   struct DampingParameters
   {
     std::vector<ModalDampingRatio> modal_ratios; ///< ascending frequencies; empty: none

@@ -15,46 +15,45 @@
 namespace Squeal
 {
   /**
-   * Numbers of a list that are separated by commas, as texts. Throws ParameterError where some commas look like decimal ones, as in
-   * "0,3, 0,4", "0,4, 1" and "0,05"; uniform lists such as "0,30" and "1,2,3" are what they are.
+   * Splits a list at commas, as texts. Throws ParameterError if some commas look like decimal commas, as in "0,3, 0,4", "0,4, 1" and
+   * "0,05"; uniform lists such as "0,30" and "1,2,3" are accepted.
    *
-   * @param what  the list, for a message: "Sweep/Count modes at"
+   * @param what  name of the list, for messages: "Sweep/Count modes at"
    * @param where parameter or line
    */
   std::vector<std::string> split_numbers(const std::string &list, const std::string &what, const std::string &where);
 
-  /// For the remedy of a refused text: "; write a decimal point: 0.4" where a number in it seems to have a decimal comma, else nothing.
+  /// Hint for an error message: "; write a decimal point: 0.4" if a number seems to have a decimal comma, else nothing.
   std::string decimal_point_hint(const std::string &text);
 
-  /// Throws ParameterError where a number is given twice to a @p parameter, "Section/Name", that needs each once.
+  /// Throws ParameterError if @p parameter, "Section/Name", contains a number twice.
   void check_distinct(const std::vector<double> &numbers, const char *parameter);
 
-  /// How a list of entries such as "disc_bore: 0, 7.8e10, 1.88e10; disc_rim: ..." is written.
+  /// Format of a list of entries such as "disc_bore: 0, 7.8e10, 1.88e10; disc_rim: ...".
   struct ListFormat
   {
     const char           *parameter; ///< "Section/Name"
-    const char           *refusal;   ///< what a wrong entry is: "not an elastic mount"
+    const char           *refusal;   ///< description of an invalid entry: "not an elastic mount"
     const char           *text;      ///< "surface: radial, tangential, axial; surface: ... [N/m^3]"
-    const char           *key;       ///< what the name before the colon is: "surface"; empty where there is none
-    std::set<std::size_t> n_numbers; ///< how many an entry may have
+    const char           *key;       ///< meaning of the name before the colon: "surface"; empty if there is none
+    std::set<std::size_t> n_numbers; ///< permitted numbers of values in an entry
     char                  separator = ';', between_numbers = ',';
 
-    /// Throws ParameterError with this format as the remedy; @p list: as written, where a decimal comma may be the reason.
+    /// Throws ParameterError that quotes this format; @p list: text as given, to detect a decimal comma.
     [[noreturn]] void refuse(const std::string &what, const std::string &list = "") const;
   };
 
   struct ListEntry
   {
-    std::string         text; ///< as written
+    std::string         text; ///< as given
     std::string         key;
     std::vector<double> numbers;
   };
 
-  /// The entries of a list, empty ones left out. Throws ParameterError, also where a name is given twice.
+  /// Entries of a list, without empty ones. Throws ParameterError, also for duplicate names.
   std::vector<ListEntry> parse_list(const std::string &text, const ListFormat &format);
 
-  /// Declares a list of values, whose @p numbers (members, or functions that return them) and @p key stand in an entry; numbers left out
-  /// are zero.
+  /// Declares a list of values; an entry has a @p key and @p numbers (members, or functions that return them). Omitted numbers are zero.
   template <typename Value>
   void declare_list(Declarations                                        &declarations,
                     const std::string                                   &name,

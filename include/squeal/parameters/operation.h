@@ -9,7 +9,7 @@
 
 namespace Squeal
 {
-  /// Sign of the sliding velocity: the sense in which the disc turns about e_z.
+  /// Sense of rotation of the disc about e_z, which determines the sign of the sliding velocity.
   enum class Rotation
   {
     positive,
@@ -19,8 +19,8 @@ namespace Squeal
   template <>
   inline constexpr EnumName<Rotation> enum_table<Rotation>[] = {{Rotation::positive, "positive"}, {Rotation::negative, "negative"}};
 
-  /// Viscous contact damping along b, c_b [N s/m] per node: from the linearisation of R_t = μ R_n w/|w| it is μ |R_n0| / w_0 (consistent);
-  /// the paper prints R_n0 / w_0 below its eq. (3) (published).
+  /// Viscous contact damping along b, c_b [N s/m] per node: μ |R_n0| / w_0 from the linearisation of R_t = μ R_n w/|w| (consistent), or
+  /// R_n0 / w_0 as printed below eq. (3) of the paper (published).
   enum class RadialDissipation
   {
     none,
@@ -43,14 +43,14 @@ namespace Squeal
     double            load_per_side        = 1000.;      ///< [N]
     RadialDissipation radial_dissipation   = RadialDissipation::none;
     double            friction_slope       = 0.;    ///< dμ/dw at w_0 [s/m]
-    bool              rotating_disc        = false; ///< whether the equations of motion contain the rotation
+    bool              rotating_disc        = false; ///< include rotation terms in the equations of motion
 
     void declare(Declarations &declarations);
 
-    /// Throws ParameterError if the sliding direction cannot be understood or does not go with gyroscopic forces.
+    /// Throws ParameterError if the sliding direction is invalid or incompatible with gyroscopic forces.
     void check() const;
 
-    /// Whether the contact damps or excites by the speed of sliding.
+    /// True with radial dissipation or a friction slope.
     bool has_contact_damping() const;
 
     /// ±Ω, positive about e_z [rad/s].

@@ -25,13 +25,13 @@
 
 namespace Squeal
 {
-  /// Everything a run depends on; a plain value once read.
+  /// All input of a run; constant once read.
   struct Parameters
   {
-    const Study             *study = studies().front(); ///< the question
+    const Study             *study = studies().front(); ///< study to run
     AccuracyGoal             goal  = AccuracyGoal::as_given;
-    std::vector<std::string> replaced; ///< parameters that were given other values than those that the goal asks for
-    GivenSystemParameters    system;   ///< in the place of geometry, materials and contact
+    std::vector<std::string> replaced; ///< parameters whose given values the accuracy goal replaced
+    GivenSystemParameters    system;   ///< replaces geometry, materials and contact
     GeometryParameters       geometry;
     MaterialParameters       materials;
     DiscretizationParameters discretization;
@@ -51,40 +51,39 @@ namespace Squeal
     SolverParameters         solvers;
     OutputParameters         output;
 
-    /// Declares every parameter and binds it to its member.
+    /// Declares all parameters and binds them to the members.
     void declare(Declarations &declarations);
 
     /**
-     * Reads a parameter file, then applies overrides of the form
-     * "Section/Name=value", then what Accuracy asks for, then checks every value and combination.
-     * Throws FileError, or ParameterError; an unknown name is answered with the
-     * nearest known one, a refused value with what the parameter accepts.
+     * Reads a parameter file, then applies overrides "Section/Name=value" and the settings of Accuracy, then checks all values and
+     * combinations. Throws FileError, or ParameterError, with the nearest known name for an unknown name and the accepted values for a
+     * rejected one.
      */
     static Parameters read(const std::string &file, const std::vector<std::string> &overrides);
 
-    /// Gives the parameter of a path another value, from the one that it has, without checking how it goes with others. Throws
-    /// ParameterError, naming @p where, if there is no such parameter or if it refuses the value.
+    /// Changes the value of a parameter as a function of its current value, without checking combinations. Throws ParameterError, naming @p
+    /// where, if the parameter does not exist or rejects the value.
     void set(const std::string &path, const std::string &where, const std::function<std::string(const std::string &)> &new_value);
 
-    /// Every parameter with its value, and with its documentation and what it accepts, as a parameter file.
+    /// Writes a parameter file with all values, optionally with documentation and accepted values.
     void print(std::ostream &stream, bool with_documentation) const;
 
-    /// Whether the study solves for the steady sliding state.
+    /// True if the study solves for the steady sliding state.
     bool needs_steady_sliding() const;
 
-    /// Whether the contact damps the modes of some run of the study: radial dissipation, or friction that depends on the speed.
+    /// True if contact damps the modes in some run of the study: radial dissipation, or friction that depends on speed.
     bool has_contact_damping() const;
 
-    /// Whether the study solves for modes with friction; else the friction coefficient only acts on the steady sliding state.
+    /// True if the study computes modes with friction; otherwise the friction coefficient affects only the steady sliding state.
     bool has_friction() const;
 
-    /// Whether complex modes at Operation/Friction coefficient are those of this solver.
+    /// True if complex modes at Operation/Friction coefficient are computed by this solver.
     bool solves_by(ComplexSolver solver) const;
 
-    /// Whether Operation/Load per side presses on anything.
+    /// True if Operation/Load per side acts on any body.
     bool uses_load_per_side() const;
 
-    /// Throws ParameterError where values or their combination make no sense.
+    /// Throws ParameterError for invalid values or combinations.
     void check() const;
 
   private:

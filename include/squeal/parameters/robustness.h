@@ -13,10 +13,10 @@ namespace Squeal
   /// Distribution of an uncertain number.
   enum class DistributionKind
   {
-    uniform,   ///< between two ends
-    normal,    ///< of a mean and a standard deviation, cut off at two ends
-    lognormal, ///< of a mean and a standard deviation
-    table      ///< values of equal probability
+    uniform,   ///< two limits
+    normal,    ///< mean, standard deviation, truncated at two limits
+    lognormal, ///< mean and standard deviation
+    table      ///< equally probable values
   };
 
   template <>
@@ -28,42 +28,42 @@ namespace Squeal
   struct Distribution
   {
     DistributionKind    kind;
-    std::vector<double> numbers; ///< two ends; mean and deviation; these and two ends; values
+    std::vector<double> numbers; ///< two limits; mean and deviation; mean, deviation and two limits; values
 
-    /// Where a normal distribution ends unless its numbers say so, in standard deviations from the mean.
+    /// Default truncation of a normal distribution, in standard deviations from the mean.
     static constexpr double normal_end = 3.;
   };
 
-  /// A parameter that is uncertain.
+  /// An uncertain parameter.
   struct UncertainParameter
   {
-    std::string  name; ///< of the parameter file, as in Designs/Variables, or of the system file
+    std::string  name; ///< in the parameter file, as in Designs/Variables, or in the system file
     Distribution distribution;
-    bool         is_relative  = false; ///< numbers are percent of the value that the parameter file gives
-    bool         for_each_pin = false; ///< a value of its own for each pin, independent of the others
+    bool         is_relative  = false; ///< numbers are per cent of the given value
+    bool         for_each_pin = false; ///< independent values for each pin
   };
 
   struct Correlation
   {
     std::string first, second; ///< names of uncertain parameters
-    double      value;         ///< of the normal copula
+    double      value;         ///< of the normal copula [-]
   };
 
-  /// How modes scatter with uncertain parameters (section `Robustness`).
+  /// Scatter of modes with uncertain parameters (section `Robustness`).
   struct RobustnessParameters
   {
-    std::string         distributions, correlations; ///< as written
-    unsigned int        n_samples   = 2000;          ///< independent ones
+    std::string         distributions, correlations; ///< as given
+    unsigned int        n_samples   = 2000;          ///< independent samples
     unsigned int        seed        = 1;
-    double              tolerance   = 1e-4; ///< on the estimated |δλ| / |λ| at every sample [-]
-    bool                has_indices = true; ///< Sobol' indices, for which there are more samples
-    std::vector<double> frequency_bands;    ///< ends of bands with probabilities of their own [Hz]
-    unsigned int        n_worst  = 5;       ///< samples written as parameter files
-    unsigned int        n_onsets = 0;       ///< samples whose modes are followed over the friction coefficient
+    double              tolerance   = 1e-4; ///< for the estimated |δλ| / |λ| at every sample [-]
+    bool                has_indices = true; ///< compute Sobol' indices, which need additional samples
+    std::vector<double> frequency_bands;    ///< limits of bands with separate probabilities [Hz]
+    unsigned int        n_worst  = 5;       ///< worst samples, written as parameter files
+    unsigned int        n_onsets = 0;       ///< samples with modes followed over the friction coefficient
 
     void declare(Declarations &declarations);
 
-    /// What Robustness/Distributions and Correlations say. Throw ParameterError.
+    /// Parsed Robustness/Distributions and Correlations. Throw ParameterError.
     std::vector<UncertainParameter> uncertain_parameters() const;
     std::vector<Correlation>        parsed_correlations() const;
   };

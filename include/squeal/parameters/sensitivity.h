@@ -7,12 +7,12 @@
 
 namespace Squeal
 {
-  /// With respect to what of the built-in geometry derivatives are found.
+  /// Geometry parameters of the built-in model with derivatives.
   enum class GeometrySensitivities
   {
     none,
     sizes,           ///< lengths of the disc and of all pins
-    sizes_and_places ///< and where each pin is
+    sizes_and_places ///< also the position of each pin
   };
 
   template <>
@@ -21,24 +21,24 @@ namespace Squeal
     {GeometrySensitivities::sizes, "sizes"},
     {GeometrySensitivities::sizes_and_places, "sizes and places"}};
 
-  /// Of what `Study = sensitivity` gives derivatives, and how accurately (section `Sensitivity`).
+  /// Quantities with derivatives in `Study = sensitivity`, and their accuracy (section `Sensitivity`).
   struct SensitivityParameters
   {
-    unsigned int          modes      = 10;   ///< most modes with derivatives
-    bool                  thresholds = true; ///< whether thresholds have derivatives, too
+    unsigned int          modes      = 10;   ///< largest number of modes with derivatives
+    bool                  thresholds = true; ///< also compute derivatives of thresholds
     GeometrySensitivities geometry   = GeometrySensitivities::sizes;
-    double tolerance = 1e-4; ///< change of a derivative by the last growth of the basis, over the largest one of the mode [-]
+    double                tolerance  = 1e-4; ///< relative change of derivatives by the last extension of the basis [-]
 
     void declare(Declarations &declarations);
   };
 
-  /// The accuracy that a model has to keep, and what is tried where a scene has no value of its own (section `Ingredients`).
+  /// Required accuracy of a model, and trial values of missing features (section `Ingredients`).
   struct IngredientsParameters
   {
     double frequency_tolerance  = 1.;   ///< largest change of a frequency [%]
     double divergence_tolerance = 0.05; ///< largest change of a divergence rate [percentage points]
-    double trial_slope          = 0.;   ///< of a scene without friction slope [s/m]; 0: none is tried
-    double trial_damping_ratio  = 0.;   ///< ζ of all modes of a scene without modal damping [-]; 0: none is tried
+    double trial_slope          = 0.;   ///< friction slope if the model has none [s/m]; 0: not tried
+    double trial_damping_ratio  = 0.;   ///< ζ of all modes if the model has no modal damping [-]; 0: not tried
 
     void declare(Declarations &declarations);
 

@@ -10,10 +10,10 @@
 
 namespace Squeal
 {
-  /// The state about which the system is linearised.
+  /// Contact state for the linearisation.
   enum class ContactState
   {
-    equal_load,    ///< every node of a side carries the same share of the load, all are closed
+    equal_load,    ///< all nodes of a side are closed and carry equal shares of the load
     steady_sliding ///< quasi-static solution with unilateral contact and friction
   };
 
@@ -21,13 +21,13 @@ namespace Squeal
   inline constexpr EnumName<ContactState> enum_table<ContactState>[] = {{ContactState::equal_load, "equal load"},
                                                                         {ContactState::steady_sliding, "steady sliding"}};
 
-  /// What is prescribed: at rigid backplates, which move along their travel (contact/travel.h), or a pressure on faces of the bodies.
+  /// Prescribed quantity: at rigid backplates, which move along their travel (contact/travel.h), or a pressure on faces of the bodies.
   enum class BackplateControl
   {
-    load_per_side, ///< one backplate for each side, pressed with a given force
-    displacement,  ///< one backplate for each side, at a given displacement
-    load_per_pin,  ///< every pin has an actuator of its own
-    pressure       ///< no rigid backplate: a pressure on faces, which may tilt and bend
+    load_per_side, ///< one backplate for each side, with a given force
+    displacement,  ///< one backplate for each side, with a given displacement
+    load_per_pin,  ///< an individual actuator for every pin
+    pressure       ///< no rigid backplate: pressure on faces of bodies that may tilt and bend
   };
 
   template <>
@@ -37,13 +37,12 @@ namespace Squeal
                                                                                 {BackplateControl::pressure, "pressure"}};
 
   /**
-   * Gap between the face of an unloaded pin and the disc, measured along the
-   * travel of its backplate before it moves:
+   * Gap between the face of an unloaded pin and the disc, measured along the travel of its backplate in the initial position:
    *
    *   gap + sliding taper · s_t + radial taper · s_r
    *
-   * with the distances s_t along t and s_r outwards from the centre of the face;
-   * s_r is along the axis where the travel is not, along b where the disc does not turn about z.
+   * with the distances s_t along t and s_r outwards from the centre of the face; s_r is along the axis if the travel is not, and along b if
+   * the disc does not turn about z.
    */
   struct PinGap
   {
@@ -53,7 +52,7 @@ namespace Squeal
     double      radial_taper  = 0.; ///< [-]
   };
 
-  /// Force with which the actuator of a pin presses.
+  /// Force of the actuator of a pin.
   struct PinLoad
   {
     std::string pin;
@@ -66,14 +65,14 @@ namespace Squeal
     ContactState         state        = ContactState::equal_load;
     BackplateControl     control      = BackplateControl::load_per_side;
     double               displacement = 0.; ///< of each backplate towards the disc [m]
-    std::vector<PinLoad> pin_loads;         ///< of pins that do not carry an equal share of the load of their side
-    std::vector<PinGap>  gaps;              ///< of pins that do not touch the disc at first
+    std::vector<PinLoad> pin_loads;         ///< pins with a load other than an equal share of their side
+    std::vector<PinGap>  gaps;              ///< pins with an initial gap
 
-    std::vector<std::string> pressed_faces; ///< each with the load per side, where the control is pressure
+    std::vector<std::string> pressed_faces; ///< faces with the load per side, for pressure control
 
     void declare(Declarations &declarations);
 
-    /// Refuses values that leave no steady sliding state; throws ParameterError.
+    /// Throws ParameterError for values without a steady sliding state.
     void check_steady() const;
   };
 } // namespace Squeal

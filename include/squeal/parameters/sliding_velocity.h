@@ -14,7 +14,7 @@
 
 namespace Squeal
 {
-  /// Velocity of the disc relative to the other bodies per rotation speed, v(x) [m]: ±e_z × x, or as Operation/Sliding direction says.
+  /// Velocity of the disc relative to the other bodies per unit of rotation speed, v(x) [m]: ±e_z × x, or from Operation/Sliding direction.
   class SlidingVelocity
   {
   public:
@@ -22,16 +22,16 @@ namespace Squeal
     SlidingVelocity(Rotation rotation = Rotation::positive, const std::string &expressions = OperationParameters().sliding_direction);
     SlidingVelocity(const OperationParameters &operation);
 
-    /// v at a point [m]; components that are not defined there are no finite numbers.
+    /// v at a point [m]; components that are undefined there are not finite.
     Eigen::Vector3d operator()(const Eigen::Vector3d &position) const;
 
     /// |v| = w_0 / Ω at a point [m].
     double lever(const Eigen::Vector3d &position) const;
 
-    /// v as a rigid-body motion: displacement along and rotation about x, y, z; nothing if v is none.
+    /// v as a rigid-body motion: displacement along and rotation about x, y, z; nothing if it is not one.
     std::optional<Eigen::Matrix<double, 6, 1>> rigid_motion() const;
 
-    /// Whether v = ±e_z × x.
+    /// True if v = ±e_z × x.
     bool turns_about_z() const;
 
   private:

@@ -12,10 +12,10 @@ namespace Squeal
   class Run;
   struct Scene;
 
-  /// Why a run does not use something, for a message; null if it does.
+  /// Reason why a run does not use a parameter, for messages; null if it does.
   using Reason = const char *;
 
-  /// Of a study that leaves it to the general rules whether it uses something.
+  /// The general rules decide whether a study uses a parameter.
   inline constexpr Reason as_in_general = "";
 
   inline Reason unless(const bool is_used, const Reason reason)
@@ -23,36 +23,36 @@ namespace Squeal
     return is_used ? nullptr : reason;
   }
 
-  /// Whether @p path, "Section/Name" or "Section/", is that of a parameter or of its section.
+  /// True if @p path, "Section/Name" or "Section/", is that of a parameter or of its section.
   inline bool concerns(const std::string &path, const std::string &parameter)
   {
     return path.back() == '/' ? parameter.rfind(path, 0) == 0 : parameter == path;
   }
 
-  /// When a parameter, or all of a section, is of no use.
+  /// Condition under which a parameter, or a whole section, has no effect.
   struct UsageRule
   {
-    const char *path; ///< "Section/Name", or "Section/" for all of it
+    const char *path; ///< "Section/Name", or "Section/" for the whole section
     Reason (*why_unused)(const Parameters &);
   };
 
-  /// A question that a run may answer: its name, the parameters that it uses, what they must fulfil, and what answers it. Each stands in
-  /// the file that answers it.
+  /// A study: its name, the parameters that it uses, their requirements, and the function that runs it. Defined in the source file of the
+  /// study.
   struct Study
   {
     const char *name;            ///< in `set Study = ...`
-    void (*run)(Scene &, Run &); ///< the scene is meshed
+    void (*run)(Scene &, Run &); ///< called with a meshed model
 
-    /// Paths of parameters and sections that only this study uses, and others that list them, too.
+    /// Paths of parameters and sections used only by this study and by others that list them.
     std::vector<const char *> own_parameters = {};
 
-    /// When it leaves parameters unused, its own or others'. For those that it names the general rules do not hold.
+    /// Conditions under which parameters are unused in this study; they replace the general rules for these parameters.
     std::vector<UsageRule> rules = {};
 
-    /// Throws ParameterError where parameters do not fit the study; null: nothing to check.
+    /// Throws ParameterError if parameters do not fit the study; null: no requirements.
     void (*check)(const Parameters &) = nullptr;
 
-    /// What answers it for a system file in the place of a mesh; null: nothing.
+    /// Runs the study for a system file instead of a mesh; null: not available.
     void (*run_of_system)(Run &) = nullptr;
 
     bool has(const std::string &parameter) const
@@ -61,6 +61,6 @@ namespace Squeal
     }
   };
 
-  /// All studies, the default first. Parameter files name them; they are listed where they are made, in studies/.
+  /// All studies, the default first, defined in studies/. Parameter files refer to them by name.
   const std::vector<const Study *> &studies();
 } // namespace Squeal

@@ -24,7 +24,7 @@ namespace Squeal
                                                                         {MapParameter::load, "load"},
                                                                         {MapParameter::speed, "speed"}};
 
-  /// Values from first to last.
+  /// A range of values, from first to last.
   struct ValueRange
   {
     double       first, last;
@@ -33,7 +33,7 @@ namespace Squeal
     /// Equally spaced values.
     std::vector<double> linear() const;
 
-    /// Values of equal ratio.
+    /// Values with a constant ratio.
     std::vector<double> geometric() const;
   };
 
@@ -48,13 +48,13 @@ namespace Squeal
   struct SweepParameters
   {
     ValueRange          friction_coefficients = {0., 0.45, 90};
-    double              tolerance             = 1e-6; ///< on the estimated |δλ| / |λ| [-]
+    double              tolerance             = 1e-6; ///< for the estimated |δλ| / |λ| [-]
     unsigned int        maximum_basis         = 1500; ///< vectors
     double              threshold_tolerance   = 1e-6; ///< of the friction coefficient [-]
-    bool                compare_dissipation   = true; ///< also without radial dissipation
-    std::vector<double> mode_shapes;                  ///< friction coefficients at which the leading mode is written
-    std::vector<double> planes;                       ///< friction coefficients at which all modes are written; empty: mode_shapes
-    std::vector<double> counts;                       ///< friction coefficients at which modes are counted by the argument principle
+    bool                compare_dissipation   = true; ///< repeat the sweep without radial dissipation
+    std::vector<double> mode_shapes;                  ///< friction coefficients for output of the leading mode
+    std::vector<double> planes;                       ///< friction coefficients for output of all modes; empty: mode_shapes
+    std::vector<double> counts;                       ///< friction coefficients for mode counts by the argument principle
 
     MapParameter map_parameter             = MapParameter::none;
     ValueRange   map_values                = {100., 10000., 11}; ///< [N] or [rad/s]
@@ -62,7 +62,7 @@ namespace Squeal
 
     std::string parameter, second_parameter; ///< of a system file: "name, first, last, number"; empty: mu, none
 
-    /// Friction coefficients of the complex plane.
+    /// Friction coefficients for the complex plane.
     const std::vector<double> &complex_plane() const
     {
       return planes.empty() ? mode_shapes : planes;
@@ -73,14 +73,14 @@ namespace Squeal
 
     void declare(Declarations &declarations);
 
-    /// The parameter of a system file that varies, and the second one of a map; nothing if there is none.
+    /// The varied parameter of a system file, and the second one of a map; nothing if there is none.
     NamedRange                varied_parameter() const;
     std::optional<NamedRange> second_varied_parameter() const;
 
     /// Throws ParameterError.
     void check() const;
 
-    /// The same for a system file.
+    /// Checks parameters for a system file. Throws ParameterError.
     void check_of_system() const;
   };
 } // namespace Squeal

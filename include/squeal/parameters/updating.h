@@ -13,9 +13,9 @@ namespace Squeal
   {
     std::string  measured_modes;       ///< CSV: modes with their frequencies and damping ratios
     std::string  sensors;              ///< CSV: positions and directions of sensors, and measured shapes; empty: modes are paired by labels
-    double       tolerance     = 1e-8; ///< step at which the fit ends, part of each range [-]
+    double       tolerance     = 1e-8; ///< step size at which the fit ends, fraction of each range [-]
     double       least_overlap = 0.5;  ///< MAC below which a shape has no counterpart [-]
-    unsigned int n_iterations  = 50;   ///< at most
+    unsigned int n_iterations  = 50;   ///< maximum number
 
     void declare(Declarations &declarations);
   };

@@ -19,11 +19,10 @@ namespace Squeal
   };
 
   /**
-   * Galerkin projection of the coupled system on a basis T, n × r (eqs. (12)
-   * and (13) of the paper). The terms A of the system, TᵀAT or LᵀT and RᵀT of those of low rank, are
-   * projected once and serve every value of their coefficients: friction, load and speed.
+   * Galerkin projection of the coupled system on a basis T, n × r (eqs. (12) and (13) of the paper). The terms A of the system, TᵀAT, or
+   * LᵀT and RᵀT for low rank, are projected once and serve all values of their coefficients: friction, load and speed.
    *
-   * A basis grows by extend(), which projects only what is new.
+   * extend() appends vectors to the basis and projects only these.
    */
   class ReducedModel
   {
@@ -54,7 +53,7 @@ namespace Squeal
       return *system;
     }
 
-    /// Σ θ TᵀAT by powers of λ.
+    /// Σ θ TᵀAT, grouped by powers of λ.
     ReducedPencil at(const ParameterValues &values) const;
 
     /// TᵀM_cT and TᵀK_cT.
@@ -67,32 +66,32 @@ namespace Squeal
       return stiffness_matrix;
     }
 
-    /// The model in coordinates of its modes V without friction and damping, whose vectors are V times those of this one; made once.
+    /// The model in modal coordinates of its undamped, frictionless modes V, with basis T V; computed once.
     struct Modal;
     const Modal &modal() const;
 
-    /// TᵀAT of a sparse term of the system, by its number.
+    /// TᵀAT of the sparse term with this index.
     const DenseMatrix &projected(const std::size_t term) const
     {
       return matrices[term];
     }
 
-    /// FᵀT of a factor of a term of low rank, m × r.
+    /// FᵀT of a factor of a low-rank term, m × r.
     const DenseMatrix &motions(const LowRankFactor &factor) const
     {
       return factors.at(&factor);
     }
 
   private:
-    /// TᵀM_cT and TᵀK_cT from the terms.
+    /// Computes TᵀM_cT and TᵀK_cT from the terms.
     void find_norms();
 
     const CoupledSystem                         *system;
     std::shared_ptr<MultiVector>                 T;        ///< null in a restricted model
-    std::vector<DenseMatrix>                     matrices; ///< TᵀAT of each term; empty for those with weights
+    std::vector<DenseMatrix>                     matrices; ///< TᵀAT of each term; empty for terms with weights
     std::map<const LowRankFactor *, DenseMatrix> factors;
     DenseMatrix                                  mass_matrix, stiffness_matrix;
-    mutable std::shared_ptr<const Modal>         modes; ///< null until modal() is called
+    mutable std::shared_ptr<const Modal>         modes; ///< null until requested
   };
 
   struct ReducedModel::Modal

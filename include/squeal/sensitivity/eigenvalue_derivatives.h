@@ -11,7 +11,7 @@
 
 namespace Squeal
 {
-  /// Eigenvalues with right and left vectors at full order, ψᵀ Q(λ) = 0 without conjugate, of any length.
+  /// Eigenvalues with right and left vectors at full order, ψᵀ Q(λ) = 0 without conjugate, in any normalisation.
   struct Eigentriples
   {
     std::vector<std::complex<double>> lambda;      ///< [rad/s]
@@ -19,34 +19,34 @@ namespace Squeal
   };
 
   /**
-   * The vectors u and w on the dofs of the uncoupled bodies with which every matrix X of a body contributes to Q,
+   * Vectors u and w on the dofs of the uncoupled bodies through which a matrix X of a body contributes to Q:
    *
    *   ψᵀ (T_cᵀ X T_c − μ A V_X) φ = wᵀ X u,   u = T_c φ,   w = T_c ψ − μ Sᵀ P_t T_c ψ,
    *
-   * since A = T_cᵀ P_tᵀ and V_X = S X T_c: friction takes part in every derivative with respect to a body by w alone.
+   * because A = T_cᵀ P_tᵀ and V_X = S X T_c: friction enters derivatives with respect to the bodies only through w.
    */
   Eigentriples on_bodies(const ContactOperators &contact, double friction_coefficient, const Eigentriples &coupled);
 
-  /// Products of the terms of Q(λ; p) = Σ θ_k(p) λ^p_k A_k with right and left vectors, from which follow its derivatives with respect to
-  /// every parameter. Rates of parameters, a ParameterValues with dp/ds, give a direction s: one rate for a parameter that is a number, and
-  /// one for each entry of a list, such as damping coefficients of contact nodes.
+  /// Products of the terms of Q(λ; p) = Σ θ_k(p) λ^p_k A_k with right and left vectors, for derivatives with respect to all parameters. A
+  /// direction s is given by rates, a ParameterValues with dp/ds: one rate for a number, one for each entry of a list, such as the damping
+  /// coefficients of contact nodes.
   class TermProducts
   {
   public:
-    /// All processes must call.
+    /// Collective.
     TermProducts(const std::vector<Term> &terms, const Eigentriples &modes);
 
     /// ψ_iᵀ Q(λ_j) φ_j, k × k.
     ComplexDenseMatrix pencil(const ParameterValues &values) const;
 
-    /// ψ_iᵀ ((λ_i + λ_j) M + C) φ_j, k × k: on the diagonal ψᵀ Q'(λ) φ, zero elsewhere for exact vectors of λ_i ≠ λ_j.
+    /// ψ_iᵀ ((λ_i + λ_j) M + C) φ_j, k × k: diagonal ψᵀ Q'(λ) φ; off-diagonal zero for exact vectors with λ_i ≠ λ_j.
     ComplexDenseMatrix by_lambda(const ParameterValues &values) const;
 
-    /// ψ_iᵀ (dQ(λ_j)/ds) φ_j, k × k, along a direction of the parameters; parameters without a rate keep their values.
+    /// ψ_iᵀ (dQ(λ_j)/ds) φ_j, k × k, along a direction of the parameters; parameters without a rate are constant.
     ComplexDenseMatrix along(const ParameterValues &values, const ParameterValues &rates) const;
 
   private:
-    /// Of one term.
+    /// Products of one term.
     struct Product
     {
       Term               term;        ///< without its matrices
@@ -54,7 +54,7 @@ namespace Squeal
       ComplexDenseMatrix left, right; ///< Lᵀψ and Rᵀφ of a term with weights, m × k
     };
 
-    /// ψ_iᵀ A φ_j of a term, with @p weights in place of its own values.
+    /// ψ_iᵀ A φ_j of a term, with @p weights instead of its own values.
     ComplexDenseMatrix matrix(const Product &product, const ParameterValues &weights) const;
 
     std::vector<std::complex<double>> lambda;
@@ -66,26 +66,26 @@ namespace Squeal
    *
    *   N_ij = ψ_iᵀ (∂Q(λ_j)/∂p) φ_j   and   D_ij = ψ_iᵀ ((λ_i + λ_j) M + C) φ_j        k × k, TermProducts
    *
-   * of right and left vectors. Of a simple eigenvalue it is
+   * with right and left vectors. For a simple eigenvalue
    *
    *   dλ_i/dp = −N_ii / D_ii
    *
-   * (P. Lancaster, *On eigenvalues of matrices dependent on a parameter*, Numerische Mathematik 6 (1964) 377–387). Where a pair
-   * nearly coalesces D_ii tends to zero, and no eigenvalue of the pair has a derivative at the exceptional point, but its mean and
-   * the square of its difference have: on the span of the vectors the pencil is a matrix Λ, and Λ' = −D⁻¹ N in the basis of the φ.
+   * (P. Lancaster, *On eigenvalues of matrices dependent on a parameter*, Numerische Mathematik 6 (1964) 377–387). If a pair nearly
+   * coalesces, D_ii tends to zero, and neither eigenvalue has a derivative at the exceptional point. Their mean and the square of their
+   * difference do: on the span of the vectors the pencil is a matrix Λ, and Λ' = −D⁻¹ N in the basis of the φ.
    */
   std::complex<double> eigenvalue_derivative(const ComplexDenseMatrix &N, const ComplexDenseMatrix &D, int mode);
 
-  /// Derivative of the mean of some eigenvalues, −trace(D⁻¹ N) / m of their m × m blocks; exists at multiple eigenvalues, too.
+  /// Derivative of the mean of m eigenvalues, −trace(D⁻¹ N) / m of their m × m blocks; also exists for multiple eigenvalues.
   std::complex<double> mean_derivative(const ComplexDenseMatrix &N, const ComplexDenseMatrix &D, const std::vector<int> &modes);
 
-  /// d(λ_1 − λ_2)²/dp = 2 (λ_1 − λ_2) (λ_1' − λ_2') of the first two modes [rad²/s² per unit of p].
+  /// d(λ_1 − λ_2)²/dp = 2 (λ_1 − λ_2) (λ_1' − λ_2') for the first two modes [rad²/s² per unit of p].
   std::complex<double> squared_difference_derivative(const ComplexDenseMatrix                &N,
                                                      const ComplexDenseMatrix                &D,
                                                      const std::vector<std::complex<double>> &lambda);
 
-  /// The value at 0 of an even function, or of the even part of one, from its values at h, 2h, 3h (means of both sides), and how far the
-  /// value from two of them differs: an upper bound of the error unless the function has a singularity nearby.
+  /// Value at 0 of an even function, or of an even part, extrapolated from its values at h, 2h, 3h (means of both sides), and the
+  /// difference from the extrapolation by two values: an upper bound of the error unless the function has a singularity nearby.
   struct ValueAtCentre
   {
     std::complex<double> value;

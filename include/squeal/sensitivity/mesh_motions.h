@@ -10,21 +10,21 @@
 
 namespace Squeal
 {
-  /// How the nodes of a mesh move with a length or angle of the geometry, while elements stay what they are.
+  /// Motion of the nodes of a mesh with a length or angle of the geometry; the topology is unchanged.
   struct MeshMotion
   {
     std::string              parameter; ///< "Geometry/Pin height"
-    std::string              pin;       ///< the only one that moves; empty: all
+    std::string              pin;       ///< the only pin that moves; empty: all
     std::string              unit;
     double                   value;         ///< of the parameter, in this unit
     std::vector<Mesh::Point> velocity;      ///< dx/dp of each node [m per unit]
-    bool                     moves_contact; ///< whether contact nodes move in the plane of the disc
+    bool                     moves_contact; ///< contact nodes move in the plane of the disc
   };
 
   /**
-   * Motions of disc and pins of the built-in geometry (disc_pins.geo): faces, rims and outlines move as the parameter says, nodes within as it is convenient, so
-   * that the bodies stay conforming at the contact. With the disc between z = ± t/2, its axis z, a pin of radius a about c, and ρ = 1 within a
-   * circle of radius a about c that falls to 0 on the way to the nearest other pin or rim:
+   * Motions of disc and pins of the built-in geometry (disc_pins.geo): faces, rims and outlines follow the parameter, interior nodes are
+   * interpolated so that the bodies remain conforming at the contact. With the disc between z = ± t/2, its axis z, a pin of radius a about
+   * c, and a function ρ that is 1 within a circle of radius a about c and falls to 0 towards the nearest other pin or rim:
    *
    *   disc thickness t     z/t e_z in the disc, ± ½ e_z in the pins
    *   pin height h         ± (|z| − t/2)/h e_z in the pins
@@ -33,10 +33,10 @@ namespace Squeal
    *   radius of a pin      ρ e_r(c)
    *   angle of a pin       ρ π/180 e_z × x
    *
-   * In the disc the latter three vary linearly from the face of the pin to zero on the other one. The derivative of an eigenvalue of the continuum does not depend on
-   * how nodes within move; that of a mesh does by its error of discretisation.
+   * In the disc the last three vary linearly from the face of the pin to zero on the opposite face. The derivative of an eigenvalue of the
+   * continuum does not depend on the motion of interior nodes; that of a mesh depends on it by its discretisation error.
    *
-   * Empty where the mesh is not that of these parameters or pins touch each other or a rim.
+   * Empty if the mesh is not that of these parameters, or if pins touch each other or a rim.
    */
   std::vector<MeshMotion> mesh_motions(const Mesh &mesh, const GeometryParameters &parameters);
 

@@ -10,28 +10,26 @@
 namespace Squeal
 {
   /**
-   * Unilateral contact with Coulomb friction condensed to the contact nodes
-   * (eq. (2) of the paper at rest, sliding everywhere): find reactions r and
-   * motions z with
+   * Unilateral contact with Coulomb friction, condensed to the contact nodes (eq. (2) of the paper in static equilibrium, with sliding at
+   * all nodes): find reactions r and motions z with
    *
    *   g = g_0 + G r + B z,   r ≤ 0,  g ≤ 0,  r_c g_c = 0,   L r = f
    *
-   * G = F_nn + μ F_nt is the flexibility of disc and pins, nonsymmetric with
-   * friction; the columns of B are gaps of unit motions (backplates, free
-   * motions of the disc), and L r = f are their equations of balance.
+   * G = F_nn + μ F_nt is the flexibility of disc and pins, nonsymmetric with friction; the columns of B are gaps due to unit motions
+   * (backplates, free motions of the disc), and L r = f are their equations of equilibrium.
    */
   struct ContactProblem
   {
     DenseMatrix         normal_flexibility;     ///< F_nn, n_c × n_c [m/N]
     DenseMatrix         tangential_flexibility; ///< F_nt, n_c × n_c [m/N]
     double              friction_coefficient;   ///< μ [-]
-    std::vector<double> initial_gap;            ///< g_0, n_c [m]; negative where open
+    std::vector<double> initial_gap;            ///< g_0, n_c [m]; negative if open
     DenseMatrix         motions;                ///< B, n_c × n_z
     DenseMatrix         balance;                ///< L, n_z × n_c
     std::vector<double> forces;                 ///< f, n_z [N]
-    std::vector<int>    held;                   ///< motions that are zero instead: their columns of B and rows of L vanish
+    std::vector<int>    held;                   ///< motions fixed at zero: their columns of B and rows of L vanish
 
-    /// G at friction coefficient @p mu.
+    /// G at the friction coefficient @p mu.
     DenseMatrix flexibility(const double mu) const
     {
       return normal_flexibility + mu * tangential_flexibility;
@@ -48,46 +46,43 @@ namespace Squeal
   };
 
   /**
-   * Solves a contact problem by block principal pivoting (Júdice and Pires 1994),
-   * which is the semismooth Newton method on the active set with a safeguard:
-   * where flipping all violated nodes no longer reduces their number, single
-   * ones are flipped until it does. Started with all nodes closed; where that
-   * fails, from the solutions at smaller μ, then from random sets.
+   * Solves a contact problem by block principal pivoting (Júdice and Pires 1994), a semismooth Newton method on the active set with a
+   * safeguard: if toggling all violated nodes no longer reduces their number, single nodes are toggled until it does. Starts with all nodes
+   * closed; if that fails, from solutions at smaller μ, then from random sets.
    *
-   * Throws SolverError with the violation of the best iterate if none of them succeeds.
+   * Throws SolverError with the violation of the best iterate if all starts fail.
    */
   ContactSolution solve_contact(const ContactProblem &problem);
 
   /**
-   * Change of the reactions, n_c × k, with k parameters that change g_0 and f while the same nodes stay @p closed:
+   * Derivatives of the reactions, n_c × k, with respect to k parameters that change g_0 and f while the same nodes remain @p closed:
    *
    *   g_0' + G r' + B z' = 0 at closed nodes,   r' = 0 at open ones,   L r' = f'
    *
    * @param gap_rates   g_0', n_c × k [m per unit]
-   * @param force_rates f', n_z × k [N per unit]; those of held motions do not matter
+   * @param force_rates f', n_z × k [N per unit]; unused for held motions
    *
-   * Throws SolverError if these nodes leave the reactions undetermined.
+   * Throws SolverError if the closed nodes do not determine the reactions.
    */
   DenseMatrix reaction_rates(const ContactProblem    &problem,
                              const std::vector<bool> &closed,
                              const DenseMatrix       &gap_rates,
                              const DenseMatrix       &force_rates);
 
-  /// What is known about other solutions of a contact problem.
+  /// Uniqueness of the solution of a contact problem.
   struct ContactUniqueness
   {
-    double          unique_below; ///< every friction coefficient below has exactly one solution; 0: unknown
-    bool            is_certified; ///< μ lies below
-    unsigned int    n_searches;   ///< other starts tried where it is not certified
-    bool            found_other;  ///< one of them led to another solution
-    ContactSolution other;        ///< that one
+    double          unique_below; ///< the solution is unique for every smaller friction coefficient; 0: unknown
+    bool            is_certified; ///< μ < unique_below
+    unsigned int    n_searches;   ///< number of other starting sets tried if not certified
+    bool            found_other;  ///< one of them gave another solution
+    ContactSolution other;        ///< this other solution
   };
 
   /**
-   * The solution is unique if Gᵀ + G is positive definite and L = −Bᵀ: two
-   * solutions would give (r − r')ᵀ G (r − r') ≤ 0. That holds for all
-   * μ < 1/λ_max, λ_max the largest eigenvalue of −½ (F_nt + F_ntᵀ) x = λ F_nn x.
-   * Beyond, the problem is solved again from @p n_searches random sets.
+   * The solution is unique if Gᵀ + G is positive definite and L = −Bᵀ: two solutions would give (r − r')ᵀ G (r − r') ≤ 0. This is true for
+   * all μ < 1/λ_max, λ_max the largest eigenvalue of −½ (F_nt + F_ntᵀ) x = λ F_nn x. For larger μ, the problem is solved again from @p
+   * n_searches random sets.
    */
   ContactUniqueness contact_uniqueness(const ContactProblem &problem, const ContactSolution &solution, unsigned int n_searches = 8);
 } // namespace Squeal

@@ -11,14 +11,13 @@
 namespace Squeal
 {
   /**
-   * Of the @p free motions of each body, M-orthonormal, those that the reactions can balance,
-   * n × k; nothing if there are none. The sliding motion itself
-   * does not count, whose force or moment the drive takes, nor do those that leave the gaps as they are.
+   * Those of the @p free motions of each body, M-orthonormal, that reactions can balance, n × k; nothing if there are none. Excluded are
+   * the sliding motion, whose force or moment the drive balances, and motions that leave all gaps unchanged.
    *
-   * @param pressing forces on the bodies, n × 1 [N]; null: none, and only the disc may be free
+   * @param pressing forces on the bodies, n × 1 [N]; null: none, and only the disc may have free motions
    *
-   * Throws SolverError if friction or @p pressing acts on one of the latter, another body than the disc is free and not pressed, or the sliding
-   * velocity of a disc that moves freely is no rigid-body motion.
+   * Throws SolverError if friction or @p pressing acts on an excluded motion that leaves the gaps unchanged, if a body other than the disc
+   * is free and not pressed, or if the sliding velocity of a free disc is not a rigid-body motion.
    */
   std::optional<MultiVector> balanced_motions(const Model                                   &model,
                                               const ContactOperators                        &contact,
@@ -28,12 +27,11 @@ namespace Squeal
                                               const MultiVector                             *pressing);
 
   /**
-   * A disc that floats between two loaded backplates is in balance wherever it
-   * is along its axis, if the loads are: B y = 0 for a motion y of all. Then
-   * one free motion, numbered from @p n_plates, is held instead of balanced, and so on while one remains. Decided by the singular values of B with columns of unit norm, so that
-   * the units of the motions play no part.
+   * A disc that floats between two loaded backplates is in equilibrium at any axial position if the loads are: B y = 0 for a motion y of
+   * all. One free motion, numbered from @p n_plates, is then held instead of balanced, and so on while such a y exists. Decided by the
+   * singular values of B with columns of unit norm, independent of the units of the motions.
    *
-   * Throws SolverError if the loads on such a disc are not in balance.
+   * Throws SolverError if the loads on such a disc are not in equilibrium.
    */
   void hold_undetermined_motion(ContactProblem &problem, int n_plates);
 } // namespace Squeal

@@ -15,19 +15,19 @@
 
 namespace Squeal
 {
-  /// How well a steady sliding state fulfils its equations, from the displacements of the full model.
+  /// Residuals of a steady sliding state, from the displacements of the full model.
   struct SlidingCertificate
   {
     double residual; ///< ‖K u − P_nᵀ r_n − μ P_tᵀ r_n − f_p‖ / ‖P_nᵀ r_n‖, all dofs [-]
-    double load;     ///< largest error of the load of a backplate, relative; 0 where none is prescribed [-]
-    double tension;  ///< largest r_n over the load of a backplate; ≤ 0 where nothing pulls [-]
-    double overlap;  ///< largest g over the travel of the backplates or, with pressed faces, the largest displacement; g from P_n u [-]
+    double load;     ///< largest relative error of the load of a backplate; 0 if none is prescribed [-]
+    double tension;  ///< largest r_n over the load of a backplate; ≤ 0 without tension [-]
+    double overlap;  ///< largest g, from P_n u, over the travel of the backplates or, with pressed faces, over the largest displacement [-]
     double complementarity; ///< largest |r_n g| over load and travel [-]
-    double force_balance;   ///< contact forces, pressure and forces of the supports of each component, over the load [-]
-    double moment_balance;  ///< the same of moments about the origin, over load × largest axis distance [-]
+    double force_balance;   ///< resultant of contact, pressure and support forces of each component, over the load [-]
+    double moment_balance;  ///< resultant moment about the origin, over load × largest axis distance [-]
   };
 
-  /// The quasi-static state about which the system is linearised.
+  /// Quasi-static state for the linearisation.
   struct SlidingState
   {
     std::vector<double>          reactions;          ///< R_n0 [N] ≤ 0, one for each contact node
@@ -38,14 +38,14 @@ namespace Squeal
     std::shared_ptr<MultiVector> total_displacement; ///< u with the travel of the backplates [m], n × 1
     SlidingCertificate           certificate;
     ContactUniqueness            uniqueness;
-    int                          n_steps; ///< of the active-set method
+    int                          n_steps; ///< iterations of the active-set method
   };
 
-  /// What all steady sliding states of a scene have in common.
+  /// Data common to all steady sliding states of a model.
   struct SlidingModel
   {
     /**
-     * Solves for the attachment modes. The arguments but the last two must outlive the model.
+     * Computes the attachment modes. All arguments except the last two must outlive the model.
      *
      * @param largest_circular_frequency end of the band [rad/s], see static_response()
      */
@@ -60,7 +60,7 @@ namespace Squeal
     const ContactInterface                 &interface;
     const ContactOperators                 &contact;
     const SecondOrderSystem                &system;
-    std::vector<std::optional<MultiVector>> free_motions; ///< rigid-body motions of each body that nothing holds
+    std::vector<std::optional<MultiVector>> free_motions; ///< unconstrained rigid-body motions of each body
     InertiaRelief                           response;
     MultiVector                             normal, tangential; ///< attachment modes K⁻¹ P_nᵀ and K⁻¹ P_tᵀ [m/N], n × n_c
   };
@@ -71,37 +71,32 @@ namespace Squeal
    *   K u = P_nᵀ r_n + P_tᵀ r_t,   r_t = μ r_n,   r_n ≤ 0,  g ≤ 0,  r_n g = 0
    *   g = P_n u + a d − gap
    *
-   * u is the elastic displacement relative to the backplates, rigid and guided
-   * along their travel e (contact/travel.h), which have moved towards the disc
-   * by d; a = −e·n; the gaps of @p parameters are taken along e. Each load is
-   * the force on its backplate along e, Σ e·n r_n + Σ e·t r_t. Friction acts
-   * along t at every closed node; a drive holds the disc against its moment.
+   * u is the elastic displacement relative to the backplates, which are rigid, guided along their travel e (contact/travel.h), and
+   * displaced towards the disc by d; a = −e·n; the gaps in @p parameters are along e. Each load is the force on its backplate along e, Σ
+   * e·n r_n + Σ e·t r_t. Friction acts along t at every closed node; a drive balances its moment on the disc.
    *
-   * With BackplateControl::pressure there are no backplates, d = 0, and f_p of pressed_faces.h is added to the forces. Bodies may be free
-   * then: their motions z, N z in u, follow from their balance, Nᵀ (P_nᵀ r_n + P_tᵀ r_t + f_p) = 0.
+   * With BackplateControl::pressure there are no backplates, d = 0, and f_p from pressed_faces.h is added to the forces. Bodies may then
+   * have free motions z, with N z in u, from their equilibrium Nᵀ (P_nᵀ r_n + P_tᵀ r_t + f_p) = 0.
    *
-   * Solved on the contact nodes with the normal and tangential attachment
-   * modes, F_nn = P_n K⁻¹ P_nᵀ and F_nt = P_n K⁻¹ P_tᵀ.
+   * Solved on the contact nodes with the normal and tangential attachment modes, F_nn = P_n K⁻¹ P_nᵀ and F_nt = P_n K⁻¹ P_tᵀ.
    *
-   * Throws MeshError before any solve if a body has no direction of travel;
-   * ParameterError if a pin is unknown, a gap is larger
-   * than the pin is high or than the displacement can close; SolverError if no
-   * state was found, or the disc is free to slide in its plane.
+   * Throws MeshError before any solve if a body has no direction of travel; ParameterError if a pin is unknown, or if a gap exceeds the
+   * height of the pin or the displacement; SolverError if no state was found, or if the disc is not held in its plane.
    */
   SlidingState steady_sliding(const SlidingModel &sliding, const OperationParameters &operation, const SlidingParameters &parameters);
 
   /**
-   * Change of the reactions with k parameters of the bodies at the same friction coefficient, loads, travel and closed nodes, n_c × k
-   * [N per unit]:
+   * Derivatives of the reactions with respect to k parameters of the bodies at constant friction coefficient, loads, travel and closed
+   * nodes, n_c × k [N per unit]:
    *
    *   K u' = f' + P_nᵀ r' + μ P_tᵀ r',   P_n u' + a d' − a gap' = 0 at closed nodes,   r' = 0 at open ones
    *
-   * where reactions balance the free motions R of the disc, Rᵀ (f' + P_nᵀ r' + μ P_tᵀ r') = 0, and no load changes. Attachment modes
-   * of the reactions are those of the displacements, P_n K⁻¹ f' = (K⁻¹ P_nᵀ)ᵀ f': nothing is solved for at full order. Normals and the
-   * component of t along the travel do not change.
+   * where the free motions R of the disc remain in equilibrium, Rᵀ (f' + P_nᵀ r' + μ P_tᵀ r') = 0, and loads are constant. The attachment
+   * modes also give the gaps due to f', P_n K⁻¹ f' = (K⁻¹ P_nᵀ)ᵀ f': no solve at full order is needed. Normals and the component of t along
+   * the travel are constant.
    *
    * @param state       the state at these parameters
-   * @param force_rates f' = −K' u + μ (P_t')ᵀ r and what else loads the bodies where it stands, n × k [N per unit]
+   * @param force_rates f' = −K' u + μ (P_t')ᵀ r plus other changes of the forces on the bodies, n × k [N per unit]
    * @param gap_rates   change of initial_gaps(), n_c × k [m per unit]
    */
   DenseMatrix reaction_rates(const SlidingModel        &sliding,
@@ -111,17 +106,17 @@ namespace Squeal
                              const MultiVector         &force_rates,
                              const DenseMatrix         &gap_rates);
 
-  /// Gap of each node along its travel before the backplates move [m].
+  /// Gap of each node along its travel, before the backplates move [m].
   Eigen::VectorXd initial_gaps(const Model &model, const ContactInterface &interface, const SlidingParameters &parameters);
 
-  /// Refuses parameters of the section `Steady sliding` that do not fit the pins, with a ParameterError, and bodies without a direction of
-  /// travel, with a MeshError.
+  /// Throws ParameterError for parameters of the section `Steady sliding` that do not fit the pins, and MeshError for bodies without a
+  /// direction of travel.
   void check_sliding(const Model               &model,
                      const ContactInterface    &interface,
                      const OperationParameters &operation,
                      const SlidingParameters   &parameters);
 
-  /// What a pin does in a state of contact.
+  /// Contact quantities of a pin.
   struct PinContact
   {
     std::string  pin;
@@ -129,16 +124,16 @@ namespace Squeal
     unsigned int n_nodes, n_open;
     double       load;             ///< −Σ r_n [N]
     double       sliding_offset;   ///< centre of pressure from the centre of the face along t [m]
-    double       radial_offset;    ///< outwards, or along the axis where side = 0 [m]
+    double       radial_offset;    ///< likewise outwards, or along the axis if side = 0 [m]
     double       largest_pressure; ///< largest −r_n / area of the node [Pa]
     double       sliding_speed;    ///< w_0 at the centre of pressure [m/s]
     double       radial_damping;   ///< Σ c_b [N s/m]
     double       sliding_damping;  ///< Σ c_t [N s/m]
     double       approach;         ///< travel of the backplate [m]
-    double       largest_gap;      ///< of its nodes [m]
+    double       largest_gap;      ///< largest gap of its nodes [m]
   };
 
-  /// One entry for each pin; a pin without load has no centre of pressure, its offsets and speed are those of the centre of the face.
+  /// One entry for each pin; for a pin without load, offsets are zero and the speed is that at the centre of the face.
   std::vector<PinContact> pin_contacts(const Model               &model,
                                        const ContactInterface    &interface,
                                        const SlidingState        &state,

@@ -10,13 +10,13 @@
 namespace Squeal
 {
   /**
-   * θ(p) from an expression of muParser in named parameters, such as `mu*omega^2` or `1/(a + b)`. Products of numbers and of powers of
-   * parameters become monomials, which have exact derivatives; all others have central differences of sixth order.
+   * θ(p) from a muParser expression in named parameters, such as `mu*omega^2` or `1/(a + b)`. Products of numbers and powers of parameters
+   * become monomials with exact derivatives; other expressions are differentiated by sixth-order central differences.
    *
    * Throws ParameterError with the message of muParser if the expression cannot be parsed or contains an unknown parameter.
    */
   Coefficient parsed_coefficient(const std::string &expression, const std::vector<std::string> &parameters);
 
-  /// Whether a text may be the name of a parameter in an expression.
+  /// True if a text is a valid parameter name in expressions.
   bool is_parameter_name(const std::string &text);
 } // namespace Squeal

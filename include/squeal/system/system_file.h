@@ -20,37 +20,37 @@ namespace Squeal
   {
     std::string name;
     double      value = 0.;
-    double      lower = 0., upper = 0.; ///< range in which the coefficients are valid; both equal the value where none is given
+    double      lower = 0., upper = 0.; ///< range of validity of the coefficients; both equal the value if no range is given
     std::string unit = "-", description = {};
   };
 
-  /// Some dofs with a name.
+  /// A named group of dofs.
   struct DofGroup
   {
     std::string                      name;
-    std::vector<std::pair<int, int>> ranges; ///< first and last dof of each, counted from 0
+    std::vector<std::pair<int, int>> ranges; ///< first and last dof of each range, counted from 0
   };
 
-  /// Points in space on which shapes are shown.
+  /// Points in space at which mode shapes are evaluated.
   struct ShapePoints
   {
     DenseMatrix                         positions;     ///< x, y and z [m], n_points × 3, the same on every process
-    std::shared_ptr<const SparseMatrix> displacements; ///< by the dofs: 3 n_points × n, rows x, y and z of point after point
+    std::shared_ptr<const SparseMatrix> displacements; ///< from the dofs: 3 n_points × n, rows x, y and z of each point in turn
 
-    /// Distribution of three rows for each point, no point shared by processes.
+    /// Distribution with the three rows of each point on one process.
     static RowMap rows_of(int n_points, MPI_Comm communicator);
   };
 
-  /// Q(λ; p) = Σ_k θ_k(p) λ^(p_k) A_k in a folder: `system.json` with parameters and terms, and a Matrix Market file of each matrix.
+  /// Q(λ; p) = Σ_k θ_k(p) λ^(p_k) A_k in a folder: `system.json` with parameters and terms, and a Matrix Market file for each matrix.
   struct SystemFile
   {
     std::string                path; ///< of system.json
     std::string                description;
     std::vector<FileParameter> parameters;
 
-    /// Symmetric, skew or of low rank: an unsymmetric matrix makes two terms, its symmetric and its skew part.
+    /// Symmetric, skew or low-rank; an unsymmetric matrix is split into its symmetric and its skew part.
     std::vector<Term>          terms;
-    ParameterValues            weights; ///< of terms of low rank
+    ParameterValues            weights; ///< of low-rank terms
     std::vector<DofGroup>      groups;
     std::optional<ShapePoints> points;
     std::string                measured_modes; ///< CSV file for a fit; empty: none
@@ -58,34 +58,34 @@ namespace Squeal
 
     const FileParameter *find(const std::string &parameter) const;
 
-    /// `mu` if there is such a parameter, else the first; empty: there is none.
+    /// `mu` if there is such a parameter, else the first one; empty if there are no parameters.
     std::string default_varied() const;
 
-    /// Values of all parameters and weights, with @p others in place of those of the file. Throws ParameterError if there is no such
-    /// parameter or its value is out of range.
+    /// Values of all parameters and weights, with @p others replacing those of the file. Throws ParameterError if a parameter does not
+    /// exist or its value is out of range.
     ParameterValues values(const std::map<std::string, double> &others = {}) const;
   };
 
   /**
-   * Reads a system; all processes must call.
+   * Reads a system. Collective.
    *
-   * Throws FileError or ParameterError, naming the file and the entry: what cannot be read or parsed, sizes that differ, entries that are not
-   * finite, symmetries that do not hold, unknown parameters, coefficients that are not finite in the range of their parameters, no mass,
-   * dofs that no matrix has, and displacements that are all zero.
+   * Throws FileError or ParameterError, naming file and entry, for unreadable files, syntax errors, inconsistent sizes, non-finite entries,
+   * violated symmetries, unknown parameters, coefficients that are not finite in the range of their parameters, a missing mass, dofs that
+   * occur in no matrix, and zero displacements.
    */
   SystemFile read_system(const std::string &path, MPI_Comm communicator);
 
-  /// Writes files of a folder: name and content.
+  /// Writes a file of the folder: name and content.
   using WriteFile = std::function<void(const std::string &name, const std::function<void(std::ostream &)> &content)>;
 
-  /// What a reduced model rests on: its basis, n × r, the tolerance of its estimated errors, and a table of them.
+  /// Data of a reduced model: its basis, n × r, the tolerance of its estimated errors, and a table of them.
   struct Reduction
   {
     std::string basis, points; ///< files
     double      tolerance;
   };
 
-  /// What a system file says besides its terms.
+  /// Information in a system file other than its terms.
   struct SystemNotes
   {
     std::vector<FileParameter> parameters;
@@ -95,6 +95,6 @@ namespace Squeal
     std::optional<Reduction>   reduction = {};
   };
 
-  /// Writes the terms at these values of the weights as a system file. All processes must call.
+  /// Writes the terms at these values of the weights as a system file. Collective.
   void write_system(const std::vector<Term> &terms, const ParameterValues &weights, const SystemNotes &notes, const WriteFile &write);
 } // namespace Squeal

@@ -13,7 +13,7 @@
 
 namespace Squeal
 {
-  /// An n × m matrix F of few columns, kept either by its sparse transpose or in full.
+  /// An n × m matrix F with few columns, stored as its sparse transpose or as dense columns.
   class LowRankFactor
   {
   public:
@@ -35,7 +35,7 @@ namespace Squeal
     /// Columns [first, first + n) of F.
     MultiVector columns(int first, int n) const;
 
-    /// Fᵀ; null if F is kept in full.
+    /// Fᵀ; null if F is stored as columns.
     const std::shared_ptr<const SparseMatrix> &sparse_transpose() const;
 
   private:
@@ -43,7 +43,7 @@ namespace Squeal
     std::shared_ptr<const MultiVector>  full;
   };
 
-  /// M ü + C u̇ + K u = f of the uncoupled bodies (left-hand side of eq. (4) of the paper) on the free dofs; rows distributed over the
+  /// M ü + C u̇ + K u = f for the uncoupled bodies (left-hand side of eq. (4) of the paper) on the free dofs; rows are distributed over the
   /// processes.
   struct SecondOrderSystem
   {
@@ -52,7 +52,7 @@ namespace Squeal
     std::shared_ptr<const SparseMatrix> stiffness; ///< K [N/m]
   };
 
-  /// Values of named parameters: one number each, or a list with one for each contact node or mode; an empty list means zeros.
+  /// Values of named parameters: a number, or a list with one value for each contact node or mode; an empty list means zeros.
   using ParameterValues = std::map<std::string, std::vector<double>>;
 
   /// A function of named parameters with its partial derivatives.
@@ -63,17 +63,17 @@ namespace Squeal
 
     virtual double at(const ParameterValues &values) const = 0;
 
-    /// ∂/∂p at the values of all parameters; zero where @p parameter does not occur.
+    /// Partial derivative at the values of all parameters; zero if @p parameter does not occur.
     virtual double derivative(const std::string &parameter, const ParameterValues &values) const = 0;
 
     virtual bool contains(const std::string &parameter) const = 0;
     virtual bool is_constant() const                          = 0;
 
-    /// An expression that parsed_coefficient() reads back.
+    /// Expression in the syntax of parsed_coefficient().
     virtual std::string text() const = 0;
   };
 
-  /// θ(p) of a term: a monomial of named parameters such as −μ ρ, a function of them of any other kind, or a product of such.
+  /// θ(p) of a term: a monomial of named parameters such as −μ ρ, another function of them, or a product of such.
   class Coefficient
   {
   public:
@@ -94,15 +94,15 @@ namespace Squeal
     std::shared_ptr<const ParameterFunction> function;
   };
 
-  /// What a term describes.
+  /// Physical origin of a term.
   enum class TermKind
   {
     body,            ///< elasticity, inertia and material damping
     mount,           ///< springs and dashpots between bodies and the ground
-    rotation,        ///< forces of a turning disc
+    rotation,        ///< rotation of the disc
     friction,        ///< forces μ r_n along t
-    circulatory,     ///< other parts of unsymmetric matrices
-    contact_damping, ///< forces on the contact nodes in proportion to relative velocities
+    circulatory,     ///< skew parts of unsymmetric matrices
+    contact_damping, ///< forces at the contact nodes proportional to relative velocities
     modal_damping
   };
 
@@ -112,17 +112,17 @@ namespace Squeal
     skew ///< Aᵀ = −A
   };
 
-  /// One term of Q(λ; p) = Σ_k θ_k(p) λ^(p_k) A_k, with a coefficient θ_k that depends on named parameters p. A_k is sparse, or of low
-  /// rank, L diag(d) Rᵀ with d from a list of parameters.
+  /// A term of Q(λ; p) = Σ_k θ_k(p) λ^(p_k) A_k, with a coefficient θ_k that depends on named parameters p. A_k is sparse, or has low rank,
+  /// L diag(d) Rᵀ, with d a list parameter.
   struct Term
   {
     std::string                          name;      ///< for messages
     int                                  power = 0; ///< p_k: 0, 1 or 2
     Coefficient                          coefficient;
-    std::shared_ptr<const SparseMatrix>  matrix;                         ///< A, n × n; null: A is of low rank
+    std::shared_ptr<const SparseMatrix>  matrix;                         ///< A, n × n; null if A has low rank
     Symmetry                             symmetry = Symmetry::symmetric; ///< of the matrix
     std::shared_ptr<const LowRankFactor> left = {}, right = {};          ///< L and R, n × m
-    std::string                          weights = {};                   ///< parameter that lists d; empty: ones
+    std::string                          weights = {};                   ///< list parameter with d; empty: ones
     TermKind                             kind    = TermKind::body;
 
     /// θ(p) λ^p_k
@@ -132,23 +132,23 @@ namespace Squeal
       return coefficient.at(values) * (power == 0 ? Number(1.) : power == 1 ? lambda : lambda * lambda);
     }
 
-    /// Whether nothing of the term is left at these values.
+    /// True if the term is zero at these values.
     bool vanishes(const ParameterValues &values) const;
 
-    /// Whether A could be written as a sparse matrix.
+    /// True if A can be written as a sparse matrix.
     bool is_sparse() const;
 
-    /// Whether A is a part of the mass, damping and stiffness without friction: symmetric, and not of friction itself.
+    /// True if A belongs to the mass, damping or stiffness without friction: symmetric, and not a friction term.
     bool is_frictionless() const
     {
       return symmetry == Symmetry::symmetric && kind != TermKind::friction;
     }
 
-    /// diag(d) Y; all of Y where there are no weights.
+    /// diag(d) Y; Y itself without weights.
     template <typename Matrix>
     Matrix weighted(Matrix Y, const ParameterValues &values) const;
 
-    /// Factor onto which A (or Aᵀ) maps, and the one with which it reads.
+    /// A (or Aᵀ) = target() diag(d) source()ᵀ.
     const LowRankFactor &target(const bool transposed) const
     {
       return transposed ? *right : *left;
@@ -174,8 +174,8 @@ namespace Squeal
                      std::string                          weights = "",
                      TermKind                             kind    = TermKind::body);
 
-  /// The symmetric and the skew part of the matrix of a term, as terms with its coefficient. Parts that are rounding errors of the other
-  /// one are left out.
+  /// Symmetric and skew part of the matrix of a term, as terms with its coefficient. A part that is a rounding error of the other one is
+  /// dropped.
   std::vector<Term> split_by_symmetry(const Term &term);
 
   template <typename Matrix>
@@ -189,43 +189,43 @@ namespace Squeal
     return as_column(d).asDiagonal() * Y;
   }
 
-  /// Σ θ_k A_k X, or Σ θ_k A_kᵀ X, of the terms with λ to this power.
+  /// Σ θ_k A_k X, or Σ θ_k A_kᵀ X, over the terms with this power of λ.
   MultiVector times(const std::vector<Term> &terms,
                     const ParameterValues   &values,
                     int                      power,
                     const MultiVector       &X,
                     bool                     transposed = false);
 
-  /// Σ θ A of matrices; null where there is none.
+  /// Σ θ A of matrices; null if there are none.
   std::shared_ptr<const SparseMatrix> sum(const std::vector<std::pair<double, std::shared_ptr<const SparseMatrix>>> &summands);
 
-  /// Terms that do not vanish and have λ to this power.
+  /// Nonzero terms with this power of λ.
   std::vector<const Term *> terms_of(const std::vector<Term> &terms, const ParameterValues &values, int power);
 
-  /// M, C and K of Q(λ) = λ² M + λ C + K as sparse matrices, null where there is no term. Throws SolverError naming a term that has no
-  /// sparse form.
+  /// M, C and K of Q(λ) = λ² M + λ C + K as sparse matrices, null if there is no term. Throws SolverError naming a term without sparse
+  /// form.
   SecondOrderSystem sparse_matrices(const std::vector<Term> &terms, const ParameterValues &values);
 
-  /// Σ ‖θ A‖_∞ ≥ ‖Σ θ A‖_∞ of the terms in a power of λ, all of which have a sparse form.
+  /// Σ ‖θ A‖_∞ ≥ ‖Σ θ A‖_∞ over the terms with a power of λ, all of which must have a sparse form.
   double norm_bound(const std::vector<Term> &terms, const ParameterValues &values, int power);
 
-  /// The same sum at these values with as few terms as possible: of the sparse terms, one of each power and symmetry is left, with a
-  /// coefficient of one. Terms that vanish are gone. Terms of low rank are not allowed.
+  /// The same sum at these values with as few terms as possible: one sparse term for each power and symmetry, with a coefficient of one,
+  /// without zero terms. Low-rank terms are not allowed.
   std::vector<Term> merged(const std::vector<Term> &terms, const ParameterValues &values);
 
-  /// Terms that several systems have in common, the members of a family: they differ in coefficients only.
+  /// Common terms of several systems, the members of a family, which differ only in coefficients.
   struct TermFamily
   {
-    std::vector<Term>            terms;   ///< with coefficients of one, or a scale where members differ
+    std::vector<Term>            terms;   ///< with coefficients of one, or a scale if members differ
     ParameterValues              values;  ///< of the scales in the middle of the family: ones
-    std::vector<ParameterValues> members; ///< of the scales, for each member
+    std::vector<ParameterValues> members; ///< values of the scales for each member
   };
 
   /**
-   * The terms Σ θ_k A_k of a family with as few matrices as possible: those whose coefficients θ_k keep their ratios from member to
-   * member are summed, with the means of θ_k over the members. All terms must be sparse.
+   * Terms Σ θ_k A_k of a family with as few matrices as possible: terms whose coefficients θ_k have the same ratio in all members are
+   * summed, with the means of θ_k over the members. All terms must be sparse.
    *
-   * @param members values of the parameters of the terms for each member, of one at least
+   * @param members values of the parameters of the terms for each member, at least one
    */
   TermFamily term_family(const std::vector<Term> &terms, const std::vector<ParameterValues> &members);
 } // namespace Squeal

@@ -12,34 +12,34 @@
 
 namespace Squeal
 {
-  /// Modes are followed up to (1 + this) times the end of the band, so that none is lost that enters or leaves it.
+  /// Modes are followed up to (1 + this) times the end of the band, so that modes that enter or leave it are not lost.
   inline constexpr double band_margin = 0.05;
 
-  /// Tolerance of λ from which on single precision will do for its estimates [-].
+  /// Tolerance of λ above which single precision suffices for error estimates [-].
   inline constexpr double single_precision_tolerance = 1e-6;
 
-  /// Where a chart is evaluated.
+  /// A point at which a chart is evaluated.
   struct OperatingPoint
   {
     double          friction_coefficient = 0.;
-    ParameterValues values;   ///< of other parameters of the system, where they differ from its own
-    int             line = 0; ///< of the chart: points of one line differ in the friction coefficient, with all that follows from it
+    ParameterValues values;   ///< other parameters of the system, if different from its values
+    int             line = 0; ///< of the chart: points of one line differ only in the friction coefficient and quantities that depend on it
   };
 
-  /// A two-sided reduced model that serves every operating point of a chart: what it says of a mode comes with the residuals of that mode
-  /// at full order, and it grows where they are too large (grow_residual_basis() says how).
+  /// A two-sided reduced model for all operating points of a chart: modes have full-order residuals, and the basis is extended if these are
+  /// too large (see grow_residual_basis()).
   class ChartModel
   {
   public:
     /**
-     * Starts from real modes Φ_R and their responses of first order, see starting_model().
+     * Starts from real modes Φ_R and their first-order responses, see starting_model().
      *
-     * @param system            with parameters as they are somewhere on the chart: no term may vanish that the chart has elsewhere
+     * @param system            with parameters at a point of the chart: no term may be zero there that is nonzero at another point
      * @param inverse           factor of K_c, or of K_c + s² M_c without damping if the @p shift s [rad/s] is positive
-     * @param real_modes        M_c-orthonormal, somewhat beyond the band
+     * @param real_modes        M_c-orthonormal, to slightly beyond the band
      * @param largest_circular_frequency end of the band [rad/s]
      *
-     * @p system, @p inverse and @p real_modes must outlive it.
+     * @p system, @p inverse and @p real_modes must outlive the object.
      */
     ChartModel(const CoupledSystem  &system,
                const UpdatedInverse &inverse,
@@ -47,29 +47,29 @@ namespace Squeal
                const MultiVector    &real_modes,
                double                largest_circular_frequency);
 
-    /// Leaves out modes that decay faster than this [1/s]; at first none is.
+    /// Excludes modes that decay faster than this [1/s]; initially none.
     void leave_out_faster_decay(const double rate)
     {
       largest_decay = rate;
     }
 
     /**
-     * For systems that differ from S in more than friction and damping: of a mode in a dense cluster that they change, the parts of its
-     * estimate may cancel each other. Errors are then no less than κ/2 √(ε_R ε_L), with the energies of the right and left residuals, which is
-     * what they would be without cancellation.
+     * For systems that differ from S in more than friction and damping, where parts of the estimate for a mode in a dense cluster may
+     * cancel. Errors are then at least κ/2 √(ε_R ε_L), from the energies of the right and left residuals, which is the estimate without
+     * cancellation.
      */
     void estimate_without_cancellation()
     {
       allows_cancellation = false;
     }
 
-    /// For estimates that need not be right below single_precision_tolerance.
+    /// For estimates that need not be accurate below single_precision_tolerance.
     void estimate_in_single_precision()
     {
       residuals.use_single_precision();
     }
 
-    /// Vectors in the basis.
+    /// Number of vectors in the basis.
     int size() const
     {
       return model.size();
@@ -80,24 +80,24 @@ namespace Squeal
       return model;
     }
 
-    /// What evaluate() needs at every point, for which it would be found by the first; before several threads evaluate.
+    /// Computes shared data for evaluate() in advance; call before several threads evaluate.
     void prepare() const;
 
-    /// Modes with their estimates. Only this process works, and no other need. After prepare() several threads may call.
+    /// Modes with their error estimates. Not collective. After prepare() several threads may call.
     ChartPoint evaluate(const OperatingPoint &point) const;
 
-    /// Where between two points the function of a search is zero by the reduced model in the span of the modes concerned, right and left,
-    /// at both points: it has their λ and dλ/dμ there. The other parameters of the system vary linearly between the points. Only this
-    /// process works, and no other need.
+    /// Zero of the function of a search between two points, predicted by the reduced model in the span of the right and left vectors of the
+    /// modes involved at both points, which reproduces λ and dλ/dμ there. The other parameters of the system vary linearly between the
+    /// points. Not collective.
     std::optional<double> predicted_zero(const ZeroSearch &search, const OperatingPoint &first, const OperatingPoint &second) const;
 
-    /// Largest estimated |δλ| / |λ| of the modes inside the band.
+    /// Largest estimated |δλ| / |λ| of the modes in the band.
     double largest_error(const ChartPoint &point) const;
 
-    /// Modes of @p chart in the band whose errors exceed @p tolerance.
+    /// Modes of @p chart in the band with errors above @p tolerance.
     std::vector<int> inaccurate_modes(const ChartPoint &chart, double tolerance) const;
 
-    /// Some modes of a result at an operating point.
+    /// Some modes at an operating point.
     struct ModesAt
     {
       OperatingPoint    point;
@@ -105,26 +105,25 @@ namespace Squeal
       std::vector<int>  modes;
     };
 
-    /// New vectors from the residuals of modes; nothing if they lie in the basis. All processes must call.
+    /// New basis vectors from the residuals of modes; nothing if they lie in the basis. Collective.
     std::optional<MultiVector> new_vectors(const std::vector<ModesAt> &modes) const;
 
-    /// Extends the basis. All processes must call.
+    /// Appends vectors to the basis. Collective.
     void extend(MultiVector vectors);
 
     /**
-     * Principal axes in the K_c-norm of what modes of the @p charts, right and left, of unit strain energy, have outside of the
-     * real modes, as coordinates in the basis. Axes are left out whose squares are below @p tolerance; errors of λ are products of
-     * those of right and left vectors. All processes must call.
+     * Principal axes in the K_c-norm of the components of right and left modes of the @p charts, at unit strain energy, outside the span of
+     * the real modes, as coordinates in the basis. Axes with squares below @p tolerance are dropped; errors of λ are products of errors of
+     * right and left vectors. Collective.
      *
-     * @param real_modes their coordinates
+     * @param real_modes coordinates of the real modes
      */
     DenseMatrix principal_parts(const DenseMatrix &real_modes, const std::vector<ChartPoint> &charts, double tolerance) const;
 
-    /// A smaller basis for about the same: the real modes, and their principal_parts(), the last ones left out where there would be more
-    /// than @p maximum vectors. All processes must call.
+    /// A smaller basis with about the same span: the real modes and their principal_parts(), truncated to @p maximum vectors. Collective.
     MultiVector compressed_basis(const std::vector<ChartPoint> &charts, double tolerance, int maximum) const;
 
-    /// Begins anew with another basis. All processes must call.
+    /// Starts again with another basis. Collective.
     void restart(MultiVector vectors);
 
   private:

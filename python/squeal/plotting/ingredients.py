@@ -10,7 +10,7 @@ LEAST = 1e-6  # smaller changes are rounding [%]
 
 PANELS = (("change of frequency [%]", "change of frequency [%]", "Ingredients/Frequency tolerance"),
           ("change of divergence rate [percentage points]", "change of divergence rate [points]", "Ingredients/Divergence tolerance"))
-COST = "cost beside the reference [-]"
+COST = "cost relative to reference [-]"
 
 
 def draw_bars(panel, values, changed):
@@ -26,7 +26,7 @@ def figures(results):
         return {}
     table = results.table("ingredients")
     names = [f"{ingredient}: {tried}" if reason == "" else f"{ingredient}: not tried"
-             for ingredient, tried, reason in zip(table.texts("ingredient"), table.texts("tried"), table.texts("not tried because"))]
+             for ingredient, tried, reason in zip(table.texts("ingredient"), table.texts("variant"), table.texts("reason not tried"))]
     names = [name if len(name) < 42 else name[:39] + "..." for name in names]
     changed = [number == 1 for number in table.numbers("verdict changed [-]")]
 
@@ -38,7 +38,7 @@ def figures(results):
         draw_bars(panel, values, changed)
         panel.axvline(results.number(parameter), color=style.BLACK, linestyle="--", linewidth=1.1, label="accuracy asked for")
         panel.set_xlim(left=LEAST)
-    style.prepare(picture.panels[2], "", "processor time beside the reference [-]", "")
+    style.prepare(picture.panels[2], "", "CPU time relative to reference [-]", "")
     draw_bars(picture.panels[2], table.numbers(COST), changed)
     picture.panels[2].axvline(1, color=style.GREY, linewidth=1.1, label="the scene as it is")
     for panel in picture.panels:

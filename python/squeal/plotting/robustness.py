@@ -17,7 +17,7 @@ def figures(results):
         return {}
     modes, samples = results.table("sample_modes"), results.table("samples")
     indices = results.table("sobol_indices").rows if results.has("sobol_indices") else []
-    indices = [row for row in indices if row["of"] == "largest divergence rate"]
+    indices = [row for row in indices if row["quantity"] == "largest divergence rate"]
     parameters = samples.columns[1:samples.columns.index("unstable modes [-]")]
     if indices:
         parameters = [row["uncertain parameter"] for row in sorted(indices, key=lambda row: -float(row["total index [-]"]))]

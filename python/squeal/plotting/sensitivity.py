@@ -15,7 +15,7 @@ def figures(results):
     if not results.has("sensitivities"):
         return {}
     table = results.table("sensitivities")
-    columns = [table.texts(name) for name in ("mode [-]", "label", "parameter", "only of")]
+    columns = [table.texts(name) for name in ("mode [-]", "label", "parameter", "body")]
     rows = [row for row in zip(*columns, table.numbers("frequency [Hz]"), table.numbers("divergence rate [%]"), table.numbers(CHANGE))
             if row[3] == "" and not math.isnan(row[6])]
     modes = list(dict.fromkeys(row[0] for row in rows))[:MOST_MODES]

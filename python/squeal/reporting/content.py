@@ -58,7 +58,7 @@ def checks(results, pages):
             found.append((step["name"].lower(), step["result"]))
     for name in ("digits of the eigenvalues [-]", "largest condition number of an eigenvalue [-]", "largest estimated error of lambda [-]",
                  "largest estimated error of a frequency by the mesh [-]", "largest estimated error of a divergence rate by the mesh [-]",
-                 "largest difference of a divergence rate from what its powers add up to [-]"):
+                 "largest difference of a divergence rate from the sum of its contributions [-]"):
         if name in quantities:
             found.append((name.removesuffix(" [-]"), digits(quantities[name], 3)))
     for name in ("dofs", "contact nodes", "modes converged on the mesh"):

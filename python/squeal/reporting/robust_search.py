@@ -29,8 +29,8 @@ def verdict(results):
     level = "unstable" if number(other["probability of squeal [%]"]) > 0. else "stable"
     return level, (f"Of {len(rows)} designs number {best['design [-]']} is the best ({values}): {name} {digits(number(best[goal]), 3)} %, with other "
                    f"samples {digits(number(other[goal]), 3)} %; squeal in {digits(number(other['probability of squeal [%]']), 3)} % of these "
-                   f"(95 % confidence interval {digits(number(other['lower end of confidence [%]']), 3)} to "
-                   f"{digits(number(other['upper end of confidence [%]']), 3)} %).")
+                   f"(95 % confidence interval {digits(number(other['lower confidence limit [%]']), 3)} to "
+                   f"{digits(number(other['upper confidence limit [%]']), 3)} %).")
 
 
 def sections(results):

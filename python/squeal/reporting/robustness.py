@@ -15,7 +15,7 @@ def is_of(results):
 
 def verdict(results):
     row = results.table("probabilities").rows[0]
-    value, lower, upper = (row[f"{name} [%]"] for name in ("probability of squeal", "lower end of confidence", "upper end of confidence"))
+    value, lower, upper = (row[f"{name} [%]"] for name in ("probability of squeal", "lower confidence limit", "upper confidence limit"))
     samples = results.record["counts"]["independent samples"]
     undecided = number(row["undecided samples [%]"])
     level = "unstable" if number(value) > 0. else "none" if undecided > 0. else "stable"

@@ -66,12 +66,12 @@ def modes_of(table):
 
 def thresholds_of(table):
     """Rows of each threshold, by ascending friction coefficient."""
-    return table.groups("mu [-]", "event", "label", "label of partner", FREQUENCY)
+    return table.groups("mu [-]", "event", "label", "partner label", FREQUENCY)
 
 
 def ranking(rows, change=CHANGE):
     """Rows of parameters of all pins together that have a per cent, the largest change first."""
-    return sorted((row for row in rows if row[change] and not row["only of"]), key=lambda row: -abs(number(row[change])))
+    return sorted((row for row in rows if row[change] and not row["body"]), key=lambda row: -abs(number(row[change])))
 
 
 def signed(text):
@@ -152,7 +152,7 @@ def thresholds_sections(thresholds):
 
 
 def threshold_text(row):
-    partner = f" with {row['label of partner']}" if row["label of partner"] else ""
+    partner = f" with {row['partner label']}" if row["partner label"] else ""
     return f"μ = {digits(number(row['mu [-]']))}: {row['event']} of {row['label'] or 'unnamed'}{partner}, {number(row[FREQUENCY]):.0f} Hz"
 
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The page of a run at one friction coefficient: damping ratios, modes that grow, and where their energy enters."""
+"""The page of a run at one friction coefficient: effective damping ratios, modes that grow, and where their energy enters."""
 
 from squeal.reporting import shapes
 from squeal.reporting.charts import DAMPING, FREQUENCY, RATE, STABLE, UNSTABLE, digits, end_of_band, layout, names_apart, number
@@ -25,7 +25,7 @@ def verdict(results):
     if growing:
         worst = max(growing, key=lambda row: number(row[RATE]))
         text = (f"{len(growing)} of the {where} {'grow' if len(growing) > 1 else 'grows'}; {worst['label']} at {number(worst[FREQUENCY]):.0f} Hz "
-                f"grows fastest, with a divergence rate of {digits(number(worst[RATE]), 3)} % (damping ratio {digits(number(worst[DAMPING]), 3)} %).")
+                f"grows fastest, with a divergence rate of {digits(number(worst[RATE]), 3)} % (effective damping ratio {digits(number(worst[DAMPING]), 3)} %).")
     if static:
         text += f" {len(static)} {'eigenvalues grow' if len(static) > 1 else 'eigenvalue grows'} without oscillating: static divergence."
     if undecided:
@@ -44,7 +44,7 @@ def checks(results):
 
 
 def damping_section(rows):
-    """Damping ratio over frequency, as NVH engineers look for it; below zero a mode grows."""
+    """Effective damping ratio -2R/omega over frequency; a mode with a negative one grows."""
     traces, ratios = [], [number(row[DAMPING]) for row in rows] or [0]
     for title, colour, flag in (("does not grow", STABLE, "0"), ("grows", UNSTABLE, "1")):
         own = [row for row in rows if row["unstable [-]"] == flag]
@@ -56,12 +56,12 @@ def damping_section(rows):
             "hovertemplate": "%{customdata}<extra></extra>",
             "marker": {"color": colour, "size": 9 if flag == "1" else 7, "symbol": "diamond" if flag == "1" else "circle"}})
     line = {"type": "line", "xref": "paper", "x0": 0, "x1": 1, "y0": 0, "y1": 0, "line": {"color": "#444", "width": 1}}
-    return {"id": "damping", "title": "Damping ratio over frequency", "caption": "Damping ratio −2R/ω of every mode; below zero it grows.",
-            "data": traces, "layout": layout("frequency [Hz]", "damping ratio [%]", shapes=[line])}
+    return {"id": "damping", "title": "Effective damping ratio over frequency", "caption": "Effective damping ratio −2R/ω of every mode; below zero it grows.",
+            "data": traces, "layout": layout("frequency [Hz]", "effective damping ratio [%]", shapes=[line])}
 
 
 def about(row):
-    parts = [f"<b>{row['label']}</b>", f"{number(row[FREQUENCY]):.2f} Hz", f"damping ratio {digits(number(row[DAMPING]))} %",
+    parts = [f"<b>{row['label']}</b>", f"{number(row[FREQUENCY]):.2f} Hz", f"effective damping ratio {digits(number(row[DAMPING]))} %",
              f"growth rate {digits(number(row['growth rate [1/s]']))} 1/s", f"residual {digits(number(row['residual [-]']), 2)}"]
     for column, text in (("estimated error of lambda [-]", "estimated error of λ"),
                          ("estimated frequency error by the mesh [%]", "error of the mesh, frequency [%]")):
@@ -76,12 +76,12 @@ def shape_sections(results, modes):
 
 
 def energy_sections(results):
-    """What each body adds to the divergence rate, by modes."""
+    """Contribution of each body to the divergence rate of each growing mode."""
     bodies = {rows[0]["mode [-]"]: rows for rows in results.table("energy").groups("mode [-]")} if results.has("energy") else {}
     if not bodies:
         return []
     parts = (("friction into the disc [%]", "friction on the disc", "#b2182b"), ("friction into the pin [%]", "friction on the pin", "#f4a582"),
-             ("slope of friction [%]", "slope of friction", "#7b3294"), ("radial dissipation [%]", "radial dissipation", "#4393c3"),
+             ("friction slope [%]", "friction slope", "#7b3294"), ("radial dissipation [%]", "radial dissipation", "#4393c3"),
              ("damping [%]", "damping", "#2166ac"))
     choices = []
     for mode, rows in bodies.items():
@@ -92,4 +92,4 @@ def energy_sections(results):
                         "data": data, "layout": layout("", "part of the divergence rate [%]", barmode="relative")})
     return [{"id": "energy", "title": "Where their energy enters", "choices": choices,
              "chosen": max(bodies, key=lambda mode: number(bodies[mode][0][RATE])),
-             "caption": "What friction and damping of each body add to the divergence rate; together they are the divergence rate. Mode:"}]
+             "caption": "Contributions of friction and damping of each body; they sum to the divergence rate. Mode:"}]

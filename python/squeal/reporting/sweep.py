@@ -95,7 +95,7 @@ def bifurcation_sections(results):
     traces = []
     for group, (event, colour) in enumerate(zip(events, COLOURS)):
         meeting = number(event[FREQUENCY])
-        title = f"{event['label']} and {event['label of partner']}, {meeting:.1f} Hz"
+        title = f"{event['label']} and {event['partner label']}, {meeting:.1f} Hz"
         for branch in (event["branch [-]"], event["partner [-]"]):
             rows, is_first = branches[branch], branch == event["branch [-]"]
             traces.append({"type": "scatter", "mode": "lines", "name": title, "legendgroup": group, "showlegend": is_first,

@@ -21,15 +21,15 @@ def default_scene(runs):
         yield Number("  into the disc [%]", into_disc, 100 * sum(row["friction into the disc [%]"] or 0 for row in own.values()) / found)
         for pin, share in shares:
             for side in ("top", "bottom"):
-                yield Number(f"  pin_{side}_{pin} [%]", share, 100 * own[f"pin_{side}_{pin}"]["all of it [%]"] / found)
+                yield Number(f"  pin_{side}_{pin} [%]", share, 100 * own[f"pin_{side}_{pin}"]["total [%]"] / found)
 
 
 @entry("energy", "Powers add up; outer pins take energy from R0-2")
 def sums(runs):
     results = runs("default", "disc_pins.prm", "Output/Mode shapes=none")
-    difference = results.record["quantities"]["largest difference of a divergence rate from what its powers add up to [-]"]
+    difference = results.record["quantities"]["largest difference of a divergence rate from the sum of its contributions [-]"]
     yield Number("largest difference [-]", "1e-14", difference, bound=True)
     own = {row["body"]: row for row in results.rows("energy") if row["mode [-]"] == 13}
     for pin in (4, 5):
         yield Number(f"R0-2: pin_top_{pin} [%]", "-1.9",
-                     100 * own[f"pin_top_{pin}"]["all of it [%]"] / own["disc"]["divergence rate [%]"])
+                     100 * own[f"pin_top_{pin}"]["total [%]"] / own["disc"]["divergence rate [%]"])

@@ -26,13 +26,13 @@ CHANGES = {"consistent", "-0.01 s/m", "on", "quadratic", "real modes alone", "re
 def of_row(name, row, frequency, divergence, unstable, changes):
     yield from several(f"{name}, ", ("frequency [%]", "divergence rate [points]", "unstable modes", "verdict changes (1) or not (0)"),
                        (frequency, divergence, unstable, str(int(changes))),
-                       (row[FREQUENCY], row[DIVERGENCE], row["unstable modes tried [-]"], row["verdict changed [-]"]))
+                       (row[FREQUENCY], row[DIVERGENCE], row["unstable modes in variant [-]"], row["verdict changed [-]"]))
 
 
 def rows_of(runs):
     rows = runs("ingredients", "disc_pins.prm", *TRIALS).rows("ingredients")
     # A table's numbers are numbers, also where they name what was tried
-    return {row["tried"] if isinstance(row["tried"], str) else f"{row['tried']:g}": row for row in rows}
+    return {row["variant"] if isinstance(row["variant"], str) else f"{row['tried']:g}": row for row in rows}
 
 
 @entry("ingredients", "The table of the default scene")
@@ -43,7 +43,7 @@ def default_scene(runs):
     row = rows["residual iteration"]
     yield Number("residual iteration, frequency [%]", "0.000005", row[FREQUENCY])
     yield Number("residual iteration, divergence rate [points]", "0.000003", row[DIVERGENCE])
-    yield Number("unstable modes of the scene", "9", row["unstable modes here [-]"])
+    yield Number("unstable modes of the scene", "9", row["unstable modes in reference [-]"])
 
 
 @entry("ingredients", "First-order responses, a slope, and what half of the band loses")
@@ -52,7 +52,7 @@ def statements(runs):
     real, response = rows["real modes alone"], rows["real modes + 1st order"]
     yield Number("error in divergence rate beside real modes alone", "0.37", response[DIVERGENCE] / real[DIVERGENCE])
     slope = rows["-0.01 s/m"]
-    yield Number("more modes that grow with a slope", "34", slope["unstable modes tried [-]"] - slope["unstable modes here [-]"])
+    yield Number("more modes that grow with a slope", "34", slope["unstable modes in variant [-]"] - slope["unstable modes in reference [-]"])
     yield Number("modes that half of the band loses", "49", rows["to 2500 Hz"]["modes without counterpart [-]"])
 
 
@@ -75,8 +75,8 @@ CHANGES_WITH_DAMPING = {"Rayleigh damping", "rotation of the disc", "band"}
 
 @entry("ingredients", "The table of the scene with all damping")
 def with_all_damping(runs):
-    rows = {(row["ingredient"], row["tried"] if isinstance(row["tried"], str) else f"{row['tried']:g}"): row
+    rows = {(row["ingredient"], row["variant"] if isinstance(row["variant"], str) else f"{row['tried']:g}"): row
             for row in runs("ingredients_damped", "studies/ingredients.prm").rows("ingredients")}
     for (ingredient, tried), quoted in QUOTED_WITH_DAMPING.items():
         yield from of_row(f"{ingredient}: {tried}", rows[ingredient, tried], *quoted, ingredient in CHANGES_WITH_DAMPING)
-    yield Number("unstable modes of the scene", "4", rows["friction slope", "none"]["unstable modes here [-]"])
+    yield Number("unstable modes of the scene", "4", rows["friction slope", "none"]["unstable modes in reference [-]"])

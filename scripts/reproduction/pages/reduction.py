@@ -45,7 +45,7 @@ def at_one_glance(runs):
 def groups(runs):
     modes = [row for row in study(runs, "without", "modes") if row["basis"] == "real" and row["label"].startswith("A0-5")]
     for mode in modes:
-        yield Number(f"{mode['label']}, share of the disc [%]", "29", 100 * mode["share of the disc [-]"])
+        yield Number(f"{mode['label']}, share of the disc [%]", "29", 100 * mode["disc share [-]"])
     rows = study(runs, "without", "errors")
     yield Number("real + 1st-ord., eps_div of disc modes", "9.2e-6", largest(rows, "real + 1st-ord.", "div [-]", "disc"))
     yield Number("mixed, eps_div of disc modes", "6.0e-5", largest(rows, "mixed", "div [-]", "disc"))

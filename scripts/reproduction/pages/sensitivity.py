@@ -22,7 +22,7 @@ QUOTED = {"Geometry/Disc outer radius": ("-0.1276", "-19.8"),
 @entry("sensitivity", "What one per cent of each parameter changes of the mode that grows most")
 def leading_mode(runs):
     rows = [row for row in runs("sensitivity", "studies/sensitivity.prm").rows("sensitivities")
-            if row["mode [-]"] == 1 and not row["only of"]]
+            if row["mode [-]"] == 1 and not row["body"]]
     yield from of_mode("the mode", rows[0], "3569", "1.068")
     for parameter, (rate, frequency) in QUOTED.items():
         row = next(row for row in rows if row["parameter"] == parameter)
@@ -37,6 +37,6 @@ def thresholds(runs):
     for label, mu, parameter, change in (("A0-5 +", "0.0893", "Disc material/Density", "0.0094"),
                                          ("A0-4 +", "0.0883", "Disc material/Density", "-0.0001"),
                                          ("A0-4 +", "0.0883", "Disc material/Young modulus", "0.0036")):
-        row = next(row for row in rows if row["label"] == label and row["parameter"] == parameter and not row["only of"])
+        row = next(row for row in rows if row["label"] == label and row["parameter"] == parameter and not row["body"])
         yield Number(f"{label}, mu_c", mu, row["mu [-]"])
         yield Number(f"  one per cent of {parameter}", change, row["mu per 1 % [-]"])

@@ -42,7 +42,7 @@ def over_friction(runs):
         pins = steady(runs, f"sliding_{mu}", f"Operation/Friction coefficient={mu}").rows("sliding_pins")
         yield Number(f"mu = {mu}: open nodes", n_open, sum(pin["open nodes [-]"] for pin in pins))
         yield Number(f"mu = {mu}: largest pressure / mean", ratio, max(pin["largest pressure [Pa]"] for pin in pins) / MEAN_PRESSURE)
-        yield Number(f"mu = {mu}: travel [um]", travel, 1e6 * max(pin["travel of backplate [m]"] for pin in pins))
+        yield Number(f"mu = {mu}: travel [um]", travel, 1e6 * max(pin["backplate travel [m]"] for pin in pins))
 
 
 @entry("sliding", "Largest nodal pressure with 19, 37 and 61 nodes per face, open nodes of each pin, centres of pressure")

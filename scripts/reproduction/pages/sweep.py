@@ -59,11 +59,11 @@ def step_number(results, step, pattern):
     return float(re.search(pattern, text)[1])
 
 
-@entry("sweep", "How: vectors to start from, and with which the tolerance is met")
+@entry("sweep", "How: vectors initially, and with which the tolerance is met")
 def vectors(runs):
     for name, start, end in (("without", "198", "220"), ("consistent", "263", "290")):
         results = sweep(runs, name)
-        yield Number(f"{name}: vectors to start from", start, step_number(results, "Reduced model", r"(\d+) vectors"))
+        yield Number(f"{name}: vectors initially", start, step_number(results, "Reduced model", r"(\d+) vectors"))
         yield Number(f"{name}: vectors at the end", end, step_number(results, "Sweep", r"(\d+) vectors"), bound=True)
 
 

@@ -17,7 +17,7 @@ def first_run(runs):
     for label, rate, frequency in (("F1", "1.068", "3569"), ("A0-5", "0.856", None), ("A0-4", "0.680", "2353")):
         yield from of_mode(label, results.leading(label), frequency, rate)
     yield Number("periods of a factor of e", "15", 1 / (2 * math.pi * results.leading("F1")[RATE] / 100))
-    own = {row["body"]: row["all of it [%]"] / results.leading("F1")[RATE] for row in results.rows("energy") if row["mode [-]"] == 44}
+    own = {row["body"]: row["total [%]"] / results.leading("F1")[RATE] for row in results.rows("energy") if row["mode [-]"] == 44}
     for pin, share in ((4, "14.9"), (5, "15.7"), (2, "1.9")):
         for side in ("top", "bottom"):
             yield Number(f"energy from pin_{side}_{pin} [%]", share, 100 * own[f"pin_{side}_{pin}"])
@@ -37,7 +37,7 @@ def sweep(runs):
 
 @entry("tutorial", "What would help?")
 def derivatives(runs):
-    rows = [row for row in runs("sensitivity", "studies/sensitivity.prm").rows("sensitivities") if row["mode [-]"] == 1 and not row["only of"]]
+    rows = [row for row in runs("sensitivity", "studies/sensitivity.prm").rows("sensitivities") if row["mode [-]"] == 1 and not row["body"]]
     for parameter, change in (("Geometry/Disc outer radius", "-0.1276"), ("Geometry/Pin height", "0.0654"), ("Geometry/Disc thickness", "0.0301"),
                               ("Operation/Friction coefficient", "0.0084")):
         row = next(row for row in rows if row["parameter"] == parameter)

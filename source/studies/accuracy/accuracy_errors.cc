@@ -22,7 +22,7 @@ namespace Squeal
 
     ConvergedMode converged(const int                              number,
                             const std::vector<const SolvedMesh *> &members,
-                            const std::vector<ModePairing>        &pairings) // of every member but the last with that
+                            const std::vector<ModePairing>        &pairings) // of every member except the last, with the last
     {
       const SolvedMesh   &finest = *members.back();
       ConvergedMode       mode{finest.labels[number], false, {}, {}, {}};
@@ -120,7 +120,7 @@ namespace Squeal
       return result;
     }
 
-    /// Marks what nothing beats in both processor time and error, lost modes left out.
+    /// Marks the Pareto-optimal methods in CPU time and error, ignoring lost modes.
     void mark_front(std::vector<ComparedMethod> &methods)
     {
       const auto beats = [](const ComparedMethod &a, const ComparedMethod &b) {
@@ -149,7 +149,7 @@ namespace Squeal
   const ConvergedFamily &best_family(const std::vector<ConvergedFamily> &families)
   {
     if (families.empty())
-      throw SolverError("no element was solved on two meshes, so that nothing can be extrapolated", "study of accuracy",
+      throw SolverError("no element was solved on two meshes, as required for extrapolation", "study of accuracy",
                         "give more Accuracy study/Mesh factors, smaller ones, or raise Accuracy study/Largest number of dofs");
     return *std::min_element(families.begin(), families.end(),
                              [](const ConvergedFamily &a, const ConvergedFamily &b) { return a.error < b.error; });

@@ -17,7 +17,7 @@ namespace Squeal
   {
     constexpr const char *full_order = "full order";
 
-    /// From now on measures the memory that work takes beside what other meshes have left, of all processes [byte].
+    /// Starts measuring the additional memory of all processes, without that left by other meshes [byte].
     std::function<double()> memory_meter(const MPI_Comm communicator, const double resident_before)
     {
       const bool   has_peak       = reset_peak_memory();
@@ -39,14 +39,14 @@ namespace Squeal
       return errors;
     }
 
-    /// Costs of the modes without friction but for factorisation and real modes, for which bases are charged one by one.
+    /// Cost of the frictionless modes without factorisation and real modes, which are charged to bases individually.
     Cost before_modes(const Cost &frictionless, const FrictionlessModes &modes)
     {
       return {frictionless.seconds - modes.factorisation.seconds - modes.solution.seconds,
               frictionless.cpu_seconds - modes.factorisation.cpu_seconds - modes.solution.cpu_seconds, frictionless.peak_memory};
     }
 
-    /// @p before: costs of what all bases rest on
+    /// @p before: cost shared by all bases.
     ModesByMethod reduced(const BasisRecipe             &recipe,
                           ReductionSets                 &sets,
                           const ComplexModes            &full,
@@ -74,11 +74,11 @@ namespace Squeal
       ModesByMethod result{recipe.name, basis.size(), cost, {}, {}};
       for (const ModeError &error : reduction_errors(sets.system, *sets.frictionless.inverse, model, modes, full))
         result.lambda.push_back(error.reduced);
-      result.algebraic_errors.assign(result.lambda.size(), 0.); // dense eigenproblems: rounding errors
+      result.algebraic_errors.assign(result.lambda.size(), 0.); // dense eigenproblems: rounding errors only
       return result;
     }
 
-    /// All that the parameters ask for, the coarsest meshes first.
+    /// All requested meshes and elements, the coarsest meshes first.
     std::vector<MeshAndElement> meshes_and_elements(const Parameters &parameters)
     {
       const AccuracyStudyParameters &study   = parameters.accuracy;
@@ -93,7 +93,7 @@ namespace Squeal
       return result;
     }
 
-    /// Those of the scene on a mesh, with the reduced bases that are measured.
+    /// Parameters for a mesh and element, with the requested reduced bases.
     Parameters with(const MeshAndElement &mesh, const Parameters &given)
     {
       Parameters result                       = given;
@@ -101,14 +101,14 @@ namespace Squeal
       result.geometry.outlines                = mesh.outlines;
       result.discretization.element           = mesh.element;
       result.discretization.maximum_frequency = (1. + result.accuracy.margin) * result.discretization.maximum_frequency;
-      result.reduction                        = {}; // that section belongs to another study
+      result.reduction                        = {}; // section of another study
       result.reduction.problem                = ReductionProblem::friction;
       result.reduction.bases                  = result.accuracy.bases;
       result.reduction.grown_tolerances       = {result.accuracy.grown_tolerance};
       return result;
     }
 
-    /// @param resident_before memory of this process before the first mesh [byte] @param points          of the first mesh, taken from it
+    /// @param resident_before memory of this process before the first mesh [byte]
     SolvedMesh solved(const MeshAndElement &mesh, const double resident_before, std::optional<CommonPoints> &points, Run &run)
     {
       const Parameters parameters = with(mesh, run.parameters);
@@ -169,7 +169,7 @@ namespace Squeal
     for (const MeshAndElement &mesh : meshes_and_elements(run.parameters))
       {
         const auto leave_out = [&](const std::string &reason) {
-          run.progress.finish("left out: " + reason);
+          run.progress.finish("skipped: " + reason);
           result.left_out.push_back({mesh, reason});
         };
         run.progress.begin(mesh.text());
@@ -181,7 +181,7 @@ namespace Squeal
           {
             leave_out(error.reason);
           }
-        catch (const std::runtime_error &error) // of another process
+        catch (const std::runtime_error &error) // on another process
           {
             leave_out(error.what());
           }

@@ -15,7 +15,7 @@ namespace Squeal
   {
     constexpr double percent = 100.;
 
-    /// Columns of the kinds of an error, in per cent.
+    /// Columns of the error contributions, in per cent.
     template <typename Row>
     Columns<Row> kinds(const std::string &what, const std::string &unit, const std::function<std::optional<ErrorKinds>(const Row &)> &get)
     {
@@ -39,7 +39,7 @@ namespace Squeal
       return a;
     }
 
-    /// Which mesh and element.
+    /// Columns of the mesh and element.
     template <typename Row>
     Columns<Row> mesh_columns(const std::function<const MeshAndElement &(const Row &)> &of)
     {
@@ -50,7 +50,7 @@ namespace Squeal
         {"mesh factor", "-", [of](const Row &row) { return of(row).factor; }, 2}};
     }
 
-    /// Which mesh, element and method.
+    /// Columns of the mesh, element and method.
     template <typename Row>
     Columns<Row> identity(const std::function<const ComparedMethod &(const Row &)> &of)
     {
@@ -69,7 +69,7 @@ namespace Squeal
       const ModeErrors     *mode;
     };
 
-    /// Nothing where a mode has no counterpart.
+    /// Empty if a mode has no counterpart.
     template <typename Function>
     auto if_found(const Function &value)
     {
@@ -81,7 +81,7 @@ namespace Squeal
       return row.mode->number < 0 ? "none" : row.mode->in_cluster ? "in a cluster" : "by shape";
     }
 
-    /// Every mesh, element and method with its size, costs and largest errors.
+    /// Every mesh, element and method with its size, cost and largest errors.
     Table accuracy_table(const std::vector<ComparedMethod> &methods)
     {
       using Row                 = ComparedMethod;
@@ -102,7 +102,7 @@ namespace Squeal
                    methods);
     }
 
-    /// The same of those that none beats in both time and error, the fastest first: what a user chooses among.
+    /// The Pareto-optimal methods, the fastest first.
     Table pareto_table(const std::vector<ComparedMethod> &methods)
     {
       using Row = ComparedMethod;
@@ -120,7 +120,7 @@ namespace Squeal
         front);
     }
 
-    /// Every mode by every mesh and method beside the reference.
+    /// Every mode for every mesh and method, with the reference.
     Table accuracy_mode_table(const std::vector<ComparedMethod> &methods)
     {
       std::vector<ModeRow> rows;
@@ -147,7 +147,7 @@ namespace Squeal
 
     // --------------------------------------------------------------------- orders
 
-    /// Orders of convergence and limits of every mode up to a frequency [Hz], for every family of meshes, beside those of the reference.
+    /// Orders of convergence and limits of every mode up to a frequency [Hz], for every family of meshes, compared with the reference.
     Table accuracy_order_table(const std::vector<ConvergedFamily> &families,
                                const ConvergedFamily              &reference,
                                const double                        maximum_frequency)
@@ -169,7 +169,7 @@ namespace Squeal
                 rows.push_back({&family, &family.modes[j], partner >= 0 ? &reference.modes[partner] : nullptr});
               }
         }
-      // Of sequences of three meshes or more; an order that was not observed is none
+      // For sequences of three or more meshes; empty if no order was observed
       const auto order = [](const std::optional<Extrapolation> &sequence) {
         return sequence && !sequence->observed_orders.empty() ? Entry(sequence->observed_orders.back()) : Entry();
       };
@@ -181,7 +181,7 @@ namespace Squeal
                                 {"order of frequency", "-", [&](const Row &row) { return order(row.mode->frequency.sequence); }, 2},
                                 {"frequency", "Hz", [](const Row &row) { return row.mode->frequency.value; }, 3},
                                 {"uncertainty of frequency", "Hz", [](const Row &row) { return row.mode->frequency.uncertainty; }, 3},
-                                {"frequency beside reference", "%",
+                                {"frequency relative to reference", "%",
                                  [](const Row &row) {
                                    return row.counterpart ?
                                             Entry(percent * (row.mode->frequency.value / row.counterpart->frequency.value - 1.)) :
@@ -192,7 +192,7 @@ namespace Squeal
                                 {"divergence rate", "%", [](const Row &row) { return percent * row.mode->divergence.value; }, 4},
                                 {"uncertainty of divergence rate", "percentage points",
                                  [](const Row &row) { return percent * row.mode->divergence.uncertainty; }, 4},
-                                {"divergence rate beside reference", "percentage points",
+                                {"divergence rate relative to reference", "percentage points",
                                  [](const Row &row) {
                                    return row.counterpart ?
                                             Entry(percent * (row.mode->divergence.value - row.counterpart->divergence.value)) :
@@ -210,7 +210,7 @@ namespace Squeal
                    meshes);
     }
 
-    /// What the reference is, and how far it is to be believed.
+    /// Describes the reference and its reliability.
     void report(const ConvergedFamily &reference, const double maximum_frequency, Run &run)
     {
       int n = 0, n_orders = 0, n_in_cluster = 0;
@@ -227,10 +227,10 @@ namespace Squeal
       run.measure("error of the finest mesh of the reference, rms [-]", reference.error);
       run.screen << '\n';
       run.progress.note(text("  reference: ", reference.name, ", extrapolated from ", reference.members.size(), " meshes up to ",
-                             reference.members.back()->n_dofs, " dofs; its finest mesh is off by some ",
+                             reference.members.back()->n_dofs, " dofs; error of its finest mesh about ",
                              decimal_text(100. * reference.error), " % (rms)"));
       run.progress.note(text("  ", n, " modes; the frequencies of ", n_orders, " converge with an observed order, ", n_in_cluster,
-                             " are in clusters whose members the mesh decides"));
+                             " are in clusters that mix from mesh to mesh"));
     }
     Reason no_grown_basis(const Parameters &p)
     {
@@ -244,8 +244,8 @@ namespace Squeal
     }
   } // namespace
 
-  /// `Study = accuracy`: the scene on coarser and finer meshes, with every element, at full order and with reduced bases; errors of every
-  /// mode against the extrapolated modes of the family that converges best, split by their kinds, beside what each takes.
+  /// `Study = accuracy`: the model on coarser and finer meshes, with every element, at full order and with reduced bases; errors of every
+  /// mode relative to the extrapolated modes of the best family, with their contributions, and costs.
   static void run_accuracy_study(Scene &, Run &run)
   {
     const double       maximum_frequency = run.parameters.discretization.maximum_frequency;
@@ -262,7 +262,7 @@ namespace Squeal
     if (!solutions.left_out.empty())
       run.store_table("accuracy_left_out", left_out_table(solutions.left_out));
     report(reference, maximum_frequency, run);
-    run.screen << "\n  Pareto front: what nothing beats in both time and largest frequency error\n\n";
+    run.screen << "\n  Pareto front of time and largest frequency error\n\n";
     pareto_table(methods).print(run.screen);
     run.screen << '\n';
     run.finish();

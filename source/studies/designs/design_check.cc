@@ -13,7 +13,7 @@ namespace Squeal
   {
     using dealii::Utilities::split_string_list;
 
-    /// Parameters that say how designs are solved, not what they are.
+    /// Parameters of the solution method, not of the designs.
     constexpr const char *of_the_solution[] = {"Study",
                                                "Designs/",
                                                "Search/",
@@ -27,13 +27,13 @@ namespace Squeal
                                                "Geometry/Meshing time limit",
                                                "Geometry/Meshing memory limit"};
 
-    /// Why a parameter changes nothing in a design; empty if it does. @p as_written: the design without what Accuracy changes in it.
+    /// Reason why a parameter has no effect on a design; empty if it has. @p as_written: the design without the changes by Accuracy.
     std::string why_unused(const std::string &name, const Parameters &design, const Parameters &as_written)
     {
       const std::string path = dealii::Utilities::trim(name.substr(0, name.find('[')));
       for (const char *numerical : of_the_solution)
         if (concerns(numerical, path))
-          return "it says how designs are solved, not what they are";
+          return "it controls the solution method, not the design";
       if (current_value(design, name) != current_value(as_written, name))
         return "Accuracy = " + to_string(design.goal) + " chooses it";
       try
@@ -43,11 +43,11 @@ namespace Squeal
         }
       catch (const MeshError &)
         {
-          return ""; // there is no such geometry, which the design is told
+          return ""; // the geometry does not exist, which is reported for the design
         }
     }
 
-    /// The same for a variable, of whose parameters none may be used.
+    /// The same for a variable: reason if none of its parameters is used.
     std::string why_all_unused(const std::string &variable, const Parameters &design, const Parameters &as_written)
     {
       std::string reason;
@@ -76,11 +76,11 @@ namespace Squeal
 
     [[noreturn]] void refuse_unused(const UnusedParameter &variable, const std::string &where)
     {
-      throw ParameterError(in_quotes(variable.path) + " varies, but changes nothing: " + variable.why, where,
-                           "leave it out, or change the parameters by which it acts");
+      throw ParameterError(in_quotes(variable.path) + " varies, but has no effect: " + variable.why, where,
+                           "remove it, or change the parameters on which its effect depends");
     }
 
-    /// Whether designs that differ in some of the variables do not differ in the others.
+    /// True if designs that differ in some of the variables have equal values of the others.
     bool are_equal_but_for(const std::vector<UnusedParameter> &unused, const DesignPlan &plan)
     {
       std::map<std::vector<std::string>, std::vector<std::string>> seen;
@@ -95,7 +95,7 @@ namespace Squeal
       return false;
     }
 
-    /// Why a design is refused; nothing if it is not.
+    /// Reason why a design is rejected; nothing if it is not.
     std::optional<ParameterError> refusal(const Parameters               &parameters,
                                           const std::vector<std::string> &names,
                                           const std::vector<std::string> &values)
@@ -103,7 +103,7 @@ namespace Squeal
       try
         {
           Parameters design          = with_design(parameters, names, values);
-          design.study               = &sweep_study; // whose check does not come back here
+          design.study               = &sweep_study; // its check does not call this function
           design.sweep.map_parameter = MapParameter::none;
           design.check();
           return {};
@@ -160,7 +160,7 @@ namespace Squeal
               }
             catch (const ParameterError &)
               {
-                return false; // told in the row of the design
+                return false; // reported in the row of the design
               }
           });
         if (!is_used && !reason.empty())

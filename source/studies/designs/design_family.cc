@@ -60,7 +60,7 @@ namespace Squeal
 
   void DesignFamily::solve(const std::vector<OperatingPoint> &points, const std::vector<int> &training)
   {
-    /// Vectors beyond which small matrices are no longer small.
+    // Basis size above which small matrices become expensive
     constexpr int               most_vectors = 900;
     ErrorControlledSweepOptions options;
     options.tolerance     = run.parameters.sweep.tolerance;

@@ -30,30 +30,30 @@ namespace Squeal
     {
       const std::string name = folder.string();
       if (fs::exists(folder) && !fs::is_directory(folder))
-        throw FileError("`" + name + "` is a file, but an unfinished study is kept in a folder of that name", "file " + name,
+        throw FileError("`" + name + "` is a file, but an unfinished study needs a folder with this name", "file " + name,
                         "choose another --output, or move the file");
       if (fs::exists(folder) && !fs::is_empty(folder))
         {
           const std::string there = content(folder / key_file);
           if (there.rfind("squeal designs", 0) != 0)
-            throw FileError("the folder `" + name + "` holds files that are not those of an unfinished study of designs", "folder " + name,
+            throw FileError("the folder `" + name + "` contains files other than an unfinished study of designs", "folder " + name,
                             "choose another --output, or empty the folder");
           if (there != title + key)
-            throw FileError("an unfinished study of other designs, another mesh or another version of the program lies there: " +
+            throw FileError("the folder contains an unfinished study of other designs, another mesh or another version of the program: " +
                               first_difference(there, title + key),
                             "folder " + name,
-                            "run it to the end with its own parameters, with which `" + (folder / key_file).string() +
-                              "` begins; choose another --output; or delete the folder");
+                            "finish it with its own parameters, at the beginning of `" + (folder / key_file).string() +
+                              "`; choose another --output; or delete the folder");
         }
       fs::create_directories(folder);
       replace_file(folder / key_file, title + key);
     }
 
-    /// Designs that are being solved by one process, one after the other.
+    /// Designs solved by one process, one after the other.
     struct Worker
     {
-      std::vector<int>               designs; ///< all of them
-      std::vector<int>               left;    ///< of which no result has been seen
+      std::vector<int>               designs; ///< all designs
+      std::vector<int>               left;    ///< designs without a result so far
       std::unique_ptr<WorkerProcess> process;
       Stopwatch                      stopwatch;
     };
@@ -69,7 +69,7 @@ namespace Squeal
 
   std::string checkpoint_folder(const std::string &output)
   {
-    // The last slash, of which there may be one, belongs to the name of the folder, not in it.
+    // A trailing slash belongs to the folder name, not to a file in it
     return (fs::path(output) / "").lexically_normal().parent_path().string() + ".checkpoint";
   }
 
@@ -88,7 +88,7 @@ namespace Squeal
         }
       catch (const fs::filesystem_error &error)
         {
-          problem = {"what the study finds cannot be kept: " + error.code().message(), "folder " + folder.string(),
+          problem = {"the results of the study cannot be stored: " + error.code().message(), "folder " + folder.string(),
                      "check permissions and free space"};
         }
     problem = dealii::Utilities::MPI::broadcast(communicator, problem, 0);
@@ -155,7 +155,7 @@ namespace Squeal
       };
       worker.left.erase(std::remove_if(worker.left.begin(), worker.left.end(), is_found), worker.left.end());
     };
-    /// What a process leaves when it ends is the fault of the design that it was at.
+    /// If a process ends early, its next design has failed
     const auto blame_next = [&](Worker &worker, const std::string &end) {
       DesignResult result = unfinished(worker.left.front());
       result.reason       = "its process was " + end;

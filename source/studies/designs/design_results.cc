@@ -16,7 +16,7 @@ namespace Squeal
   {
     constexpr std::size_t n_shown = 20;
 
-    /// Overlaps compare shapes; more digits than these say nothing.
+    /// Overlaps compare shapes; more digits are not significant.
     Entry overlap_cell(const boost::optional<double> &overlap)
     {
       return overlap ? Entry(std::round(1e6 * *overlap) / 1e6) : Entry();
@@ -29,7 +29,7 @@ namespace Squeal
       return [value](const DesignResult &row) { return row.outcome == DesignOutcome::solved ? Entry(std::invoke(value, row)) : Entry(); };
     }
 
-    /// A value of one of the friction coefficients, where the design has it.
+    /// A value at one of the friction coefficients, if the design has it.
     template <typename Value>
     std::function<Entry(const DesignResult &)> at(boost::optional<DesignGrowth> DesignResult::*growth,
                                                   Value DesignGrowth::*value,
@@ -45,7 +45,7 @@ namespace Squeal
       };
     }
 
-    /// What all designs have of something, each with the number of its design.
+    /// Items of all designs, each with the number of its design.
     template <typename Item>
     std::vector<std::pair<int, Item>> of_all(const std::vector<DesignResult> &designs, std::vector<Item> DesignResult::*items)
     {
@@ -64,7 +64,7 @@ namespace Squeal
       return columns;
     }
 
-    /// Quiet designs first: by the friction coefficient from which on they squeal, then by the largest divergence rate.
+    /// Quiet designs first: by descending onset of squeal, then by the largest divergence rate.
     std::vector<DesignResult> by_quietness(const std::vector<DesignResult> &designs)
     {
       std::vector<DesignResult> result;
@@ -85,7 +85,7 @@ namespace Squeal
         values.push_back(names[v] + " = " + row.values[v]);
       return text("design ", row.number, " (", boost::algorithm::join(values, "; "), "): ", outcome_of(row),
 
-                  row.worst ? text(", ", decimal_text(100. * row.worst->divergence_rate), " % at most (", row.worst->label, " at ",
+                  row.worst ? text(", ", decimal_text(100. * row.worst->divergence_rate), " % maximum (", row.worst->label, " at ",
                                    decimal_text(row.worst->frequency), " Hz)") :
                               ", no mode grows");
     }
@@ -146,7 +146,7 @@ namespace Squeal
                                {"mechanism", "", of(&DesignThreshold::mechanism)},
                                {"label", "", of(&DesignThreshold::label)},
                                {"overlap with reference", "-", [](const Line &line) { return overlap_cell(line.second.overlap); }, 3},
-                               {"label of partner", "", of(&DesignThreshold::partner)},
+                               {"partner label", "", of(&DesignThreshold::partner)},
                                {"frequency", "Hz", of(&DesignThreshold::frequency), 3}},
                  of_all(designs, &DesignResult::thresholds));
   }

@@ -12,7 +12,7 @@ namespace Squeal
 {
   namespace
   {
-    /// The rows of the shapes that belong to bodies of @p chosen.
+    /// Rows of the shapes that belong to bodies in @p chosen.
     DenseMatrix rows_of(const ReferenceModes &reference, const CommonPoints &chosen)
     {
       DenseMatrix  result(3 * chosen.n(), reference.shapes.cols());
@@ -32,18 +32,18 @@ namespace Squeal
       return result;
     }
 
-    /// Names of the branches of a chart by the reference modes, found where each branch begins.
+    /// Labels of the branches of a chart by reference modes, at the first point of each branch.
     std::vector<ReferenceName> names_of_branches(const SweepModel &model, const SweepChart &chart, const ReferenceModes &reference)
     {
       const std::vector<Branch>      &branches = chart.chart.branches;
       std::vector<ReferenceName>      result(branches.size());
-      std::map<int, std::vector<int>> branches_from; // by the point at which they begin
+      std::map<int, std::vector<int>> branches_from; // by their first points
       for (std::size_t b = 0; b < branches.size(); ++b)
         branches_from[branches[b].begin()].push_back(static_cast<int>(b));
       const Linearisation &linearisation = model.frictionless.linearisation;
       for (const auto &[i, members] : branches_from)
         {
-          // All modes of the point: how much of a mode is left to others depends on them
+          // All modes of the point: they determine which part of a mode belongs to others
           const ChartPoint &point = chart.chart.points[i];
           ComplexModes      modes;
           std::vector<int>  all(point.lambda.size());
@@ -59,7 +59,7 @@ namespace Squeal
       return result;
     }
 
-    /// The first of the onsets of several charts: @p found becomes that of one more chart if it is earlier.
+    /// First onset over several charts: replaces @p found by an earlier one.
     void keep_first(const std::optional<GrowthOnset> &onset, const std::vector<std::string> &labels, boost::optional<DesignGrowth> &found)
     {
       if (!onset || (found && found->friction_coefficient <= onset->friction_coefficient))
@@ -74,7 +74,8 @@ namespace Squeal
       return name.in_cluster || name.name.empty() ? boost::optional<double>() : name.overlap;
     }
 
-    /// Takes over what a chart says of its design. There are several, of parts of the friction coefficients, where the contact set changes.
+    /// Adds the results of a chart to its design. There are several charts, over parts of the friction coefficients, if the contact set
+    /// changes.
     void take_over(SweepModel           &model,
                    const SweepChart     &sweep,
                    const ReferenceModes &reference,
@@ -119,7 +120,7 @@ namespace Squeal
                 mode.verdict                   = to_string(point.verdicts[j]);
                 mode.largest_divergence_rate   = std::max(mode.largest_divergence_rate, quantities.divergence_rate);
                 grows                          = grows || point.verdicts[j] == Verdict::unstable;
-                // Points of refinement lie at coalescences, where errors of λ are large and say nothing of the others
+                // Refinement points are at coalescences, where errors of λ are large and not representative
                 if (!chart.is_refinement[i])
                   {
                     result.largest_error    = std::max(result.largest_error, point.errors[j]);
@@ -148,7 +149,7 @@ namespace Squeal
       result.n_undecided           = model.n_of(last, Verdict::undecided);
     }
 
-    /// Modes in the band at the first friction coefficient beside the real ones that inertia counts, those of a rigid body included.
+    /// Compares the modes in the band at the first friction coefficient with the real ones counted by inertia, including rigid-body modes.
     void compare_counts(const SweepModel &model, const SweepChart &sweep, const int n_counted, DesignResult &result)
     {
       const ChartCount &first = sweep.chart.counts.front();
@@ -244,7 +245,7 @@ namespace Squeal
 
     const SweepPlan                      plan = sweep_plan(scene, part);
     std::vector<std::vector<SweepChart>> charts(plan.lines.size());
-    double                               largest_friction_coefficient = 0.; // of the charts so far
+    double                               largest_friction_coefficient = 0.; // over all charts so far
     DesignResult                         result                       = begun_result(scene);
     for (const ContactRegime &regime : plan.regimes)
       {

@@ -17,7 +17,7 @@ namespace Squeal
   {
     namespace fs = std::filesystem;
 
-    /// Numbers of a list such as "3, 7-9".
+    /// Numbers in a list such as "3, 7-9".
     std::vector<int> parse_designs(const std::string &list, const int n)
     {
       const auto refuse = [&](const std::string &what) {
@@ -32,13 +32,13 @@ namespace Squeal
           const bool              is_range = std::regex_match(part, ends, pattern);
           const int first = is_range ? std::stoi(ends[1]) : 0, last = is_range && ends[2].matched ? std::stoi(ends[2]) : first;
           if (first < 1 || last < first || last > n)
-            refuse(in_quotes(part) + " names no designs of this study");
+            refuse(in_quotes(part) + " is not a number of designs in this study");
           for (int design = first; design <= last; ++design)
             result.insert(design);
         }
 
       if (result.empty())
-        refuse("the list names no design");
+        refuse("the list is empty");
       return {result.begin(), result.end()};
     }
 
@@ -54,7 +54,7 @@ namespace Squeal
       return work;
     }
 
-    /// Solves a design in this process, alone.
+    /// Solves a design in this process.
     DesignResult solve_here(Run &run, const DesignWork &work, const int design, const ReferenceModes &reference)
     {
       DesignResult    result = unfinished(run, work.plan, design);
@@ -74,7 +74,7 @@ namespace Squeal
         }
       catch (const FileError &)
         {
-          throw; // nothing that the design is to blame for
+          throw; // not caused by the design
         }
       catch (const Error &error)
         {
@@ -91,8 +91,7 @@ namespace Squeal
       return result;
     }
 
-    /// Solves a design, or several that share a mesh one after the other, each by the basis that those before it have left, for the study
-    /// of which this process is a part.
+    /// Solves one design, or several on a common mesh one after the other with a growing basis, as a worker process of the study.
     void solve_part(Run &run, const DesignWork &work, const ReferenceModes &reference, const DesignStore &store)
     {
       const auto              alone = [&](const int design) { return solve_here(run, work, design, reference); };
@@ -111,7 +110,7 @@ namespace Squeal
           throw;
         }
       catch (const Error &)
-        {} // what is wrong each of them tells in its row
+        {} // errors are reported in the rows of the designs
       if (!family)
         {
           for (const int design : work.designs)
@@ -138,7 +137,7 @@ namespace Squeal
             }
           catch (const Error &error)
             {
-              run.progress.note(text("  design ", design, " is solved alone: ", in_one_line(error)));
+              run.progress.note(text("  design ", design, " is solved individually: ", in_one_line(error)));
               result = alone(design);
             }
           result.number = design;
@@ -149,16 +148,16 @@ namespace Squeal
     }
   } // namespace
 
-  /// `Study = geometry`: sweeps of many designs, each meshed anew, with their thresholds; modes named by those of the scene that they
-  /// resemble. Each design is solved in a process of its own, which is this study of one design; designs that share a mesh are solved
-  /// together, in a process that is this study of them.
+  /// `Study = geometry`: sweeps of many designs, each remeshed, with their thresholds; modes are labelled by the most similar modes of the
+  /// given model. Each design is solved in a worker process, which runs this study for one design; designs on a common mesh are solved
+  /// together in one worker process.
   static void run_design_study(Scene &scene, Run &run)
   {
     const DesignWork           work = work_of(run);
     std::vector<DesignResult>  results;
     std::optional<DesignStore> store;
-    const fs::path             above   = fs::path(run.folder().name()).parent_path();
-    const bool                 is_part = fs::exists(above / DesignStore::reference_file); // of a study that has left its modes there
+    const fs::path             above = fs::path(run.folder().name()).parent_path();
+    const bool is_part = fs::exists(above / DesignStore::reference_file); // of a study that has stored its reference modes there
     if (is_part)
       {
         solve_part(run, work, design_reference(scene, run, above / DesignStore::reference_file), DesignStore(above));
@@ -166,7 +165,7 @@ namespace Squeal
         return;
       }
     for (const UnusedParameter &variable : unused_variables(run.parameters, work.plan))
-      run.progress.note(text("  note: changes nothing in the designs: ", variable.path, " (", variable.why, ")"));
+      run.progress.note(text("  note: without effect on the designs: ", variable.path, " (", variable.why, ")"));
 
     if (work.designs.size() == 1)
       {
@@ -179,7 +178,7 @@ namespace Squeal
       {
         store.emplace(checkpoint_folder(run.folder().name()), design_key(run, scene, work.plan), run.communicator);
         if (const std::size_t n_known = store->n_known(work.designs); n_known > 0)
-          run.progress.note(text("  an interrupted study goes on: ", n_known, " of ", work.designs.size(), " designs are known"));
+          run.progress.note(text("  continuing an interrupted study: ", n_known, " of ", work.designs.size(), " designs are finished"));
         results = solve_all(scene, run, work, *store, run.options.again);
       }
     for (const int design : work.designs)
@@ -193,7 +192,7 @@ namespace Squeal
     });
   }
 
-  /// Of a system file: its modes at lists of values of its parameters, by one reduced model.
+  /// For a system file: its modes at lists of parameter values, by one reduced model.
   static void run_designs_of_system(Run &run)
   {
     SystemFile       file = read_system(run);

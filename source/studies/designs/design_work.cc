@@ -25,13 +25,13 @@ namespace Squeal
 
   namespace
   {
-    /// Modes of the scene are found so far beyond the band that those of stiffer and softer designs find their likes [-].
+    /// Relative extension of the reference modes beyond the band, so that modes of stiffer and softer designs find counterparts [-].
     constexpr double reference_margin = 0.2;
 
-    /// Vectors in the basis of a family of designs, about.
+    /// Typical number of vectors in the basis of a family of designs.
     constexpr double usual_family_basis = 500.;
 
-    /// Values of the variables in a design, as the scene has them where the design leaves them open.
+    /// Values of the variables in a design, or of the given model if the design does not set them.
     std::vector<std::string> shown_values(const Parameters &parameters, const DesignPlan &plan, const std::vector<std::string> &values)
     {
       std::vector<std::string> result = values;
@@ -41,14 +41,14 @@ namespace Squeal
       return result;
     }
 
-    /// Designs that one MPI process solves side by side: by cores, and by the memory that each takes.
+    /// Number of designs solved concurrently per MPI process, limited by cores and by memory.
     unsigned int n_side_by_side(const Scene &scene, const Run &run, const bool has_families)
     {
       if (run.parameters.designs.n_processes > 0)
         return run.parameters.designs.n_processes;
       const unsigned int n_here = n_processes_here(run.communicator);
       const unsigned int degree = degree_of(run.parameters.discretization.element);
-      // The basis of a family is there twice when it grows
+      // The basis of a family is stored twice while it is extended
       const double bytes_of_basis = has_families ? 2. * sizeof(double) * usual_family_basis * scene.model->free_map().n() : 0.;
       const double bytes          = bytes_of_basis + expected_size(scene.mesh, degree).memory(run.parameters.solvers.maximum_modes);
       const double by_cores       = std::min<double>(n_usable_cores(), static_cast<double>(std::thread::hardware_concurrency()) / n_here);
@@ -56,14 +56,14 @@ namespace Squeal
       return static_cast<unsigned int>(std::max(1., std::floor(std::min(by_cores, by_memory))));
     }
 
-    /// Designs of fewer than this are solved one by one: what they share costs more than it saves.
+    /// Smaller families are solved individually: sharing costs more than it saves.
     constexpr std::size_t least_family = 4;
 
-    /// Designs that one process solves at most, one after the other; results must not depend on how many processes there are.
+    /// Largest number of designs solved by one process in turn; independent of the number of processes, as results must be.
     constexpr std::size_t largest_batch = 25;
 
-    /// Designs by the process that solves them: those that share a mesh and its matrices one after the other, in parts of nearly the same
-    /// number; the others alone. Those that are refused by their parameters need none.
+    /// Assigns designs to worker processes: those on a common mesh in turn, in parts of nearly equal size; the others individually.
+    /// Rejected designs need no process.
     std::vector<std::vector<int>> batches_of(const Run &run, const DesignWork &work)
     {
       std::map<std::string, std::vector<int>> families;
@@ -156,11 +156,11 @@ namespace Squeal
     run.progress.begin("Reference modes");
     Progress   silent;
     Parameters parameters             = run.parameters;
-    parameters.solvers.complex_solver = ComplexSolver::residual_iteration; // which asks for no attachment modes in advance
+    parameters.solvers.complex_solver = ComplexSolver::residual_iteration; // which needs no attachment modes in advance
     Run                     part(parameters, run, silent);
     const FrictionlessModes modes  = frictionless_modes(linearised_scene(scene, part), part, reference_margin);
     ReferenceModes          result = reference_modes(modes, run.parameters.materials);
-    run.progress.finish(text(result.names.size(), " modes of the scene as it is, by which those of designs are named"));
+    run.progress.finish(text(result.names.size(), " modes of the given model, for labels of the designs"));
     return result;
   }
 
@@ -194,7 +194,7 @@ namespace Squeal
           mine.push_back(batches[i]);
           n_mine += std::count_if(batches[i].begin(), batches[i].end(), [&](const int design) { return !store.find(design); });
         }
-    std::vector<DesignResult> refused; // by their parameters
+    std::vector<DesignResult> refused; // rejected parameters
     if (run.is_root)
       for (const int design : work.designs)
         if (DesignResult result = unfinished(run, work.plan, design);
@@ -214,7 +214,7 @@ namespace Squeal
       const std::size_t n_left  = n_mine - n_done;
       const double      seconds = stopwatch.cost().seconds / static_cast<double>(n_done) * static_cast<double>(n_left);
       run.progress.note(text("    design ", result.number, ": ", outcome_of(result), "; ", std::round(result.seconds), " s",
-                             n_left > 0 ? text(", ", n_left, " left, some ", std::ceil(seconds / 60.), " min") : ""));
+                             n_left > 0 ? text(", ", n_left, " left, about ", std::ceil(seconds / 60.), " min") : ""));
       run.progress.update(text(n_known + n_done, " of ", n_known + n_mine, " designs"));
     };
     for (const DesignResult &design : refused)
@@ -229,7 +229,7 @@ namespace Squeal
     for (const int design : work.designs)
       if (auto result = store.find(design))
         results.push_back(*std::move(result));
-    run.progress.finish(text(results.size(), " designs, ", n_here * n_ranks, " side by side"));
+    run.progress.finish(text(results.size(), " designs, ", n_here * n_ranks, " concurrently"));
     return results;
   }
 
@@ -239,7 +239,7 @@ namespace Squeal
     run.screen << '\n';
     for (const std::string &line : verdict(names, results))
       run.progress.note(line);
-    run.screen << "\n  the quietest designs, all in designs.csv\n\n";
+    run.screen << "\n  the quietest designs; all designs: designs.csv\n\n";
     quietest_designs(names, results).print(run.screen);
     run.screen << '\n';
     run.store_table("designs", design_table(names, results));
@@ -250,7 +250,7 @@ namespace Squeal
   void write_parameter_file(Parameters design, const std::string &name, const Run &run)
   {
     const GeometryCopy copy = copy_of(design.geometry.path());
-    // Seen from the file; where nothing was copied, the geometry is found by its name from everywhere
+    // Relative to the file; a geometry that was not copied is found by its name from anywhere
     const bool is_below  = name.find('/') != std::string::npos;
     design.geometry.file = (is_below && !copy.files.empty() ? "../" : "") + copy.name;
     design.designs       = {};
@@ -262,14 +262,15 @@ namespace Squeal
   {
     Study study{name, run, {"Designs/", "Sweep/"}};
     study.rules = std::move(own_rules);
-    study.rules.push_back({"Operation/Friction coefficient",
-                           [](const Parameters &) { return "designs go from Sweep/First to Sweep/Last friction coefficient"; }});
+    study.rules.push_back(
+      {"Operation/Friction coefficient", [](const Parameters &) { return "designs use Sweep/First to Sweep/Last friction coefficient"; }});
     study.rules.push_back({"Operation/Rotation speed", no_sliding_speed});
     study.rules.push_back({"Complex modes/", [](const Parameters &) { return "designs are solved as reduced models"; }});
     for (const char *path : {"Sweep/Parameter", "Sweep/Second parameter", "Sweep/Compare dissipation", "Sweep/Mode shapes at",
                              "Sweep/Complex plane at", "Sweep/Count modes at", "Sweep/Map parameter", "Sweep/First map value",
                              "Sweep/Last map value", "Sweep/Number of map values", "Sweep/Map friction coefficients"})
-      study.rules.push_back({path, [](const Parameters &) { return "designs have no maps, planes and mode shapes; Study = sweep has"; }});
+      study.rules.push_back(
+        {path, [](const Parameters &) { return "designs have no maps, complex planes or mode shapes; use Study = sweep"; }});
     study.rules.push_back(
       {"Output/", [](const Parameters &) { return "the study writes no mode shapes; parameter files of its designs do"; }});
     return study;

@@ -9,11 +9,11 @@ namespace Squeal
 {
   namespace
   {
-    /// |λ_1 − λ_2| / |λ_1| up to which modes of one name may be counterparts whatever their shapes [-].
+    /// |λ_1 − λ_2| / |λ_1| up to which modes with the same label may be counterparts, whatever their shapes [-].
     constexpr double same_name_within = 0.1;
 
-    /// Pairs modes without counterpart by shape that bear one name, nearest λ first: members of a doublet or of equal pins that a change
-    /// turns among each other so much that one shape stands for both.
+    /// Pairs modes with the same label that have no counterpart by shape, closest λ first: members of a doublet or of equal pins, which a
+    /// change may mix until one shape represents both.
     void pair_by_name(std::vector<PairedMode> &pairs, const FrictionModes &first, const FrictionModes &second)
     {
       std::vector<int>  left_1, left_2;
@@ -29,7 +29,7 @@ namespace Squeal
       if (left_1.empty() || left_2.empty())
         return;
 
-      // At least as many columns as rows; what none of the second is left for has no gain
+      // At least as many columns as rows; additional columns have no gain
       const std::size_t n_columns = std::max(left_1.size(), left_2.size());
       const auto        gain      = [&](const int row, const int column) {
         if (column >= static_cast<int>(left_2.size()))
@@ -60,10 +60,10 @@ namespace Squeal
       return result;
     }
 
-    /// Changes with a larger effect than this do not keep the accuracy.
+    /// Largest effect that meets the accuracy.
     constexpr double allowed = 1.;
 
-    /// The first change after @p number of the same ingredient that keeps the accuracy with a smaller effect.
+    /// The next change after @p number of the same ingredient that meets the accuracy with a smaller effect.
     std::optional<int> next_of_ingredient(const std::vector<CheaperChange> &changes, const int number)
     {
       const double bound = std::min(allowed, changes[number].severity);

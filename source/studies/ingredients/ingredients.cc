@@ -6,12 +6,12 @@ namespace Squeal
 {
   namespace
   {
-    /// Real modes of a basis that has upper modes go up to (1 + this) times the end of the band.
+    /// Real modes of a basis with upper modes extend to (1 + this) times the end of the band.
     constexpr double upper_modes = 0.5;
-    /// End of a shorter band, as a part of the end of the band.
+    /// End of the shorter band, as a fraction of the given one.
     constexpr double shorter_band = 0.5;
 
-    // What ingredients are called ------------------------------------------------
+    // Names of values ------------------------------------------------------------
 
     const auto on_or_off  = [](const bool is_on) -> std::string { return is_on ? "on" : "off"; };
     const auto nothing    = [](const Parameters &) { return "none"; };
@@ -21,12 +21,11 @@ namespace Squeal
 
     const auto has_rayleigh_damping = [](const Parameters &p) { return p.materials.is_damped(); };
 
-    // Why a scene cannot have them -----------------------------------------------
+    // Obstacles ------------------------------------------------------------------
 
     Reason no_sliding(const Parameters &p, const std::optional<SlidingState> &)
     {
-      return p.operation.load_per_side > 0. && p.operation.rotation_speed > 0. ? nullptr :
-                                                                                 "nothing presses or slides: no load or no rotation speed";
+      return p.operation.load_per_side > 0. && p.operation.rotation_speed > 0. ? nullptr : "no load, or no rotation speed";
     }
 
     Reason no_open_node(const Parameters &, const std::optional<SlidingState> &state)
@@ -40,12 +39,12 @@ namespace Squeal
     {
       if (p.discretization.element == Element::quadratic)
         return "edges of quadratic elements follow the circles";
-      return unless(p.geometry.is_plan(), "the geometry is a solid, whose outlines are as it has them");
+      return unless(p.geometry.is_plan(), "the geometry is a solid model with given outlines");
     }
 
     using P = const Parameters &;
 
-    /// @p value of the parameter that @p member finds. It is present where the parameter has it, unless @p is_present says more.
+    /// Option @p value of the parameter found by @p member. Present if the parameter has this value, unless @p is_present says otherwise.
     template <typename Member, typename Value>
     Ingredient option(const char                                    *name,
                       const Member                                  &member,
@@ -71,7 +70,7 @@ namespace Squeal
               obstacle};
     }
 
-    /// Complex modes from a reduced basis in the place of those of full order.
+    /// Complex modes from a reduced basis instead of full order.
     Ingredient from_basis(const std::function<std::string(const Parameters &)> &tried, const char *basis, const double margin = 0.)
     {
       return {"complex modes",
@@ -113,8 +112,7 @@ namespace Squeal
        [](Variation &v) { v.parameters.operation.friction_slope = v.parameters.ingredients.trial_slope; }, ChangeKind::adds,
        Departure::friction,
        [](P p, const std::optional<SlidingState> &state) {
-         return p.ingredients.trial_slope == 0. ? "the scene has none, and Ingredients/Trial friction slope gives none to try" :
-                                                  no_sliding(p, state);
+         return p.ingredients.trial_slope == 0. ? "the model has none, and Ingredients/Trial friction slope = 0" : no_sliding(p, state);
        }},
 
       // ------------------------------------------------------------------- bodies
@@ -134,7 +132,7 @@ namespace Squeal
        },
        ChangeKind::adds, Departure::friction,
        [](P p, const std::optional<SlidingState> &) {
-         return unless(p.ingredients.trial_damping_ratio > 0., "the scene has none, and Ingredients/Trial damping ratio gives none to try");
+         return unless(p.ingredients.trial_damping_ratio > 0., "the model has none, and Ingredients/Trial damping ratio = 0");
        }},
       option("rotation of the disc", rotation, false, ChangeKind::removes, Departure::mesh),
       option("rotation of the disc", rotation, true, ChangeKind::adds, Departure::mesh,

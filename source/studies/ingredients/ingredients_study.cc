@@ -12,14 +12,14 @@ namespace Squeal
 {
   namespace
   {
-    /// A column that only has values where the change was made.
+    /// A column with values only if the change was made.
     template <typename Value>
     Column<IngredientResult> where_made(const std::string &name, const std::string &unit, const Value &value, const int digits = 3)
     {
       return {name, unit, [value](const IngredientResult &row) { return row.obstacle.empty() ? Entry(value(row)) : Entry(); }, digits};
     }
 
-    /// Smaller changes are rounding, or the tolerances of solvers [%].
+    /// Smaller changes are due to rounding or solver tolerances [%].
     constexpr double no_change = 1e-6;
 
     std::string amount(const double change)
@@ -32,7 +32,7 @@ namespace Squeal
       return change.amount < no_change ? "" : to_string(change.mode->label) + (change.mode->variant ? "" : " (lost)");
     }
 
-    /// Modes of the results one after the other, each with its result.
+    /// Modes of all results, each with its result.
     struct IngredientMode
     {
       const IngredientResult *result;
@@ -51,7 +51,8 @@ namespace Squeal
               }};
     }
 
-    /// One row for each change: what was changed, its largest effects, the verdict, what it costs beside the reference; fewer columns for the screen.
+    /// One row for each change: the change, its largest effects, the verdict, its cost relative to the reference; fewer columns for the
+    /// screen.
     Table ingredient_table(const std::vector<IngredientResult> &results, const ReferenceModel &reference, const bool is_short)
     {
       using Row            = IngredientResult;
@@ -59,8 +60,8 @@ namespace Squeal
       const auto   name    = [is_short](const char *full, const char *brief) { return is_short ? brief : full; };
       Columns<Row> columns = {
         {"ingredient", "", &Row::name},
-        {"here", "", &Row::here},
-        {"tried", "", [=](const Row &row) { return row.obstacle.empty() || !is_short ? row.tried : "-"; }},
+        {"reference", "", &Row::here},
+        {"variant", "", [=](const Row &row) { return row.obstacle.empty() || !is_short ? row.tried : "-"; }},
         where_made(name("change of frequency", "frequency"), "%", [](const Row &row) { return row.effect.frequency().amount; }),
         where_made(name("mode of that change", "mode"), "", [](const Row &row) { return label_of(row.effect.frequency()); }),
         where_made(
@@ -78,22 +79,22 @@ namespace Squeal
       else
         {
           add(where_made("modes without counterpart", "-", [](const Row &row) { return row.effect.n_lost(); }));
-          add(where_made("unstable modes here", "-", [](const Row &row) { return row.effect.n_unstable(false); }));
-          add(where_made("unstable modes tried", "-", [](const Row &row) { return row.effect.n_unstable(true); }));
+          add(where_made("unstable modes in reference", "-", [](const Row &row) { return row.effect.n_unstable(false); }));
+          add(where_made("unstable modes in variant", "-", [](const Row &row) { return row.effect.n_unstable(true); }));
           add(where_made("verdict changed", "-", [](const Row &row) { return row.effect.changes_verdict(); }));
           add(where_made("wall time", "s", [](const Row &row) { return row.costs.sum(&Cost::seconds); }));
-          add(where_made("processor time", "s", [](const Row &row) { return row.costs.sum(&Cost::cpu_seconds); }));
+          add(where_made("CPU time", "s", [](const Row &row) { return row.costs.sum(&Cost::cpu_seconds); }));
           add(where_made("dofs", "-", [](const Row &row) { return row.n_dofs; }));
         }
       add(where_made(
-        name("cost beside the reference", "cost"), "-", [total](const Row &row) { return row.costs.sum(&Cost::cpu_seconds) / total; },
+        name("cost relative to reference", "cost"), "-", [total](const Row &row) { return row.costs.sum(&Cost::cpu_seconds) / total; },
         is_short ? 2 : 3));
       if (!is_short)
-        add({"not tried because", "", &Row::obstacle});
+        add({"reason not tried", "", &Row::obstacle});
       return Table(columns, results);
     }
 
-    /// Every mode of every variant beside that of the reference.
+    /// Every mode of every variant, with that of the reference.
     Table ingredient_mode_table(const std::vector<IngredientResult> &results)
     {
       std::vector<IngredientMode> rows;
@@ -105,19 +106,19 @@ namespace Squeal
       return Table(
         Columns<IngredientMode>{
           {"ingredient", "", [](const IngredientMode &row) { return row.result->name; }},
-          {"tried", "", [](const IngredientMode &row) { return row.result->tried; }},
+          {"variant", "", [](const IngredientMode &row) { return row.result->tried; }},
           {"label", "", [](const IngredientMode &row) { return row.mode->label; }},
-          modal_column("frequency here", "Hz", &C::reference, &Q::frequency, 1.),
-          modal_column("frequency tried", "Hz", &C::variant, &Q::frequency, 1.),
-          modal_column("divergence rate here", "%", &C::reference, &Q::divergence_rate, 100.),
-          modal_column("divergence rate tried", "%", &C::variant, &Q::divergence_rate, 100.),
+          modal_column("reference frequency", "Hz", &C::reference, &Q::frequency, 1.),
+          modal_column("variant frequency", "Hz", &C::variant, &Q::frequency, 1.),
+          modal_column("reference divergence rate", "%", &C::reference, &Q::divergence_rate, 100.),
+          modal_column("variant divergence rate", "%", &C::variant, &Q::divergence_rate, 100.),
           {"change of frequency", "%",
            [](const IngredientMode &row) {
              return row.mode->reference && row.mode->variant ? Entry(row.mode->frequency(row.result->effect.band_end)) : Entry();
            }},
           {"change of divergence rate", "percentage points", [](const IngredientMode &row) { return row.mode->divergence(); }},
-          {"unstable here", "-", [](const IngredientMode &row) { return row.mode->unstable_reference; }},
-          {"unstable tried", "-", [](const IngredientMode &row) { return row.mode->unstable_variant; }},
+          {"unstable in reference", "-", [](const IngredientMode &row) { return row.mode->unstable_reference; }},
+          {"unstable in variant", "-", [](const IngredientMode &row) { return row.mode->unstable_variant; }},
           {"overlap of shapes", "-",
            [](const IngredientMode &row) { return row.mode->variant && row.mode->reference ? Entry(row.mode->overlap) : Entry(); }},
           {"in cluster", "-", [](const IngredientMode &row) { return row.mode->in_cluster; }}},
@@ -133,7 +134,7 @@ namespace Squeal
                   effect.changes_verdict() ? "; the verdict changes" : "");
     }
 
-    /// Solvers count as faster where the processor time of the whole model falls at least to this part [-].
+    /// Solvers count as faster if the CPU time of the whole model falls to this fraction or below [-].
     constexpr double clearly_faster = 0.95;
 
     std::vector<std::string> answer_of(const SolvedModel &model)
@@ -141,7 +142,7 @@ namespace Squeal
       return verdict(model.friction, model.parameters.discretization.maximum_frequency);
     }
 
-    /// Solves a variant and compares it, as a step of the run; what refuses it becomes an obstacle.
+    /// Solves a variant and compares it, as a step of the run; an error becomes an obstacle.
     void measure(IngredientResult &result, const ReferenceModel &reference, const Variation &variation, Run &run)
     {
       run.progress.begin(result.name + ": " + result.tried);
@@ -154,7 +155,7 @@ namespace Squeal
           result.n_dofs             = variant.scene->model->free_map().n();
           result.answer             = answer_of(variant);
         }
-      // A model that cannot be is an answer, too
+      // A model that does not exist is also a result
       catch (const Error &error)
         {
           result.obstacle = error.reason;
@@ -176,7 +177,7 @@ namespace Squeal
       return result;
     }
 
-    /// Whether a change is one that the cheapest model may make.
+    /// True for a change that the cheapest model may make.
     bool makes_cheaper(const IngredientResult &result, const ReferenceModel &reference)
     {
       if (!result.obstacle.empty())
@@ -195,12 +196,12 @@ namespace Squeal
       return result;
     }
 
-    /// The cheapest model that was found, and how.
+    /// The cheapest model found, and its changes.
     struct CheapestModel
     {
       std::vector<const IngredientResult *> changes;
       std::vector<const IngredientResult *> put_back;
-      IngredientResult                      together; ///< of all changes; empty if there is none
+      IngredientResult                      together; ///< all changes combined; empty if there is none
       Parameters                            parameters;
     };
 
@@ -250,16 +251,16 @@ namespace Squeal
           run.progress.note("  not tried: " + result.name + " = " + result.tried + ": " + result.obstacle);
     }
 
-    /// What the scene leaves out and would change it by more than the accuracy asked for, one line each.
+    /// Reports missing features of the model with an effect above the required accuracy, one line each.
     void note_missing(const std::vector<IngredientResult> &results, Run &run)
     {
       for (const IngredientResult &result : results)
         if (result.obstacle.empty() && result.ingredient != nullptr && result.ingredient->kind == ChangeKind::adds && result.severity > 1.)
-          run.progress.note("  left out here and not small: " + result.name + " = " + result.tried + " changes up to " +
-                            largest_changes(result.effect));
+          run.progress.note("  missing in the model, with a significant effect: " + result.name + " = " + result.tried +
+                            " changes by up to " + largest_changes(result.effect));
     }
 
-    /// Parameters that differ from their defaults and are of use, as a parameter file.
+    /// Writes the used non-default parameters as a parameter file.
     void write_changed_parameters(std::ostream &stream, Parameters parameters)
     {
       Declarations declarations;
@@ -273,7 +274,7 @@ namespace Squeal
         {
           const auto slash = path.find('/');
           if (slash == std::string::npos || unused.count(path) > 0)
-            continue; // the study is the default
+            continue; // already the default study
           if (path.substr(0, slash) != section)
             {
               end_section();
@@ -299,27 +300,26 @@ namespace Squeal
       });
     }
 
-    /// What the cheapest model is, what it changes, and what it saves.
+    /// Describes the cheapest model, its changes and its savings.
     std::vector<std::string> sentences(const CheapestModel &cheapest, const ReferenceModel &reference)
     {
       const IngredientsParameters &accuracy = reference.parameters.ingredients;
       const std::string            asked =
         text(exact_text(accuracy.frequency_tolerance), " % and ", exact_text(accuracy.divergence_tolerance), " percentage points");
       if (cheapest.changes.empty())
-        return {text("  cheapest model within ", asked, ": the scene as it is; nothing that it has can be left out")};
+        return {text("  cheapest model within ", asked, ": the given model; no feature of it can be removed")};
       const double here = reference.costs.sum(&Cost::cpu_seconds), there = cheapest.together.costs.sum(&Cost::cpu_seconds);
       const std::vector<std::string> result = {
         text("  cheapest model within ", asked, ": ", changes_text(cheapest.changes)),
         text("    it changes up to ", largest_changes(cheapest.together.effect), "; ", cheapest.together.effect.n_unstable(true),
              " unstable modes instead of ", cheapest.together.effect.n_unstable(false)),
-        text("    ", decimal_text(there, 3), " s of processor time instead of ", decimal_text(here, 3), " s")};
+        text("    ", decimal_text(there, 3), " s of CPU time instead of ", decimal_text(here, 3), " s")};
       return result;
     }
   } // namespace
 
-  /// `Study = ingredients`: the scene as it is given, and with each part of the model switched on, off, or over to something else by
-  /// itself: what changes in every mode and in the verdict, and what it costs. Ends with the cheapest model that keeps the verdict and the
-  /// accuracy asked for, as a parameter file.
+  /// `Study = ingredients`: varies each model feature individually: effects on every mode and on the verdict, and costs. Writes the
+  /// cheapest model that keeps the verdict and the required accuracy, as a parameter file.
   static void run_ingredients_study(Scene &scene, Run &run)
   {
     const Parameters    &p         = run.parameters;
@@ -340,7 +340,7 @@ namespace Squeal
     for (const std::string &line : lines)
       run.progress.note(line);
     for (const IngredientResult *back : cheapest.put_back)
-      run.progress.note("    put back, too much together with others: " + back->name + " = " + back->tried);
+      run.progress.note("    not included, effect too large in combination: " + back->name + " = " + back->tried);
     note_missing(results, run);
     run.screen << '\n';
     ingredient_table(results, reference, true).print(run.screen);
@@ -356,7 +356,7 @@ namespace Squeal
   extern const Study ingredients_study = [] {
     Study study{"ingredients", run_ingredients_study, {"Ingredients/"}};
     study.rules = {{"Output/", [](const Parameters &) { return "the study writes no mode shapes"; }}};
-    // It goes through contact states, dissipations, speeds and solvers on its own, and leaves them to the cheapest model
+    // The study varies contact states, dissipation, speeds and solvers itself, and the cheapest model may use them
     const auto of_use = [](const Parameters &) -> Reason { return nullptr; };
     for (const char *path : {"Operation/Load per side", "Operation/Rotation speed", "Steady sliding/", "Complex modes/"})
       study.rules.push_back({path, of_use});

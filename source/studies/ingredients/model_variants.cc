@@ -11,7 +11,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Does something and notes what it takes.
+    /// Runs an action and records its cost.
     template <typename Function>
     auto timed(Cost &cost, Function &&function)
     {
@@ -21,7 +21,7 @@ namespace Squeal
       return result;
     }
 
-    /// Decisions must be taken on the same times.
+    /// Decisions must use the same times on all processes.
     void agree(MPI_Comm communicator, StepCosts &costs)
     {
       for (Cost StepCosts::*step : {&StepCosts::mesh, &StepCosts::assembly, &StepCosts::sliding, &StepCosts::modes, &StepCosts::friction})
@@ -29,7 +29,7 @@ namespace Squeal
           Squeal::agree(communicator, &(costs.*step.*quantity), 1);
     }
 
-    /// The state of steady sliding; nothing where the load is shared equally.
+    /// Steady sliding state; nothing for equal shares of the load.
     std::optional<SlidingState> sliding_state(const Scene &scene, StepCosts &costs, Run &run)
     {
       costs.sliding = {};
@@ -57,7 +57,7 @@ namespace Squeal
       return modes;
     }
 
-    /// The steps that depend on friction and damping.
+    /// Solves the steps that depend on friction and damping.
     void solve_with_friction(SolvedModel &model, FrictionlessModes &frictionless, const std::string &basis, Run &run)
     {
       const Parameters &parameters = model.parameters;

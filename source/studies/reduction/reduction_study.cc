@@ -11,7 +11,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Solutions of a reduced problem of which the fastest is reported.
+    /// Repeated solutions of a reduced problem; the fastest is reported.
     constexpr int n_timed_solutions = 3;
 
     std::vector<double> disc_shares_of(const FrictionlessModes &frictionless, const ComplexModes &modes)
@@ -20,7 +20,7 @@ namespace Squeal
       return disc_shares(*scene.model, scene.system, *frictionless.linearisation.coupled.kernel, modes);
     }
 
-    /// What each of some real coupled modes is called among the modes of the pins, whether the disc moves more or not.
+    /// Labels of some real coupled modes among the modes of the pins, even if the disc moves more.
     std::vector<ModeLabel> pin_labels(const FrictionlessModes &frictionless, const ComplexModes &modes)
     {
       const SparseMatrix    &mass = *frictionless.linearisation.scene->system.mass;
@@ -64,7 +64,7 @@ namespace Squeal
       return {full.modes, full.labels, {}, groups, {{"unstable", "other"}}, full.unstable, full.cost.cpu_seconds};
     }
 
-    /// Modes of a reduced model with the processor seconds of the fastest of several solutions.
+    /// Modes of a reduced model with the CPU time of the fastest of several solutions [s].
     ReducedModes timed_modes(const ReductionPlan &plan, const ReducedModel &model, double &seconds)
     {
       ReducedModes modes;
@@ -104,14 +104,14 @@ namespace Squeal
         largest = std::max(largest, e.eigenvalue);
       progress.finish(
         text(candidate.basis.n_r0, " vectors, ", candidate.basis.size(), " after connection and rank, largest error of lambda ", largest));
-      // Hundreds of vectors each: they are not needed any more
+      // Free hundreds of vectors that are no longer needed
       candidate.n_r = candidate.basis.size();
       candidate.basis.vectors.reset();
       return candidate;
     }
 
-    /// Measures all bases: those of component modes with every truncation, those of real coupled modes up to every frequency, those that grow
-    /// from the real modes of the band, and those of snapshots.
+    /// Measures all bases: of component modes for every truncation, of real coupled modes for every frequency, bases grown from the real
+    /// modes of the band, and bases of snapshots.
     std::vector<MeasuredBasis> all_measured(ReductionSets               &sets,
                                             const ReferenceSolution     &reference,
                                             std::vector<TruncatedModes> &truncations)
@@ -152,7 +152,7 @@ namespace Squeal
           measure(recipe, "");
       return result;
     }
-    /// Measures all bases on a system that has @p n dofs before it is coupled, and writes the tables.
+    /// Measures all bases for a system with @p n uncoupled dofs, and writes the tables.
     void measure_bases(const ReductionPlan     &plan,
                        const FrictionlessModes &frictionless,
                        const CoupledSystem     &system,
@@ -178,8 +178,8 @@ namespace Squeal
     }
   } // namespace
 
-  /// `Study = reduction`: reduced bases measured against full-order modes, those of Tables 2, 4 and 5 of the paper and better ones: sizes,
-  /// rank decisions, errors by groups of modes, error estimates with their verdicts, and what building and solving cost.
+  /// `Study = reduction`: reduced bases compared with full-order modes, those of Tables 2, 4 and 5 of the paper and additional ones: sizes,
+  /// ranks, errors by groups of modes, error estimates with their verdicts, and costs.
   static void run_reduction_study(Scene &scene, Run &run)
   {
     const ReductionPlan     plan         = reduction_plan(run.parameters);
@@ -190,7 +190,7 @@ namespace Squeal
                   scene.model->free_map().n(), run);
   }
 
-  /// The same for a system file: bases of its modes and of their responses.
+  /// `Study = reduction` for a system file: bases of its modes and of their responses.
   static void run_reduction_of_system(Run &run)
   {
     const GivenSystem       given        = given_system(run);
@@ -205,8 +205,8 @@ namespace Squeal
     study.check = [](const Parameters &p) {
       const auto &pairs = p.contact.pairs;
       if (std::any_of(pairs.begin(), pairs.end(), [](const ContactPair &pair) { return pair.normal_stiffness > 0.; }))
-        throw ParameterError("the bases of section Reduction are those of rigid contact", "parameter Contact/Pairs",
-                             "leave out the normal stiffness, or choose Study = stability or sweep");
+        throw ParameterError("the bases of section Reduction require rigid contact", "parameter Contact/Pairs",
+                             "remove the normal stiffness, or choose Study = stability or sweep");
       reduction_plan(p);
     };
     study.run_of_system = run_reduction_of_system;

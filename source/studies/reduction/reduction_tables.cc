@@ -10,13 +10,13 @@ namespace Squeal
 {
   namespace
   {
-    /// Estimates count as good within this factor of the true error.
+    /// Factor of the true error within which estimates count as good.
     constexpr double good_factor = 3.;
 
-    /// Relative differences of λ below this are rounding errors of the reference and say nothing about an estimate.
+    /// Relative differences of λ below this are rounding errors of the reference, too small to assess an estimate [-].
     constexpr double reference_accuracy = 1e-11;
 
-    /// A condition number; nothing where the matrix is singular to rounding.
+    /// A condition number; empty if the matrix is singular to rounding.
     Entry condition_cell(const double condition)
     {
       return std::isfinite(condition) ? Entry(condition) : Entry();
@@ -123,7 +123,7 @@ namespace Squeal
                               {"estimate claimed", "", [](const Row &row) { return row.claimed ? "yes" : "no"; }},
                               {"cluster", "-", &Row::cluster_size},
                               {"subspace", "-", &Row::subspace, 1, true},
-                              {"share of the disc", "-", &Row::disc_share, 3},
+                              {"disc share", "-", &Row::disc_share, 3},
                               {"reduced mode", "-", [](const Row &row) { return row.match + 1; }},
                               {"reduced mode by eq. 17", "-", [](const Row &row) { return row.closest + 1; }},
                               {"eps_mac by eq. 17", "-", &Row::closest_shape, 1, true},

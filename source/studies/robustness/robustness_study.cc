@@ -14,7 +14,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Size of the first set of samples, and of the next one relative to all before it.
+    /// Size of the first batch of samples, and ratio of each later batch to all previous ones.
     constexpr std::size_t first_set = 32, growth_of_sets = 4;
 
     constexpr int n_training_samples = 8;
@@ -36,7 +36,7 @@ namespace Squeal
       return result;
     }
 
-    /// The samples among the points of a contact set, its first @p n. Returns their largest estimated error.
+    /// Solves the first @p n points of a contact set, the samples. Returns their largest estimated error.
     double solve_contact_set(SweepModel &model, const std::size_t n, const double tolerance, std::vector<std::optional<Sample>> &samples)
     {
       const auto                        begin = model.regime.points.begin();
@@ -50,7 +50,7 @@ namespace Squeal
       return found.worst_error;
     }
 
-    /// The samples with the largest divergence rates as parameter files of stability runs.
+    /// Writes the samples with the largest divergence rates as parameter files of stability runs.
     void write_worst_samples(const SamplePlan &plan, const std::vector<std::optional<Sample>> &samples, Run &run)
     {
       std::vector<std::pair<double, int>> rates;
@@ -74,7 +74,7 @@ namespace Squeal
       const auto &ends = parameters.robustness.frequency_bands;
       if (!ends.empty() && (ends.size() == 1 || std::adjacent_find(ends.begin(), ends.end(), std::greater_equal<>()) != ends.end() ||
                             ends.back() > parameters.discretization.maximum_frequency))
-        throw ParameterError(exact_text(ends) + " are not limits of bands within that of the modes, which ends at " +
+        throw ParameterError(exact_text(ends) + " are not limits of bands below " +
                                exact_text(parameters.discretization.maximum_frequency) + " Hz",
                              "parameter Robustness/Frequency bands", "give two or more in ascending order, up to Band/Maximum frequency");
     }
@@ -181,8 +181,8 @@ namespace Squeal
     return result;
   }
 
-  /// `Study = robustness`: complex modes of samples of uncertain parameters by one reduced model, with estimated errors at every sample; how
-  /// probable squeal is, and which parameters matter.
+  /// `Study = robustness`: complex modes of samples of uncertain parameters by one reduced model, with estimated errors at every sample;
+  /// gives the probability of squeal and the influence of the parameters.
   static void run_robustness_study(Scene &scene, Run &run)
   {
     check_bands(run.parameters);

@@ -25,12 +25,12 @@ namespace Squeal
       return frequency >= first && frequency < last;
     }
 
-    /// How often modes of a band grow.
+    /// Probability of squeal in a band.
     struct BandProbability
     {
       double   first, last; ///< [Hz]
       Estimate squeal;
-      double   undecided; ///< part of the samples in which no mode grows for sure, but one may, or whose modes are not known
+      double   undecided; ///< fraction of samples without an unstable mode, but with an undecided mode, or without results
     };
 
     BandProbability band_probability(const SamplePlan &plan, const Samples &samples, const double first, const double last)
@@ -69,33 +69,33 @@ namespace Squeal
       return Table(Columns<Row>{{"from", "Hz", &Row::first, 0},
                                 {"to", "Hz", &Row::last, 0},
                                 {"probability of squeal", "%", [](const Row &row) { return 100. * row.squeal.value; }, 2},
-                                {"lower end of confidence", "%", [](const Row &row) { return 100. * row.squeal.lower; }, 2},
-                                {"upper end of confidence", "%", [](const Row &row) { return 100. * row.squeal.upper; }, 2},
+                                {"lower confidence limit", "%", [](const Row &row) { return 100. * row.squeal.lower; }, 2},
+                                {"upper confidence limit", "%", [](const Row &row) { return 100. * row.squeal.upper; }, 2},
                                 {"undecided samples", "%", [](const Row &row) { return 100. * row.undecided; }, 2}},
                    bands);
     }
 
-    /// The modes of one name in all independent samples.
+    /// All modes with one label in all independent samples.
     struct NamedMode
     {
       std::string         label;
       std::vector<double> frequencies, growth_rates; ///< ascending
-      int                 usual_number = 0;          ///< of them in a sample
-      int                 n_unusual    = 0;          ///< samples with another number: modes have exchanged their identity
-      Estimate            grows{};                   ///< probability that one of the name does
+      int                 usual_number = 0;          ///< most frequent number in a sample
+      int                 n_unusual    = 0;          ///< samples with another number: labels have changed
+      Estimate            grows{};                   ///< probability that a mode with this label grows
     };
 
     std::vector<NamedMode> named_modes(const SamplePlan &plan, const Samples &samples)
     {
       std::map<std::string, NamedMode>          modes;
-      std::map<std::string, std::map<int, int>> numbers; // samples by how many modes of the name they have
+      std::map<std::string, std::map<int, int>> numbers; // samples by the number of modes with the label
       std::map<std::string, int>                n_growing;
       int                                       n_known = 0;
       for (int s = 0; s < plan.n_independent; ++s)
         if (samples[s])
           {
             ++n_known;
-            std::map<std::string, std::pair<int, bool>> here; // how many of a name, and whether one grows
+            std::map<std::string, std::pair<int, bool>> here; // number of modes with a label, and whether one grows
             for (const SampledMode &mode : *samples[s])
               {
                 const ModalQuantities quantities = modal_quantities(mode.lambda);
@@ -142,22 +142,22 @@ namespace Squeal
       const auto percent      = [](auto value) { return [value](const Row &row) { return 100. * value(row); }; };
       const auto growth_at    = [](const double p) { return [p](const Row &row) { return quantile(row.growth_rates, p); }; };
       const auto frequency_at = [](const double p) { return [p](const Row &row) { return quantile(row.frequencies, p); }; };
-      return Table(
-        Columns<Row>{{"label", "", &Row::label},
-                     {"modes of the name", "-", &Row::usual_number},
-                     {"samples with another number", "%", [n_samples](const Row &row) { return 100. * row.n_unusual / n_samples; }, 1},
-                     {"probability of growth", "%", percent([](const Row &row) { return row.grows.value; }), 2},
-                     {"lower end of confidence", "%", percent([](const Row &row) { return row.grows.lower; }), 2},
-                     {"upper end of confidence", "%", percent([](const Row &row) { return row.grows.upper; }), 2},
-                     {"mean frequency", "Hz", [](const Row &row) { return mean(row.frequencies); }, 2},
-                     {"deviation of the frequency", "Hz", [](const Row &row) { return deviation(row.frequencies); }, 2},
-                     {"frequency at 5 %", "Hz", frequency_at(0.05), 2},
-                     {"frequency at 95 %", "Hz", frequency_at(0.95), 2},
-                     {"growth rate at 5 %", "1/s", growth_at(0.05), 3},
-                     {"median growth rate", "1/s", growth_at(0.5), 3},
-                     {"growth rate at 95 %", "1/s", growth_at(0.95), 3},
-                     {"largest growth rate", "1/s", growth_at(1.), 3}},
-        modes);
+      return Table(Columns<Row>{{"label", "", &Row::label},
+                                {"modes with this label", "-", &Row::usual_number},
+                                {"samples with another number of modes", "%",
+                                 [n_samples](const Row &row) { return 100. * row.n_unusual / n_samples; }, 1},
+                                {"probability of growth", "%", percent([](const Row &row) { return row.grows.value; }), 2},
+                                {"lower confidence limit", "%", percent([](const Row &row) { return row.grows.lower; }), 2},
+                                {"upper confidence limit", "%", percent([](const Row &row) { return row.grows.upper; }), 2},
+                                {"mean frequency", "Hz", [](const Row &row) { return mean(row.frequencies); }, 2},
+                                {"standard deviation of frequency", "Hz", [](const Row &row) { return deviation(row.frequencies); }, 2},
+                                {"frequency at 5 %", "Hz", frequency_at(0.05), 2},
+                                {"frequency at 95 %", "Hz", frequency_at(0.95), 2},
+                                {"growth rate at 5 %", "1/s", growth_at(0.05), 3},
+                                {"median growth rate", "1/s", growth_at(0.5), 3},
+                                {"growth rate at 95 %", "1/s", growth_at(0.95), 3},
+                                {"largest growth rate", "1/s", growth_at(1.), 3}},
+                   modes);
     }
 
     /// Sobol' indices of an output with respect to an uncertain number.
@@ -167,7 +167,7 @@ namespace Squeal
       Estimate    first, total;
     };
 
-    /// Those of the largest divergence rate, and of frequency and growth rate of each mode that every sample has once.
+    /// Indices of the largest divergence rate, and of frequency and growth rate of each mode that occurs once in every sample.
     std::vector<IndexRow> indices(const SamplePlan &plan, const Samples &samples, const std::vector<NamedMode> &modes)
     {
       std::vector<IndexRow> result;
@@ -176,7 +176,7 @@ namespace Squeal
         for (auto first = outputs.begin(); first != outputs.end(); first += n)
           if (const auto [least, largest] = std::minmax_element(first, first + n);
               !(*largest - *least > 1e-12 * std::max(std::abs(*least), std::abs(*largest))))
-            return; // too rare to tell
+            return; // the output has no variance
         const SobolIndices found = sobol_indices(plan.values, outputs);
         for (std::size_t j = 0; j < plan.numbers.size(); ++j)
           result.push_back({name, plan.numbers[j].name, found.first[j], found.total[j]});
@@ -217,14 +217,14 @@ namespace Squeal
       const auto estimate = [](Estimate Row::*member, double Estimate::*number) {
         return [member, number](const Row &row) { return row.*member.*number; };
       };
-      return Table(Columns<Row>{{"of", "", &Row::output},
+      return Table(Columns<Row>{{"quantity", "", &Row::output},
                                 {"uncertain parameter", "", &Row::number},
                                 {"first-order index", "-", estimate(&Row::first, &Estimate::value)},
-                                {"lower end of the first-order index", "-", estimate(&Row::first, &Estimate::lower)},
-                                {"upper end of the first-order index", "-", estimate(&Row::first, &Estimate::upper)},
+                                {"lower limit of the first-order index", "-", estimate(&Row::first, &Estimate::lower)},
+                                {"upper limit of the first-order index", "-", estimate(&Row::first, &Estimate::upper)},
                                 {"total index", "-", estimate(&Row::total, &Estimate::value)},
-                                {"lower end of the total index", "-", estimate(&Row::total, &Estimate::lower)},
-                                {"upper end of the total index", "-", estimate(&Row::total, &Estimate::upper)}},
+                                {"lower limit of the total index", "-", estimate(&Row::total, &Estimate::lower)},
+                                {"upper limit of the total index", "-", estimate(&Row::total, &Estimate::upper)}},
                    rows);
     }
 
@@ -315,7 +315,7 @@ namespace Squeal
     std::copy_if(modes.begin(), modes.end(), std::back_inserter(growing), [](const NamedMode &mode) { return mode.grows.value > 0.; });
     if (!growing.empty())
       {
-        run.screen << "\n  modes that grow in some samples, all in mode_distributions.csv\n\n";
+        run.screen << "\n  modes that grow in some samples; all modes: mode_distributions.csv\n\n";
         mode_table(growing, plan.n_independent).print(run.screen);
         run.screen << '\n';
       }
@@ -332,7 +332,7 @@ namespace Squeal
                      [](const IndexRow &row) { return row.output == "largest divergence rate"; });
         if (!of_rate.empty())
           {
-            run.screen << "  Sobol' indices, all in sobol_indices.csv\n\n";
+            run.screen << "  Sobol' indices; all: sobol_indices.csv\n\n";
             index_table(of_rate).print(run.screen);
             run.screen << '\n';
           }

@@ -13,7 +13,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Numbers of a material of which each pin may have its own.
+    /// Material constants that may differ from pin to pin.
     const std::map<std::string, double Material::*> numbers_of_pins = {{"Pin material/Young modulus", &Material::young_modulus},
                                                                        {"Pin material/Density", &Material::density},
                                                                        {"Pin material/Rayleigh alpha", &Material::rayleigh_alpha},
@@ -21,7 +21,7 @@ namespace Squeal
 
     constexpr const char *where_uncertain = "parameter Robustness/Distributions";
 
-    /// The scene with a material of its own for each pin, which are alike.
+    /// The model with a separate, equal material for each pin.
     Parameters with_single_pins(Parameters parameters, const std::vector<UncertainNumber> &numbers)
     {
       std::vector<VolumeMaterial> &volumes = parameters.materials.volumes;
@@ -31,7 +31,7 @@ namespace Squeal
       return parameters;
     }
 
-    /// Values of the parameters of the bodies' terms.
+    /// Parameter values of the bodies' terms.
     ParameterValues values_of_bodies(const Scene &scene, const Parameters &parameters)
     {
       ParameterValues result = body_values(*scene.model, parameters.materials);
@@ -40,7 +40,7 @@ namespace Squeal
       return result;
     }
 
-    /// Throws ParameterError if a parameter changes more than coefficients of terms.
+    /// Throws ParameterError if a parameter affects more than coefficients of terms.
     void check_coefficients(const Parameters &parameters, const SamplePlan &samples)
     {
       const std::string scene = text_without_coefficients(parameters);
@@ -86,7 +86,7 @@ namespace Squeal
                                "remove `for each pin`; it applies to Young modulus, Density, Rayleigh alpha and Rayleigh beta of Pin "
                                "material");
         if (pins.empty())
-          throw ParameterError("there are no pins with the material Pin material", where_uncertain, "leave out `for each pin`");
+          throw ParameterError("there are no pins with the material Pin material", where_uncertain, "remove `for each pin`");
         for (const std::string &pin : pins)
           result.numbers.push_back({uncertain.name + " of " + pin, uncertain.name, pin, distribution, uncertain.is_relative});
       }
@@ -111,7 +111,7 @@ namespace Squeal
     result.n_independent = result.has_indices ? 2 * half : n;
     result.n_followed    = static_cast<int>(parameters.n_onsets);
     if (result.n_followed > result.n_independent)
-      throw ParameterError(text(result.n_followed, " samples with onsets are more than the ", result.n_independent, " independent samples"),
+      throw ParameterError(text(result.n_followed, " samples with onsets exceed the ", result.n_independent, " independent samples"),
                            "parameter Robustness/Samples with onsets", "give fewer, or raise Robustness/Number of samples");
     return result;
   }
@@ -145,7 +145,7 @@ namespace Squeal
     if (const auto number = parse_number(value))
       return *number;
     throw ParameterError("the value of " + in_quotes(name) + " is " + in_quotes(value) + ", not a number", where,
-                         "name the k-th number of it: Section/Name[k]");
+                         "select its k-th number: Section/Name[k]");
   }
 
   std::vector<std::string> alike_pins(const Scene &scene, const Parameters &parameters)
@@ -162,7 +162,7 @@ namespace Squeal
     std::map<std::string, double> given     = parameters.system.values;
     const FileParameter          *parameter = file.find(name);
     given.emplace(name, parameter != nullptr ? parameter->value : 0.);
-    return file.values(given).at(name).front(); // refuses what is no parameter
+    return file.values(given).at(name).front(); // throws for unknown parameters
   }
 
   Parameters with_sample(const Parameters &parameters, const SamplePlan &samples, const int sample)
@@ -248,7 +248,7 @@ namespace Squeal
           {
             const ParameterValues &values = family.terms.members[i];
             regime.points[i].values.insert(values.begin(), values.end());
-            // The same in every contact set: where there are several, the bodies do not vary
+            // Equal in every contact set: the bodies do not vary if there are several
             if (const int s = regime.points[i].line; s < samples.n_followed)
               result.plan.lines[s].values = values;
           }

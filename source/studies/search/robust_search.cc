@@ -294,8 +294,8 @@ namespace Squeal
     {
       using Row = RobustDesign;
       return {{"probability of squeal", "%", [](const Row &row) { return 100. * row.squeal.value; }, 2},
-              {"lower end of confidence", "%", [](const Row &row) { return 100. * row.squeal.lower; }, 2},
-              {"upper end of confidence", "%", [](const Row &row) { return 100. * row.squeal.upper; }, 2},
+              {"lower confidence limit", "%", [](const Row &row) { return 100. * row.squeal.lower; }, 2},
+              {"upper confidence limit", "%", [](const Row &row) { return 100. * row.squeal.upper; }, 2},
               {"undecided samples", "%", [](const Row &row) { return 100. * row.doubtful; }, 2},
               {"basis vectors", "-", &Row::n_vectors},
               {"largest estimated error of lambda", "-", &Row::worst_error, 1, true}};

@@ -15,7 +15,7 @@ namespace Squeal
   {
     namespace fs = std::filesystem;
 
-    /// What a search makes small, of the order of one: −μ of the onset, or the largest divergence rate in per cent.
+    /// Objective to be minimised, of the order of one: −μ of the onset, or the largest divergence rate in per cent.
     double objective(const DesignResult &result, const Parameters &parameters)
     {
       if (result.outcome != DesignOutcome::solved)
@@ -25,7 +25,7 @@ namespace Squeal
       return result.worst ? 100. * result.worst->divergence_rate : 0.;
     }
 
-    /// Solves designs as they are asked for, and remembers them.
+    /// Solves designs on demand and stores them.
     class Evaluations
     {
     public:
@@ -37,21 +37,21 @@ namespace Squeal
       {
         for (const DesignVariable &variable : variables)
           plan.names.push_back(variable.name);
-        // All at once: the rounds of the interrupted search come again one by one
+        // Load all at once: the rounds of the interrupted search are repeated one by one
         std::vector<int> designs(run.parameters.search.n_evaluations);
         std::iota(designs.begin(), designs.end(), 1);
         if (const std::size_t n_known = store.n_known(designs); n_known > 0)
-          run.progress.note(text("  an interrupted search goes on: ", n_known, " designs are known"));
+          run.progress.note(text("  continuing an interrupted search: ", n_known, " designs are finished"));
       }
 
-      /// The objective at a point that is known.
+      /// Objective at a known point.
       std::optional<double> value(const SearchPoint &point) const
       {
         const auto place = std::find(plan.designs.begin(), plan.designs.end(), values_at(point));
         return place == plan.designs.end() ? std::nullopt : std::optional(objective(results[place - plan.designs.begin()], run.parameters));
       }
 
-      /// Solves those of some points that are not known side by side; false where the budget does not suffice.
+      /// Solves the unknown ones of some points concurrently; false if the budget is exceeded.
       bool solve(const std::vector<SearchPoint> &points)
       {
         DesignWork work{plan, {}};
@@ -89,7 +89,7 @@ namespace Squeal
 
       void solve(const DesignWork &work)
       {
-        // Other processes read the designs from a file: a study of these, without the values that it would refuse and nobody solves
+        // Worker processes read the designs from a file, in which rejected designs have no values
         const fs::path file   = store.folder / "designs.csv";
         DesignPlan     listed = plan;
         for (std::size_t i = 0; i < plan.designs.size(); ++i)
@@ -106,15 +106,15 @@ namespace Squeal
       }
     };
 
-    /// A point at which a method wants the objective; nothing if it has ended, and then why, for a sentence.
+    /// Next point at which a method needs the objective; nothing if it has ended, and then the reason, for a sentence.
     struct NextStep
     {
       std::optional<SearchPoint> asked;
       std::string                end;
     };
 
-    /// Runs a method from a start until it asks for a point that is not known. A method does the same each time, so that it goes on as soon
-    /// as the point is solved, and several methods can have their points solved side by side.
+    /// Runs a method from a start until it needs an unknown point. Methods are deterministic, so that a search continues once the point is
+    /// solved, and the points of several searches can be solved concurrently.
     NextStep next_step(const SearchPoint &start, const Evaluations &evaluations)
     {
       NextStep result;
@@ -127,7 +127,7 @@ namespace Squeal
       return result;
     }
 
-    /// Searches side by side from some starts; returns why each ended.
+    /// Runs searches from several starts concurrently; returns the reasons for their ends.
     std::vector<std::string> search(const std::vector<SearchPoint> &starts, Evaluations &evaluations)
     {
       std::vector<std::string> ends(starts.size());
@@ -146,13 +146,13 @@ namespace Squeal
             return ends;
           if (!evaluations.solve(asked))
             {
-              std::replace(ends.begin(), ends.end(), std::string(), std::string("Search/Evaluations is used up"));
+              std::replace(ends.begin(), ends.end(), std::string(), std::string("the limit Search/Evaluations is reached"));
               return ends;
             }
         }
     }
 
-    /// The evaluations, and the best so far.
+    /// Table of the evaluations and the best value so far.
     Table search_table(const Evaluations &evaluations, const std::size_t n_samples)
     {
       struct Row
@@ -182,8 +182,8 @@ namespace Squeal
     }
   } // namespace
 
-  /// `Study = search`: a design in the ranges of the variables that squeals as late or as little as can be found with a budget of designs:
-  /// samples, then a method without derivatives from the best two of them, and the best of all at full order.
+  /// `Study = search`: a quiet design within the ranges of the variables, with a limited number of evaluations: samples, then a
+  /// derivative-free method from the best two of them, and the best design at full order.
   static void run_search_study(Scene &scene, Run &run)
   {
     if (is_robust(run.parameters.search))
@@ -231,7 +231,7 @@ namespace Squeal
     });
   }
 
-  /// Of a system file, for goals that depend on uncertain parameters.
+  /// `Study = search` for a system file, with goals that depend on uncertain parameters.
   static void run_search_of_system(Run &run)
   {
     if (!is_robust(run.parameters.search))
@@ -241,7 +241,7 @@ namespace Squeal
   }
 
   extern const Study search_study = [] {
-    const auto always = [](const Parameters &) { return "a search goes through the ranges of Designs/Variables"; };
+    const auto always = [](const Parameters &) { return "a search uses the ranges of Designs/Variables"; };
     const auto robust = [](const Parameters &p) { return unless(is_robust(p.search), "Search/Goal is neither probability nor quantile"); };
     const auto swept  = [](const Parameters &p) {
       return is_robust(p.search) ? "samples are solved at one friction coefficient each" : as_in_general;

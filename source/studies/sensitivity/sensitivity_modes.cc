@@ -12,16 +12,16 @@ namespace Squeal
   {
     using Complex = std::complex<double>;
 
-    /// Condition number κ of an eigenvalue from which it is differentiated together with that which it is about to meet [-].
+    /// Condition number κ above which an eigenvalue is differentiated together with the one it is about to coalesce with [-].
     constexpr double coalescing_condition = 1000.;
 
-    /// Growths of the basis.
+    /// Maximum number of extensions of the basis.
     constexpr int most_growths = 6;
 
-    /// Eigenvalues that are differentiated together: the first is that of interest.
+    /// Eigenvalues that are differentiated together, the one of interest first.
     struct ModeGroup
     {
-      std::vector<int> modes; ///< of a point
+      std::vector<int> modes; ///< indices of modes of a point
       Differentiated   kind;
     };
 
@@ -50,7 +50,7 @@ namespace Squeal
       return partner < 0 ? result : ModeGroup{{mode, partner}, Differentiated::pair};
     }
 
-    /// Growing modes of the band by divergence rate; where there are none, all by divergence rate.
+    /// Growing modes of the band by divergence rate; if there are none, all modes by divergence rate.
     std::vector<int> modes_of_interest(const SweepModel &model, const ChartPoint &point, const std::size_t most)
     {
       std::vector<int> result = model.in_band(point);
@@ -64,7 +64,7 @@ namespace Squeal
       return result;
     }
 
-    /// The mode of a point nearest to each λ, each once.
+    /// For each λ the nearest mode of a point, each used once.
     std::vector<int> nearest_modes(const ChartPoint &point, const std::vector<ModeSensitivity> &modes)
     {
       std::vector<int> result;
@@ -93,7 +93,7 @@ namespace Squeal
       return result;
     }
 
-    /// Largest modulus of a part of derivatives with respect to ln p.
+    /// Largest modulus of the real or imaginary part of derivatives with respect to ln p.
     double largest(const std::vector<SensitivityParameter> &parameters,
                    const std::vector<Complex>              &derivatives,
                    double (*part)(const Complex &))
@@ -107,7 +107,7 @@ namespace Squeal
     const auto real_part      = [](const Complex &z) { return z.real(); };
     const auto imaginary_part = [](const Complex &z) { return z.imag(); };
 
-    /// Keeps the changes since an earlier basis; returns the largest one over the largest derivative of its mode.
+    /// Stores the changes since an earlier basis; returns the largest one relative to the largest derivative of its mode.
     double compare(std::vector<ModeSensitivity>            &modes,
                    const std::vector<ModeSensitivity>      &before,
                    const std::vector<SensitivityParameter> &parameters)
@@ -120,7 +120,7 @@ namespace Squeal
             mode.changes.push_back(mode.derivatives[p] - before[m].derivatives[p]);
           result =
             std::max(result, largest(parameters, mode.changes, imaginary_part) / largest(parameters, mode.derivatives, imaginary_part));
-          // A neutral mode has a growth rate by rounding alone, and so have its derivatives
+          // Growth rates of neutral modes, and their derivatives, are rounding errors
           if (const double scale = largest(parameters, mode.derivatives, real_part); scale > negligible_divergence * std::abs(mode.lambda))
             result = std::max(result, largest(parameters, mode.changes, real_part) / scale);
         }
@@ -156,7 +156,7 @@ namespace Squeal
         if (change <= wanted.tolerance)
           break;
         if (n_growths == most_growths)
-          why_stopped = text("after ", most_growths, " growths of the basis they still change by ", change);
+          why_stopped = text("after ", most_growths, " extensions of the basis they still change by ", change);
         else
           why_stopped = model.grow({{model.modes_at(point, modes)}}, run.parameters.sweep.maximum_basis);
         if (!why_stopped.empty())
@@ -164,7 +164,7 @@ namespace Squeal
         ++n_growths;
       }
     run.progress.finish(text(result.size(), " modes, ", model.parameters.size(), " parameters; ", sweep.reduced->size(), " vectors after ",
-                             n_growths, n_growths == 1 ? " growth" : " growths"));
+                             n_growths, n_growths == 1 ? " extension" : " extensions"));
     if (!why_stopped.empty())
       run.warn("derivatives of modes miss Sensitivity/Tolerance: " + why_stopped);
     return result;

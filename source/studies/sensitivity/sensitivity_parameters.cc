@@ -10,11 +10,11 @@ namespace Squeal
 {
   namespace
   {
-    /// Step of Poisson's ratio over its distance from the ends of its range, and of other constants over their size: the error of a central
-    /// difference is about its square.
+    /// Step of Poisson's ratio relative to the distance from its limits, and of other constants relative to their size: the relative error
+    /// of a central difference is about its square [-].
     constexpr double relative_step = 1e-4;
 
-    /// A constant of an orthotropic material that is no factor of the terms. E1 is one: with it all moduli change in proportion.
+    /// A constant of an orthotropic material that is not a factor of the terms. E1 is a factor: all moduli scale with it.
     struct OrthotropicConstant
     {
       const char *name;
@@ -40,8 +40,8 @@ namespace Squeal
       return result;
     }
 
-    /// (X(c + h) − X(c − h)) / 2h of the stiffness of some volumes with a material and one of its constants, and of their damping by
-    /// stiffness.
+    /// (X(c + h) − X(c − h)) / 2h for the stiffness of some volumes with a material and one of its constants, and for their
+    /// stiffness-proportional damping.
     SensitivityParameter of_constant(SensitivityParameter                       result,
                                      const Scene                               &scene,
                                      const Material                            &material,
@@ -93,17 +93,17 @@ namespace Squeal
                          material, constant, h, {volume});
     }
 
-    /// Largest motion of a node by a step, over the radius of the disc.
+    /// Largest motion of a node in a step, relative to the radius of the disc [-].
     constexpr double motion_step = 3e-6;
 
-    /// The bodies and all contact nodes on a mesh whose nodes have moved.
+    /// The bodies and all contact nodes on a mesh with moved nodes.
     struct MovedScene
     {
       BodyTerms        bodies;
       ContactInterface interface;
     };
 
-    /// The matrix without entries that are zero: where no node moves, nothing changes.
+    /// The matrix without zero entries: fixed nodes contribute nothing.
     std::shared_ptr<const SparseMatrix> without_zeros(const SparseMatrix &A)
     {
       return std::make_shared<SparseMatrix>(A.rows(), A.columns(), [&](const int i, SparseMatrix::Row &row) {
@@ -130,7 +130,7 @@ namespace Squeal
         add_rotation(result.bodies, model, parameters.operation.angular_velocity());
       for (std::size_t c = 0; c < result.interface.size(); ++c)
         if (result.interface.size() != scene.interface.size() || !couple_the_same_nodes(result.interface[c], scene.interface[c]))
-          throw MeshError("contact nodes have changed their numbers while they moved", "derivatives with respect to " + motion.parameter,
+          throw MeshError("the numbers of contact nodes changed when the mesh was moved", "derivatives with respect to " + motion.parameter,
                           "set Sensitivity/Geometry = none");
       return result;
     }
@@ -141,8 +141,8 @@ namespace Squeal
     const MaterialParameters  &materials = parameters.materials;
     const OperationParameters &operation = parameters.operation;
 
-    std::vector<std::vector<std::string>> shared(2); // volumes of the disc's and of the pins' material
-    std::vector<std::string>              single;    // of a material of their own, and all pins
+    std::vector<std::vector<std::string>> shared(2); // volumes with the material of the disc, or of the pins
+    std::vector<std::string>              single;    // volumes with their own material, and all pins
     for (const std::string &volume : scene.model->volume_names())
       {
         if (!materials.has_own(volume))
@@ -175,7 +175,7 @@ namespace Squeal
     for (const MountParameter &mount : mount_parameters(materials))
       result.push_back({mount.path, "", mount.unit, mount.value, {{mount.name, {1.}}}, {}});
 
-    // Damping by the reactions of steady sliding would depend on it as well
+    // With steady sliding, contact damping would depend on it as well
     const auto &pairs = parameters.contact.pairs;
     for (unsigned int pair = 0; pair < pairs.size(); ++pair)
       if (pairs[pair].normal_stiffness > 0. && !(parameters.needs_steady_sliding() && parameters.has_contact_damping()))
@@ -242,7 +242,7 @@ namespace Squeal
                 parameter.derivative.back().matrix = difference;
               }
           }
-        // One matrix of each kind instead of one for each body
+        // Merge to one matrix per type, instead of one for each body
         parameter.derivative = merged(parameter.derivative, bodies.values);
         for (Term &term : parameter.derivative)
           term.matrix = without_zeros(*term.matrix);

@@ -13,14 +13,14 @@ namespace Squeal
 
     constexpr double one_percent = 0.01;
 
-    /// What one per cent of a parameter, or a unit of it, changes of a mode.
+    /// Change of a mode per cent of a parameter, and per unit.
     struct SensitivityRow
     {
       int                         mode; ///< from 0
       const ModeSensitivity      *of;
       const SensitivityParameter *parameter;
       Complex                     derivative; ///< dλ/dp
-      std::optional<Complex>      change;     ///< by the last growth of the basis
+      std::optional<Complex>      change;     ///< by the last extension of the basis
 
       double growth_per_percent() const
       {
@@ -58,7 +58,7 @@ namespace Squeal
       for (std::size_t m = 0; m < modes.size(); ++m)
         for (const Row &row : rows_of(modes[m], static_cast<int>(m), parameters))
           rows.push_back(row);
-      // Nothing per cent of a parameter that is zero
+      // Empty per cent of a zero parameter
       const auto percent = [](double (Row::*value)() const) {
         return [value](const Row &row) { return row.parameter->value != 0. ? Entry((row.*value)()) : Entry(); };
       };
@@ -69,7 +69,7 @@ namespace Squeal
                      {"growth rate", "1/s", [](const Row &row) { return row.of->lambda.real(); }},
                      {"divergence rate", "%", [](const Row &row) { return 100. * modal_quantities(row.of->lambda).divergence_rate; }},
                      {"parameter", "", [](const Row &row) { return row.parameter->path; }},
-                     {"only of", "", [](const Row &row) { return row.parameter->body; }},
+                     {"body", "", [](const Row &row) { return row.parameter->body; }},
                      {"value", "", [](const Row &row) { return row.parameter->value; }},
                      {"unit", "", [](const Row &row) { return row.parameter->unit; }},
                      {"growth rate per 1 %", "1/s", percent(&Row::growth_per_percent)},
@@ -85,7 +85,7 @@ namespace Squeal
         rows);
     }
 
-    /// One row for each threshold and parameter; one for a threshold without derivatives.
+    /// One row for each threshold and parameter; a single row for a threshold without derivatives.
     Table threshold_sensitivity_table(const std::vector<ThresholdSensitivity> &thresholds,
                                       const SweepChart                        &chart,
                                       const std::vector<SensitivityParameter> &parameters)
@@ -94,7 +94,7 @@ namespace Squeal
       {
         const ThresholdSensitivity *of;
         const SensitivityParameter &parameter;
-        std::size_t                 number; ///< of the parameter
+        std::size_t                 number; ///< index of the parameter
 
         bool has_value() const
         {
@@ -104,7 +104,7 @@ namespace Squeal
       std::vector<Row> rows;
       for (const ThresholdSensitivity &threshold : thresholds)
         for (std::size_t p = 0; p < (threshold.obstacle.empty() ? parameters.size() : 1); ++p)
-          // With respect to itself there is none
+          // The threshold itself is a friction coefficient
           if (parameters[p].operation != &OperationParameters::friction_coefficient)
             rows.push_back({&threshold, parameters[p], p});
       const auto of_threshold = [](const auto &value) { return [value](const Row &row) { return Entry(value(*row.of->threshold)); }; };
@@ -118,10 +118,10 @@ namespace Squeal
       return Table(Columns<Row>{{"mu", "-", of_threshold([](const Threshold &t) { return t.friction_coefficient; })},
                                 {"event", "", of_threshold([](const Threshold &t) { return t.event; })},
                                 {"label", "", of_threshold([=](const Threshold &t) { return label(t.branch); })},
-                                {"label of partner", "", of_threshold([=](const Threshold &t) { return label(t.partner); })},
+                                {"partner label", "", of_threshold([=](const Threshold &t) { return label(t.partner); })},
                                 {"frequency", "Hz", of_threshold([](const Threshold &t) { return modal_quantities(t.lambda).frequency; })},
                                 {"parameter", "", known([](const Row &row) { return row.parameter.path; })},
-                                {"only of", "", known([](const Row &row) { return row.parameter.body; })},
+                                {"body", "", known([](const Row &row) { return row.parameter.body; })},
                                 {"value", "", known([](const Row &row) { return row.parameter.value; })},
                                 {"unit", "", known([](const Row &row) { return row.parameter.unit; })},
                                 {"mu per 1 %", "-", percent([](const Row &row) {
@@ -140,7 +140,8 @@ namespace Squeal
                    rows);
     }
 
-    /// Parameters by how far one per cent of them changes the divergence rate of a mode; at most @p most rows, 0: all. Single pins apart on request.
+    /// Parameters sorted by the effect of one per cent on the divergence rate of a mode; at most @p most rows, 0: all. Optionally with
+    /// individual pins.
     Table ranking_table(const ModeSensitivity                   &mode,
                         const std::vector<SensitivityParameter> &parameters,
                         const bool                               with_single_pins,
@@ -159,7 +160,7 @@ namespace Squeal
         rows.erase(rows.begin() + static_cast<std::ptrdiff_t>(most), rows.end());
       Columns<Row> columns = {{"parameter", "", [](const Row &row) { return row.parameter->path; }}};
       if (with_single_pins)
-        columns.push_back({"only of", "", [](const Row &row) { return row.parameter->body; }});
+        columns.push_back({"body", "", [](const Row &row) { return row.parameter->body; }});
       columns.push_back({"value", "", [](const Row &row) { return row.parameter->value; }, 4, true});
       columns.push_back({"unit", "", [](const Row &row) { return row.parameter->unit; }});
       columns.push_back({"divergence rate per 1 %", "percentage points", [](const Row &row) { return row.divergence_per_percent(); }, 6});
@@ -171,7 +172,7 @@ namespace Squeal
     /// Rows of the ranking on the screen.
     constexpr std::size_t n_shown_parameters = 12;
 
-    /// Friction coefficients of the sweep where thresholds are wanted, with that of the operation among them.
+    /// Friction coefficients of the sweep for thresholds, including that of the operation.
     SweepLine line_of(const Parameters &parameters)
     {
       SweepLine    line{SweepLine::Kind::main, parameters.operation, 0., {}};
@@ -198,7 +199,7 @@ namespace Squeal
       run.screen << '\n';
     }
 
-    /// Of the modal damping that the coupled system of a sweep has; nothing without it.
+    /// Derivatives of the modal damping in the coupled system of a sweep; nothing without modal damping.
     std::optional<ModalDampingDerivatives> modal_damping_derivatives(const SweepModel &sweep, const DampingParameters &damping)
     {
       if (damping.modal_ratios.empty())
@@ -210,7 +211,7 @@ namespace Squeal
     }
   } // namespace
 
-  /// `Study = sensitivity`: derivatives of λ and of the thresholds with respect to every continuous parameter, from right and left vectors.
+  /// `Study = sensitivity`: derivatives of λ and of thresholds with respect to all continuous parameters, from right and left vectors.
   static void run_sensitivity_study(Scene &scene, Run &run)
   {
     const Parameters                 &p          = run.parameters;

@@ -9,13 +9,14 @@ namespace Squeal
   {
     using Complex = std::complex<double>;
 
-    /// Distances from a coalescence, of that to the next event of either branch [-]: within them δ² is nearly linear.
+    /// Largest distance from a coalescence, relative to the distance from the next event of either branch: δ² is nearly linear within it
+    /// [-].
     constexpr double first_distance = 0.03;
 
-    /// How often the distances are divided by ten if modes could not be followed over them.
+    /// Number of reductions of the distances by a factor of ten if modes cannot be followed.
     constexpr int most_attempts = 3;
 
-    /// Modes of a point that go on those of another one; nothing where that cannot be told.
+    /// Modes of a point that continue those of another one; nothing if this cannot be decided.
     std::optional<std::vector<int>> followed(const ChartPoint       &from,
                                              const std::vector<int> &modes,
                                              const ChartPoint       &to,
@@ -28,7 +29,7 @@ namespace Squeal
         if (std::any_of(block.first.begin(), block.first.end(),
                         [&](const int j) { return std::find(modes.begin(), modes.end(), j) != modes.end(); }))
           {
-            // Blocks of other modes, too, do not tell which is which
+            // Blocks with other modes do not identify them either
             for (const int j : block.first)
               if (const auto found = std::find(rest.begin(), rest.end(), j); found != rest.end())
                 rest.erase(found);
@@ -41,7 +42,7 @@ namespace Squeal
       return result;
     }
 
-    /// The point of a chart nearest to a friction coefficient at which all of some branches have modes; −1: none.
+    /// Point of a chart closest to a friction coefficient at which all of some branches have modes; −1: none.
     int nearest_point(const StabilityChart &chart, const double friction_coefficient, const std::vector<int> &branches)
     {
       int result = -1;
@@ -53,7 +54,7 @@ namespace Squeal
       return result;
     }
 
-    /// Friction coefficients at which a threshold is looked at, with the modes there.
+    /// Friction coefficients at which a threshold is evaluated, with the modes there.
     struct ThresholdSample
     {
       double           friction_coefficient;
@@ -71,12 +72,12 @@ namespace Squeal
         , step(first_distance * room())
       {}
 
-      /// With the present basis. All processes must call.
+      /// Derivatives with the present basis. Collective.
       ThresholdSensitivity find()
       {
         result = {&threshold, "", {}, {}};
         if (threshold.friction_coefficient <= chart.points.front().friction_coefficient)
-          result.obstacle = "grows from the first friction coefficient on: a multiple eigenvalue that friction splits";
+          result.obstacle = "grows from the first friction coefficient: friction splits a multiple eigenvalue";
         else if (threshold.mechanism == ThresholdMechanism::zero_growth)
           at_zero_growth();
         else
@@ -90,11 +91,11 @@ namespace Squeal
         return result;
       }
 
-      /// Where the modes were looked at last.
+      /// Modes of the last evaluation.
       std::vector<ThresholdSample> samples;
 
     private:
-      /// Distance to the next event of either branch, and to the ends of the chart.
+      /// Distance from the next event of either branch, and from the ends of the chart.
       double room() const
       {
         const double mu     = threshold.friction_coefficient;
@@ -106,7 +107,7 @@ namespace Squeal
         return std::max(result, 0.);
       }
 
-      /// The modes of both branches at a friction coefficient, with their point.
+      /// Modes of both branches at a friction coefficient, with their point.
       const ChartPoint *sample(const double mu)
       {
         const int        i = nearest_point(chart, mu, branches);
@@ -223,7 +224,7 @@ namespace Squeal
           run.warn("derivatives of thresholds are those of the basis of the sweep: " + why_not);
         else
           {
-            std::vector<ThresholdSensitivity> now = find("once more threshold ");
+            std::vector<ThresholdSensitivity> now = find("again threshold ");
             for (std::size_t t = 0; t < now.size(); ++t)
               for (std::size_t p = 0; p < std::min(now[t].derivatives.size(), result[t].derivatives.size()); ++p)
                 now[t].errors[p] += std::abs(now[t].derivatives[p] - result[t].derivatives[p]);

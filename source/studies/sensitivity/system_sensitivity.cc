@@ -12,7 +12,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Estimated relative error of λ to which left and right vectors are found: their own errors are about the root of it.
+    /// Estimated relative error of λ required for left and right vectors, whose own errors are about its square root [-].
     constexpr double tolerance_of_vectors = 1e-12;
   } // namespace
 
@@ -41,7 +41,7 @@ namespace Squeal
     const SystemFile    &file   = given.file;
     const CoupledSystem &system = given.coupled;
     if (file.parameters.empty())
-      throw ParameterError("the system has no parameters, with respect to which there would be derivatives", "file " + file.path,
+      throw ParameterError("the system has no parameters for derivatives", "file " + file.path,
                            "add `parameters` and coefficients of terms, or set Study = stability");
     const double        value = given.value;
     const FrictionModes friction =

@@ -11,7 +11,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Unstable modes that the screen shows.
+    /// Number of unstable modes on the screen.
     constexpr std::size_t n_shown_modes = 20;
 
     /// Real coupled modes: label, share, frequency, residual.
@@ -24,7 +24,7 @@ namespace Squeal
                    boost::irange<int>(0, modes.labels.size()));
     }
 
-    /// A column of modes with friction, known by their numbers, of what modal_quantities() says of them.
+    /// A column of modes with friction, by mode index, of one of the modal_quantities().
     Column<int> column_of(const FrictionModes &friction,
                           const std::string   &name,
                           const std::string   &unit,
@@ -37,8 +37,8 @@ namespace Squeal
               digits};
     }
 
-    /// Complex modes: label, share, frequency, growth and divergence rate, damping ratio, residuals, whether they are unstable, where their
-    /// energy is, estimates where there are any, and columns @p more by the numbers of the modes.
+    /// Complex modes: label, share, frequency, growth and divergence rate, effective damping ratio, residuals, verdict, location of the
+    /// energy, error estimates if available, and columns @p more by mode index.
     Table complex_table(const FrictionModes &friction, const Columns<int> &energies, const Columns<int> &more)
     {
       const ComplexModes &modes   = friction.modes;
@@ -55,14 +55,13 @@ namespace Squeal
       columns.insert(columns.end(), energies.begin(), energies.end());
       if (!modes.estimated_errors.empty())
         columns.push_back({"estimated error of lambda", "-", [&](const int j) { return modes.estimated_errors[j]; }, 1, true});
-      if (more.empty()) // else the error of the mesh is in the verdict
+      if (more.empty()) // otherwise the verdict includes the discretisation error
         columns.push_back({"verdict", "", [&](const int j) { return to_string(friction.verdicts[j]); }});
       columns.insert(columns.end(), more.begin(), more.end());
       return Table(columns, boost::irange<int>(0, friction.labels.size()));
     }
 
-    /// The modes that grow, the largest divergence rate first: label, frequency, growth and divergence rate, share. At most @p n_largest
-    /// rows.
+    /// Growing modes, the largest divergence rate first: label, frequency, growth and divergence rate, share. At most @p n_largest rows.
     Table unstable_table(const FrictionModes &friction, const std::size_t n_largest)
     {
       std::vector<int> growing;
@@ -105,7 +104,7 @@ namespace Squeal
       run.measure("largest growth rate of a real eigenvalue [1/s]", friction.modes.real_values.back());
   }
 
-  /// Verdict and unstable modes, which is what most users want to know.
+  /// Prints the verdict and the unstable modes.
   void report_modes(const FrictionlessModes                &frictionless,
                     const FrictionModes                    &friction,
                     const std::vector<DiscretisationError> &mesh_errors,

@@ -30,7 +30,7 @@ namespace Squeal
                    listed_component_modes(modes, largest_eigenvalue));
     }
 
-    /// How disc modes travel.
+    /// Columns for the travelling waves in disc modes.
     Columns<int> wave_columns(const std::vector<std::optional<WaveShares>> &waves)
     {
       const auto wave = [&waves](double WaveShares::*share) {
@@ -39,8 +39,8 @@ namespace Squeal
       return {{"wave with rotation", "-", wave(&WaveShares::positive), 3}, {"wave against rotation", "-", wave(&WaveShares::negative), 3}};
     }
 
-    /// Columns that estimated errors of the mesh add to the table of complex modes: those, with a goal whether they are within its limits, and the
-    /// verdict.
+    /// Additional columns of the table of complex modes with estimated discretisation errors: errors, whether they are within the limits of
+    /// a goal, and the verdict.
     Columns<int> mesh_error_columns(const std::vector<DiscretisationError> &errors, const AccuracyGoal goal)
     {
       const auto known = [&errors](const double DiscretisationError::*error) {
@@ -62,13 +62,13 @@ namespace Squeal
       return columns;
     }
 
-    /// What a body of a mode adds to its divergence rate [-].
+    /// Contribution of a body to the divergence rate of a mode [-].
     struct PowerRow
     {
       int                   mode;
       std::string           body;
       std::optional<double> friction, into_disc, into_pin, radial, sliding; ///< of pins
-      double                damping;                                        ///< of the material or of the modes
+      double                damping;                                        ///< of the material, or modal damping
 
       double sum() const
       {
@@ -96,7 +96,7 @@ namespace Squeal
       return rows;
     }
 
-    /// The balances of all growing modes; how far the largest is from adding up to ξ goes to the run record.
+    /// Balances of all growing modes; records the largest difference between their sum and ξ.
     PowerBalances power_balances(const Linearisation &linearisation, const FrictionModes &friction, Run &run)
     {
       const Scene  &scene = *linearisation.scene;
@@ -115,11 +115,12 @@ namespace Squeal
             result[column] = balance;
           }
       if (!result.empty())
-        run.measure("largest difference of a divergence rate from what its powers add up to [-]", imbalance);
+        run.measure("largest difference of a divergence rate from the sum of its contributions [-]", imbalance);
       return result;
     }
 
-    /// `energy.csv`: of each growing mode what disc and pins, friction and damping add to its divergence rate. Nothing without a growing mode.
+    /// `energy.csv`: contributions of disc, pins, friction and damping to the divergence rate of each growing mode. No table without a
+    /// growing mode.
     void write_power_table(const Linearisation &linearisation, const FrictionModes &friction, const PowerBalances &balances, Run &run)
     {
       if (balances.empty())
@@ -138,12 +139,12 @@ namespace Squeal
          {"frequency", "Hz", [&](const PowerRow &row) { return quantity(row).frequency; }},
          {"divergence rate", "%", [&](const PowerRow &row) { return 100. * quantity(row).divergence_rate; }},
          {"body", "", &PowerRow::body},
-         {"all of it", "%", [](const PowerRow &row) { return 100. * row.sum(); }},
+         {"total", "%", [](const PowerRow &row) { return 100. * row.sum(); }},
          {"friction", "%", part(&PowerRow::friction)},
          {"friction into the disc", "%", part(&PowerRow::into_disc)},
          {"friction into the pin", "%", part(&PowerRow::into_pin)},
          {"radial dissipation", "%", part(&PowerRow::radial)},
-         {"slope of friction", "%", part(&PowerRow::sliding)},
+         {"friction slope", "%", part(&PowerRow::sliding)},
          {"damping", "%", [](const PowerRow &row) { return 100. * row.damping; }}};
       run.store_table("energy", Table(columns, rows));
     }
@@ -168,7 +169,7 @@ namespace Squeal
       };
       write(*system.mass, "M", MatrixMarketSymmetry::symmetric);
       write(*system.stiffness, "K", MatrixMarketSymmetry::symmetric);
-      // A matrix without entries where there is no damping, so that readers need no special case
+      // An empty matrix without damping, so that readers need no special case
       const SparseMatrix zero(model.free_map(), model.free_map(), [](int, SparseMatrix::Row &) {});
       const Term        *symmetric = nullptr;
       for (const Term &term : scene.bodies)
@@ -221,15 +222,15 @@ namespace Squeal
   } // namespace
 
   /// `Study = stability`: component modes, real coupled modes and complex modes at one friction coefficient, about equal shares of the load
-  /// or about steady sliding, with their tables and mode shapes; with an accuracy asked for or a coarser mesh, their errors by the mesh. A dry run makes,
-  /// checks and counts the mesh, and writes nothing.
+  /// or about steady sliding, with tables and mode shapes; with an accuracy goal or a coarser mesh also their discretisation errors. A dry
+  /// run generates, checks and counts the mesh, and writes nothing.
   static void run_stability_study(Scene &scene, Run &run)
   {
     const Parameters          &parameters = run.parameters;
     const OperationParameters &operation  = parameters.operation;
     const double               omega_max  = circular_frequency(parameters.discretization.maximum_frequency);
 
-    // Process 0 writes the mesh; the others have their parts in the model, and need no more than names
+    // Process 0 writes the mesh; the others have their parts in the model, and need only the names
     if (Mesh names; !run.is_root)
       {
         names.volume_names = scene.mesh.volume_names;
@@ -268,7 +269,7 @@ namespace Squeal
     run.finish();
   }
 
-  /// The same for a system file: groups of dofs in the place of bodies, and shapes at its points.
+  /// `Study = stability` for a system file: groups of dofs instead of bodies, and shapes at its points.
   static void run_stability_of_system(Run &run)
   {
     const GivenSystem given = given_system(run);

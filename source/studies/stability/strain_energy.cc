@@ -10,7 +10,7 @@ namespace Squeal
 {
   namespace
   {
-    /// What a term of the stiffness belongs to, as a table calls it.
+    /// Part of the model to which a stiffness term belongs, by its name in tables.
     std::string part_of(const Term &term, const std::vector<std::string> &volumes, const MaterialParameters &materials)
     {
       for (const std::string &volume : volumes)

@@ -9,10 +9,10 @@ namespace Squeal
 {
   namespace
   {
-    /// Modes with a larger R/ω grow by more than e^(2π) within a period: divergence with a slow oscillation, no sound [-].
+    /// Modes with a larger R/ω grow by more than e^(2π) per period: slowly oscillating divergence without sound [-].
     constexpr double fastest_oscillating_divergence = 1.;
 
-    /// Summary of the unstable modes, led by the one that grows fastest among those that oscillate.
+    /// Summary of the unstable modes; the first one named is the fastest growing oscillating mode.
     std::string squeal(const FrictionModes &friction)
     {
       const auto &lambda = friction.modes.lambda;
@@ -93,16 +93,16 @@ namespace Squeal
     const std::size_t   n_complex = modes.lambda.size() + modes.n_rigid_body, n_values = modes.real_values.size();
     if (n_complex == n_real_modes)
       return "";
-    const std::string counts = text("  note: ", n_real_modes, " real but ", n_complex, " complex modes lie in the band: ");
+    const std::string counts = text("  note: ", n_real_modes, " real modes, but ", n_complex, " complex modes in the band: ");
     std::string       rest;
     if (n_values > 0)
-      rest = text(n_values, " real eigenvalues stand for modes that do not oscillate");
+      rest = text(n_values, " real eigenvalues belong to modes that do not oscillate");
     if (friction.n_slow > 0)
-      rest += text(rest.empty() ? "" : ", and ", "modes that creep, |lambda| below ", zero_frequency, " of the band's end, are not listed");
+      rest += text(rest.empty() ? "" : ", and ", "creep motions, |lambda| below ", zero_frequency, " of the band's end, are not listed");
     if (maximum_rate > 0.)
       rest += text(rest.empty() ? "" : ", and ", "modes that decay faster than ", exact_text(maximum_rate), " 1/s are not listed");
     else if (friction.n_slow == 0 && 2 * n_complex + n_values != 2 * n_real_modes)
-      rest += text(rest.empty() ? "" : ", and ", "with friction modes crossed its end");
+      rest += text(rest.empty() ? "" : ", and ", "friction moved modes across its end");
     return counts + rest;
   }
 
@@ -112,7 +112,7 @@ namespace Squeal
     if (n == 0)
       return "";
     return text("  note: ", n, " of ", friction.verdicts.size(), " modes grow or decay by less than ", 100. * negligible_divergence,
-                " % of omega, which rounding errors hide: the damping is too weak to tell, and they count as stable");
+                " % of omega, within rounding errors: the damping is too weak to decide, and they count as stable");
   }
 
   void record_conditioning(const CoupledSystem &system,
@@ -133,10 +133,10 @@ namespace Squeal
     const auto slowest =
       std::count_if(modes.lambda.begin(), modes.lambda.end(), [&](const auto &lambda) { return is_slow(system, lambda); });
     if (conditioning.largest_error() > tolerance)
-      run.warn(text("the eigenvalues keep some ", std::floor(conditioning.digits()), " of 16 digits: growth rates below ",
-                    100. * largest_error(system, modes, conditioning), " % of omega are not told from zero",
-                    slowest > 0 ? text(", of ", slowest, slowest == 1 ? " mode" : " modes", " below ",
-                                       decimal_text(hertz(std::sqrt(slow_square * system.hidden_square))), " Hz those below ",
+      run.warn(text("the eigenvalues are accurate to about ", std::floor(conditioning.digits()), " of 16 digits: growth rates below ",
+                    100. * largest_error(system, modes, conditioning), " % of omega cannot be distinguished from zero",
+                    slowest > 0 ? text(", for ", slowest, slowest == 1 ? " mode" : " modes", " below ",
+                                       decimal_text(hertz(std::sqrt(slow_square * system.hidden_square))), " Hz growth rates below ",
                                        100. * conditioning.largest_error(), " %") :
                                   "",
                     " (condition numbers: stiffness ", conditioning.stiffness, ", eigenvalues up to ", kappa,

@@ -9,13 +9,14 @@ namespace Squeal
 {
   namespace
   {
-    /// Component modes are found somewhat beyond the band: they label the coupled modes at its end.
+    /// Component modes extend beyond the band by this factor, to label the coupled modes at its end [-].
     constexpr double label_band = 1.2;
 
-    /// Work of a mount, in its units, over the displacements of a motion of zero frequency, up to which it is a rounding error.
+    /// Work of a mount relative to its stiffness and the displacements of a motion of zero frequency, below which it is a rounding error
+    /// [-].
     constexpr double no_work = 1e-12;
 
-    /// Warns where motions count as those of a free body although a mount holds them.
+    /// Warns if motions count as those of a free body although a mount holds them.
     void warn_of_hidden_mounts(const FrictionlessModes &modes, Run &run)
     {
       const CoupledSystem &coupled = modes.linearisation.coupled;
@@ -30,11 +31,10 @@ namespace Squeal
         run.warn(text(n_held, " of the ", n, " modes of zero frequency ", n_held == 1 ? "is" : "are",
                       " held by mounts that are too soft: rounding errors of the stiffness hide frequencies below ",
                       decimal_text(hertz(std::sqrt(coupled.hidden_square))),
-                      " Hz. Raise Mounts/Elastic mounts, or leave the directions out if the body is meant to be free"));
+                      " Hz. Raise Mounts/Elastic mounts, or remove these directions if the body is meant to be free"));
     }
 
-    /// Refuses a speed beyond a critical one, at which K − Ω² ρ N has negative eigenvalues: the disc cannot keep its shape in the fixed
-    /// frame, and no Cholesky factor exists.
+    /// Rejects a speed above the critical one, where K − Ω² ρ N has negative or zero eigenvalues: it has no Cholesky factor.
     void check_speed(const CoupledSystem &coupled, const Parameters &parameters)
     {
       if (!parameters.operation.rotating_disc || !parameters.has_friction())
@@ -42,9 +42,12 @@ namespace Squeal
       int       n_null = 0;
       const int n      = count_negative_eigenvalues(*coupled.stiffness, "stiffness of the turning disc", &n_null);
       if (n + n_null > 0)
-        throw ParameterError(text("at ", exact_text(parameters.operation.rotation_speed), " rad/s the disc turns beyond a critical speed: ",
-                                  n + n_null, n + n_null == 1 ? " motion has" : " motions have", " no positive stiffness"),
-                             "parameter Operation/Rotation speed", "lower it, or set Operation/Gyroscopic forces = false");
+        throw ParameterError(
+          text("at ", exact_text(parameters.operation.rotation_speed), " rad/s the disc turns beyond a critical speed: ",
+               "the stiffness K - Omega^2 rho N has ", n + n_null, " eigenvalue", n + n_null == 1 ? "" : "s",
+               " that are not positive. The critical speed is an estimate from the rotation terms alone: centrifugal prestress, "
+               "which is of the same order Omega^2 and stiffens the disc, is not in the model"),
+          "parameter Operation/Rotation speed", "lower it, or set Operation/Gyroscopic forces = false");
     }
 
     /// Modes of the disc and of the pins alone, as a step of the run.
@@ -53,7 +56,7 @@ namespace Squeal
       const Scene &scene     = *linearisation.scene;
       const double omega_max = circular_frequency(run.parameters.discretization.maximum_frequency);
       run.progress.begin("Component modes");
-      double pins_shift = 0.; // bodies that a mount leaves free
+      double pins_shift = 0.; // for bodies that a mount leaves free
       for (unsigned int body = 1; body < scene.model->component_names().size(); ++body)
         if (free_motions(*scene.model, scene.system, body))
           pins_shift = omega_max / band_per_stabilizing_shift;
@@ -61,7 +64,7 @@ namespace Squeal
         const bool            is_disc = component == Component::disc;
         SymmetricModesOptions options =
           real_modes_options(run.parameters.solvers, name, is_disc ? stabilizing_shift(*scene.model, scene.system, omega_max) : pins_shift);
-        // Pins are alike: every mode of one comes once for each of them, bending modes twice. One by one there are no such clusters.
+        // Equal pins cause clusters: every mode occurs once per pin, bending modes twice. Solving pins individually avoids them
         options.by_parts = !is_disc;
         run.progress.update(name);
         return component_modes(*scene.model, scene.interface, linearisation.interface, scene.system, component, boundary,
@@ -166,7 +169,7 @@ namespace Squeal
     const ModeCount count = number_of_modes(coupled, (1. + margin) * omega_max, parameters.solvers, run.progress);
     find_component_modes(linearisation, result, run);
 
-    // As many modes as there are pins that are alike may have one frequency
+    // Equal pins cause clusters with as many modes as there are pins
     const int block_size               = std::clamp(static_cast<int>(scene.n_pins()), 8, 16);
     static_cast<SystemModes &>(result) = system_modes(coupled, stabilizing_shift(*scene.model, coupled, omega_max), omega_max, count,
                                                       block_size, parameters.solvers, run.progress);

@@ -12,7 +12,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Vectors of a block of the eigensolver.
+    /// Block size of the eigensolver.
     constexpr int block_size_of_modes = 8;
   } // namespace
 
@@ -58,7 +58,7 @@ namespace Squeal
         "the symmetric part of the stiffness has negative eigenvalues, or it and the mass are singular for the same motion",
         "file " + run.parameters.system.path(),
         "mark terms that may destabilise by \"kind\": \"friction\", eliminate constraints, and check the signs of the terms; all studies "
-        "but reduction solve such systems");
+        "except reduction can solve such systems");
     const auto count = number_of_modes(system, (1. + margin) * omega_max, solvers, run.progress);
 
     FrictionlessModes result;
@@ -84,7 +84,7 @@ namespace Squeal
   FrictionModes direct_solution(const GivenSystem &given, Run &run)
   {
     run.progress.begin("Complex modes");
-    run.progress.note("  no definite part: Q is factorised as it is, and modes are named by their numbers");
+    run.progress.note("  no definite part: Q itself is factorised, and modes are numbered");
     FrictionModes result;
     static_cast<JudgedModes &>(result) = direct_modes(given.coupled, given.value, run.parameters.discretization.band(),
                                                       run.parameters.solvers, "file " + given.file.path, run.progress);
@@ -142,7 +142,7 @@ namespace Squeal
     const MultiVector &re = *modes.real_part, &im = *modes.imaginary_part;
     const auto mass = given.coupled.mass ? given.coupled.mass : sparse_matrices(given.coupled.terms, given.coupled.at(given.value)).mass;
     const MultiVector M_re = *mass * re, M_im = *mass * im;
-    const DenseMatrix energies = re.local().cwiseProduct(M_re.local()) + im.local().cwiseProduct(M_im.local()); // of each dof
+    const DenseMatrix energies = re.local().cwiseProduct(M_re.local()) + im.local().cwiseProduct(M_im.local()); // for each dof
     DenseMatrix       shares   = DenseMatrix::Zero(static_cast<Eigen::Index>(file.groups.size()), energies.cols());
     for (std::size_t g = 0; g < file.groups.size(); ++g)
       for (const auto &[first, last] : file.groups[g].ranges)

@@ -7,10 +7,10 @@ namespace Squeal
 {
   namespace
   {
-    /// Modes that a warning names.
+    /// Number of modes in a warning.
     constexpr std::size_t n_named = 5;
 
-    /// Names the first as "A0-4 at 2315 Hz (0.3 %, 0.05 points)".
+    /// Warns of unconverged modes, the first ones as "A0-4 at 2315 Hz (0.3 %, 0.05 points)".
     void warn_of_unconverged(const std::vector<DiscretisationError> &errors,
                              const FrictionModes                    &friction,
                              const AccuracyLimits                   &limits,
@@ -29,10 +29,10 @@ namespace Squeal
       if (n > 0)
         run.warn(text(n, n == 1 ? " unstable mode is" : " unstable modes are", " not converged on this mesh to ", 100. * limits.frequency,
                       " % of the frequency and ", 100. * limits.divergence, " percentage points of the divergence rate: ", names,
-                      n > n_named ? ", ..." : "", "; finer meshes tell whether they grow"));
+                      n > n_named ? ", ..." : "", "; refine the mesh to decide whether they grow"));
     }
 
-    /// File name of a mode: what it is of, its row in the table, counted from 1, and its label.
+    /// File name of a mode: type, row in the table, counted from 1, and label.
     std::string file_name(const std::string &kind, const std::size_t row, const ModeLabel &label)
     {
       std::ostringstream name;
@@ -45,13 +45,13 @@ namespace Squeal
       return text(what, " ", to_string(label), ", ", decimal_text(frequency), " Hz");
     }
 
-    /// A displacement on the dofs of the uncoupled bodies, n_free × 1: rows of this process.
+    /// Local rows of a displacement on the dofs of the uncoupled bodies, n_free × 1.
     std::vector<double> rows_here(const MultiVector &displacement)
     {
       return {displacement.col(0).begin(), displacement.col(0).end()};
     }
 
-    /// What friction and damping at each of all contact nodes add to ξ, over its area [1/m²]; zero at open ones.
+    /// Contributions of friction and damping to ξ at all contact nodes, per area [1/m²]; zero at open ones.
     std::vector<double> energy_input(const Linearisation &linearisation, const PowerBalance &balance)
     {
       std::vector<double> result(linearisation.scene->interface.size(), 0.);
@@ -60,7 +60,7 @@ namespace Squeal
       return result;
     }
 
-    /// Field of a complex mode by its column.
+    /// Field of the complex mode in a column.
     using FieldOfMode = std::function<ModeField(int column)>;
 
     void write_complex_modes(const FrictionModes &friction, const FieldOfMode &field_of, FieldWriter &writer, Run &run)
@@ -69,7 +69,7 @@ namespace Squeal
       const ComplexModes     &modes  = friction.modes;
       std::vector<ListedMode> list;
       std::vector<ModeField>  animated;
-      double                  highest = 0.; // divergence rate of what is animated
+      double                  highest = 0.; // largest divergence rate of the animated modes
       run.progress.begin("Mode shapes");
       for (std::size_t j = 0; j < friction.labels.size(); ++j)
         {
@@ -118,8 +118,8 @@ namespace Squeal
       run.progress.finish(text(list.size(), " modes"));
     }
 
-    /// Points of this process. The component of a point is the number of the group whose dof has the largest displacement there; points
-    /// without a group have the last number.
+    /// Points of this process. The component of a point is the index of the group with the largest displacement there; points without a
+    /// group have the last index.
     std::vector<Node> nodes_of(const ShapePoints &points, const std::vector<DofGroup> &groups)
     {
       const SparseMatrix       &displacements = *points.displacements;
@@ -157,7 +157,7 @@ namespace Squeal
     {
       const double omega_max = circular_frequency(run.parameters.discretization.maximum_frequency);
       const auto   listed    = listed_component_modes(modes, omega_max * omega_max);
-      // Disc and pins are different meshes, so that each set has a list of its own
+      // Disc and pins are different meshes: each set has its own list
       std::map<std::string, std::vector<ListedMode>> lists;
       run.progress.begin("Component mode shapes");
       for (std::size_t row = 0; row < listed.size(); ++row)
@@ -198,7 +198,7 @@ namespace Squeal
     CoarserSolution         result{points, modes_at(points, frictionless, friction)};
     run.count("dofs of the coarser mesh", scene.model->free_map().n());
     run.progress.finish(text(scene.model->free_map().n(), " dofs, ", friction.modes.lambda.size(), " complex modes, ",
-                             friction.n_unstable(), " unstable, to estimate the error of the mesh"));
+                             friction.n_unstable(), " unstable, to estimate the discretisation error"));
     return result;
   }
 
@@ -209,7 +209,7 @@ namespace Squeal
   {
     auto result = discretisation_errors(coarser.modes, modes_at(coarser.points, frictionless, friction), error_by_difference(goal),
                                         friction.modes.estimated_errors);
-    // What the arithmetic leaves open no mesh decides
+    // Modes that are undecided by rounding remain so
     for (std::size_t j = 0; j < result.size(); ++j)
       if (friction.verdicts[j] == Verdict::undecided)
         result[j].verdict = Verdict::undecided;
@@ -233,15 +233,15 @@ namespace Squeal
     run.measure("largest estimated error of a frequency by the mesh [-]", frequency);
     run.measure("largest estimated error of a divergence rate by the mesh [-]", divergence);
     run.count("modes without counterpart on the coarser mesh", n_lost);
-    run.count("modes in clusters whose members the mesh decides", n_in_cluster);
+    run.count("modes in clusters that mix from mesh to mesh", n_in_cluster);
     for (const Verdict verdict : {Verdict::unstable, Verdict::stable, Verdict::undecided})
       run.count("modes " + to_string(verdict) + " with the error of the mesh", count(verdict));
     const bool has_goal = run.parameters.goal != AccuracyGoal::as_given;
-    run.progress.note(text(has_goal ? text("  accuracy: ", to_string(run.parameters.goal), " asked for; estimated by a coarser mesh") :
-                                      "  error of the mesh: difference from the coarser mesh, not extrapolated",
-                           ", frequencies are within ", decimal_text(100. * frequency), " % and divergence rates within ",
-                           decimal_text(100. * divergence), " percentage points",
-                           n_lost > 0 ? text(", ", n_lost, n_lost == 1 ? " mode" : " modes", " without counterpart left out") : ""));
+    run.progress.note(
+      text(has_goal ? text("  accuracy: ", to_string(run.parameters.goal), " requested; errors estimated from a coarser mesh") :
+                      "  discretisation error: difference from the coarser mesh, not extrapolated",
+           ": frequencies within ", decimal_text(100. * frequency), " %, divergence rates within ", decimal_text(100. * divergence),
+           " percentage points", n_lost > 0 ? text(", ", n_lost, n_lost == 1 ? " mode" : " modes", " without counterpart excluded") : ""));
     std::string converged;
     if (has_goal)
       {
@@ -253,7 +253,7 @@ namespace Squeal
         converged = text("; ", n, " of ", errors.size(), " converged");
         warn_of_unconverged(errors, friction, limits, run);
       }
-    run.progress.note(text("  with the error of the mesh: ", count(Verdict::unstable), " modes unstable, ", count(Verdict::stable),
+    run.progress.note(text("  with the discretisation error: ", count(Verdict::unstable), " modes unstable, ", count(Verdict::stable),
                            " stable, ", count(Verdict::undecided), " undecided", converged));
   }
 

@@ -10,8 +10,10 @@ namespace Squeal
   {
     // --------------------------------------------------------------------- rules
 
-    const auto no_damping        = [](const Parameters &p) { return unless(p.has_friction(), "the frictionless problem has no damping"); };
-    const auto no_krylov         = [](const Parameters &p) { return unless(p.solves_by(ComplexSolver::krylov), "of the solver Krylov"); };
+    const auto no_damping = [](const Parameters &p) { return unless(p.has_friction(), "the frictionless problem has no damping"); };
+    const auto no_krylov  = [](const Parameters &p) {
+      return unless(p.solves_by(ComplexSolver::krylov), "only for Complex modes/Solver = Krylov");
+    };
     const auto no_complex_shapes = [](const Parameters &p) {
       return unless(p.output.fields != FieldSelection::none, "Output/Mode shapes = none");
     };
@@ -19,7 +21,7 @@ namespace Squeal
       return unless(p.has_friction() || p.needs_steady_sliding(), "the problem is frictionless");
     };
     const auto no_iteration = [](const Parameters &p) {
-      return unless(p.solves_by(ComplexSolver::residual_iteration), "of the solver residual iteration");
+      return unless(p.solves_by(ComplexSolver::residual_iteration), "only for Complex modes/Solver = residual iteration");
     };
     const auto no_steady_sliding = [](const Parameters &p) {
       return unless(p.needs_steady_sliding(), "Steady sliding/Contact state = equal load");
@@ -28,7 +30,7 @@ namespace Squeal
       return p.output.animation_frames == 0 ? "Output/Animation frames = 0" : no_complex_shapes(p);
     };
 
-    /// What holds for all studies that have no rule of their own.
+    /// Rules for all studies without their own rule.
     const std::vector<UsageRule> &general_rules()
     {
       static const std::vector<UsageRule> table = {
@@ -48,13 +50,13 @@ namespace Squeal
         {"Operation/Rotation", no_friction},
         {"Operation/Sliding direction", no_friction},
         {"Operation/Rotation speed",
-         // Tables of the steady sliding state show the sliding speeds
+         // Tables of the steady sliding state contain the sliding speeds
          [](const Parameters &p) { return p.needs_steady_sliding() ? nullptr : no_sliding_speed(p); }},
         {"Operation/Gyroscopic forces",
-         [](const Parameters &p) { return unless(p.has_friction(), "the frictionless problem leaves the rotation out"); }},
+         [](const Parameters &p) { return unless(p.has_friction(), "the frictionless problem does not include rotation"); }},
         {"Operation/Load per side",
          [](const Parameters &p) {
-           // Pins without an entry in Steady sliding/Loads share it
+           // Pins without an entry in Steady sliding/Loads share this load
            const bool is_shared = p.needs_steady_sliding() && p.sliding.control == BackplateControl::load_per_pin;
            return unless(is_shared || (p.uses_load_per_side() && (p.has_friction() || p.needs_steady_sliding())),
                          p.needs_steady_sliding() ? "Steady sliding/Control = displacement" : "no contact damping");
@@ -81,14 +83,14 @@ namespace Squeal
         {"Complex modes/Maximum basis", no_iteration},
 
         {"Output/Animation frames",
-         // Who wants none gets none
+         // Zero frames are used even without animation
          [](const Parameters &p) { return p.output.animation_frames == 0 ? nullptr : no_complex_shapes(p); }},
         {"Output/Animation periods", no_frames},
         {"Output/Animation growth", no_frames}};
       return table;
     }
 
-    /// Of a system file.
+    /// Usage rules for a system file.
     bool is_used_with_system(const std::string &path, const Parameters &parameters)
     {
       for (const char *used : {"System", "System values", "Study", "Band/", "Real modes/", "Complex modes/", "Linear algebra/",
@@ -110,7 +112,7 @@ namespace Squeal
       return false;
     }
 
-    /// Why a run leaves a parameter unused, but for those of the geometry; empty if it does not.
+    /// Reason why a run does not use a parameter, except for the geometry; empty if it does.
     std::string why_unused(const std::string &path, const Parameters &parameters)
     {
       if (parameters.system && !is_used_with_system(path, parameters))
@@ -132,7 +134,7 @@ namespace Squeal
 
     // ------------------------------------------------------------------ geometry
 
-    /// The variable by which a script takes over a parameter: that of "Geometry/Pin height" is pin_height.
+    /// Script variable of a parameter: pin_height for "Geometry/Pin height".
     std::string script_variable(const std::string &path)
     {
       const std::string section = "Geometry/";
@@ -162,7 +164,7 @@ namespace Squeal
   std::vector<UnusedParameter> unused_among(const std::vector<std::string> &paths, const Parameters &parameters)
   {
     const auto                           variables = parameters.geometry.script_variables();
-    std::optional<std::set<std::string>> used; // found out only where it matters
+    std::optional<std::set<std::string>> used; // determined only if needed
     std::vector<UnusedParameter>         unused;
     for (const std::string &path : paths)
       {

@@ -12,7 +12,7 @@ namespace Squeal
 {
   namespace
   {
-    /// What bases are for.
+    /// Eigenproblem of the bases.
     struct Problem
     {
       explicit Problem(const Parameters &p)
@@ -31,7 +31,7 @@ namespace Squeal
              (problem.has_contact_nodes || !recipe.needs_contact_nodes()) && (problem.has_snapshots || !recipe.is_pod);
     }
 
-    /// Bases that the parameters name; all that fit where they name none.
+    /// Bases named in the parameters; if none is named, all that fit.
     std::vector<const BasisRecipe *> chosen_recipes(const Parameters &p, const Problem &problem)
     {
       const std::vector<std::string>  &names = p.reduction.bases;
@@ -55,7 +55,7 @@ namespace Squeal
 
     // ---------------------------------------------------------------- in use
 
-    /// Whether a basis is measured for which @p fits holds.
+    /// True if a measured basis satisfies @p fits.
     template <typename Predicate>
     bool measures(const Parameters &p, const Predicate &fits)
     {
@@ -75,7 +75,7 @@ namespace Squeal
       return unless(measures(p, BasisSource::snapshots) || p.solves_by(ComplexSolver::krylov), "of the solver Krylov");
     };
 
-    /// Numbers of component modes are searched for up to this multiple of the end of the band [-].
+    /// Largest multiple of the band's end for finding the requested numbers of component modes [-].
     constexpr double furthest_band = 16.;
   } // namespace
 
@@ -97,11 +97,11 @@ namespace Squeal
     };
     for (const BasisRecipe *recipe : plan.recipes)
       if (!problem.has_contact_nodes && recipe->needs_contact_nodes())
-        refuse(*recipe, "needs bodies and their contact nodes, which a system file does not have", "leave the basis out");
+        refuse(*recipe, "needs bodies and their contact nodes, which a system file does not have", "remove the basis");
       else if (!problem.has_friction && recipe->needs_friction)
-        refuse(*recipe, "belongs to the problem with friction", "set Reduction/Problem = friction, or leave it out");
+        refuse(*recipe, "requires friction", "set Reduction/Problem = friction, or remove it");
       else if (!problem.has_damping && recipe->needs_damping)
-        refuse(*recipe, "needs damping, and there is none", "switch a damping on, or leave the basis out");
+        refuse(*recipe, "needs damping, but there is none", "add damping, or remove the basis");
     if (plan.rests_on(BasisSource::snapshots) && parameters.reduction.snapshots.empty())
       throw ParameterError("the basis POD has no snapshots", "parameter Reduction/Snapshots", "give at least one value");
     return plan;
@@ -124,9 +124,9 @@ namespace Squeal
     const ReductionPlan plan = plan_for(problem, parameters, value);
     if (!problem.has_snapshots && plan.rests_on(BasisSource::snapshots))
       throw ParameterError(varied == nullptr ? "the basis POD needs a parameter, and the system has none" :
-                                               text("snapshots lie outside of the range of ", varied->name, " from ",
+                                               text("snapshots are outside the range of ", varied->name, " from ",
                                                     exact_text(varied->lower), " to ", exact_text(varied->upper)),
-                           "parameter Reduction/Snapshots", "give values in the range, or leave the basis POD out");
+                           "parameter Reduction/Snapshots", "give values in the range, or remove the basis POD");
     return plan;
   }
 
@@ -209,7 +209,7 @@ namespace Squeal
 
   void ReductionSets::charge_coupled_factor()
   {
-    // The inverse computes the factor of K_c together with K_c⁻¹ A, which not every basis needs: that part is measured once more
+    // The inverse computes the factor of K_c together with K_c⁻¹ A, which not every basis needs: measure that part separately
     if (system.n_contact() == 0)
       {
         book({BasisSource::coupled_factor, "", {}, {}, {}, frictionless.factorisation.cpu_seconds});
@@ -315,7 +315,7 @@ namespace Squeal
         n[source] = keep_lowest({source, truncation.text(), {}, {}, {}}, component, boundary, frequency, count);
     };
 
-    // The disc has as many sliding as free modes in a basis (Table 3)
+    // In a basis, the disc has as many sliding as free modes (Table 3)
     using Source      = BasisSource;
     const bool slides = plan.rests_on(Source::disc_sliding);
     compute_if(slides || plan.rests_on(Source::disc_free), Source::disc_free, Component::disc, ContactBoundary::free, truncation.disc);
@@ -355,7 +355,7 @@ namespace Squeal
     const Scene          &scene   = *linearisation.scene;
     SymmetricModesOptions options = real_modes_options(
       run.parameters.solvers, what, is_disc ? stabilizing_shift(*scene.model, scene.system, plan.largest_circular_frequency) : 0.);
-    options.by_parts = !is_disc; // pins are alike: one by one there are no multiple modes
+    options.by_parts = !is_disc; // equal pins are solved individually to avoid multiple modes
 
     const auto   T = component_kernel(*scene.model, linearisation.interface, component, boundary);
     const auto   K = congruence(*scene.system.stiffness, *T), M = congruence(*scene.system.mass, *T);

@@ -14,8 +14,8 @@ namespace Squeal
 {
   namespace
   {
-    /// Poisson's ratio from which trilinear elements lock: bending frequencies of pins on the default mesh are 1.4 % higher beside those of
-    /// quadratic elements than at 0.25, at 0.499 it is 3.6 %.
+    /// Poisson's ratio above which trilinear elements lock: bending frequencies of pins on the default mesh are then 1.4 % higher, relative
+    /// to quadratic elements, than at 0.25; 3.6 % at 0.499.
     constexpr double locking_poisson_ratio = 0.47;
 
     void warn_of_locking(Run &run)
@@ -24,8 +24,8 @@ namespace Squeal
         if (run.parameters.discretization.element == Element::trilinear && material.mean_poisson_ratio() >= locking_poisson_ratio)
           run.progress.note(text("  note: trilinear elements lock at ", section, material.orthotropy ? ", mean " : "/",
                                  "Poisson ratio = ", material.mean_poisson_ratio(), ": from ", locking_poisson_ratio,
-                                 " on bending frequencies are more than 1 % too high, growth rates less accurate "
-                                 "still; set Discretization/Element = incompatible modes"));
+                                 " upwards, bending frequencies are more than 1 % too high and growth rates even less accurate"
+                                 "; set Discretization/Element = incompatible modes"));
     }
 
     void warn_of_linear_cells(const Mesh &mesh, Run &run)
@@ -38,7 +38,7 @@ namespace Squeal
                                "more than 50 %; set Discretization/Element = quadratic"));
     }
 
-    /// The mounts that hold something, however soft, in units of their own.
+    /// Mounts with nonzero stiffness, scaled to entries of one.
     std::shared_ptr<const SparseMatrix> unit_mounts(const std::vector<Term> &bodies)
     {
       std::vector<std::pair<double, std::shared_ptr<const SparseMatrix>>> summands;
@@ -59,11 +59,11 @@ namespace Squeal
     run.progress.begin("Mesh");
     GeometryParameters geometry = parameters.geometry;
     if (parameters.discretization.element == Element::quadratic)
-      geometry.outlines = Outlines::inscribed; // curved edges have the circle's area
+      geometry.outlines = Outlines::inscribed; // curved edges have the area of the circle
     std::vector<std::string> surfaces = parameters.materials.mounted_surfaces();
     if (parameters.needs_steady_sliding())
       for (const std::string &face : parameters.sliding.pressed_faces)
-        if (face != PhysicalNames::pin_clamp) // a clamp is no mount
+        if (face != PhysicalNames::pin_clamp) // a clamp is not a mount
           surfaces.push_back(face);
     scene.mesh                = generate_mesh(geometry, surfaces, run.communicator, parameters.contact);
     const MeshQuality quality = check_mesh(scene.mesh);
@@ -80,7 +80,7 @@ namespace Squeal
       run.progress.note("  note: " + note);
     warn_of_linear_cells(scene.mesh, run);
     summarise_scene(scene.mesh, run);
-    // After the summary: what the mesh does not resolve is often a length or a modulus in other units.
+    // After the summary, because an unresolved mesh is often caused by lengths or moduli in other units
     check_wave_resolution(scene.mesh, parameters.materials, degree_of(parameters.discretization.element),
                           circular_frequency(parameters.discretization.maximum_frequency));
     if (!run.is_dry)
@@ -95,7 +95,7 @@ namespace Squeal
     if (parameters.needs_steady_sliding())
       check_sliding(*scene.model, scene.interface, parameters.operation, parameters.sliding);
     if (parameters.sliding.state == ContactState::equal_load && parameters.has_contact_damping())
-      equal_load_shares(*scene.model, scene.interface, parameters.operation); // refuses bodies without travel
+      equal_load_shares(*scene.model, scene.interface, parameters.operation); // throws for bodies without a direction of travel
     const int n = scene.model->free_map().n(), n_coupled = scene.contact.kernel->n_columns();
     run.count("dofs, clamped included", scene.model->n_dofs());
     run.count("dofs", n);
@@ -117,9 +117,10 @@ namespace Squeal
       {
         const double omega_max = circular_frequency(parameters.discretization.maximum_frequency);
         if (stabilizing_shift(*scene.model, sparse_matrices(bodies.terms, bodies.values), omega_max) > 0.)
-          throw ParameterError("the disc is free or held softly: its motions as a rigid body are not stable in the fixed frame",
-                               "parameter Operation/Gyroscopic forces",
-                               "hold the disc by Mounts/Elastic mounts, or set Operation/Gyroscopic forces = false");
+          throw ParameterError(
+            "the disc is free or softly held, and the convective stiffness -Omega^2 rho N destabilises its motions as a rigid body. "
+            "Centrifugal prestress, which is of the same order Omega^2 and cancels this effect, is not in the model",
+            "parameter Operation/Gyroscopic forces", "hold the disc by Mounts/Elastic mounts, or set Operation/Gyroscopic forces = false");
         add_rotation(bodies, *scene.model, parameters.operation.angular_velocity());
       }
     scene.mounts = unit_mounts(bodies.terms);

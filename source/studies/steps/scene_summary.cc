@@ -13,25 +13,25 @@ namespace Squeal
 {
   namespace
   {
-    // Bodies and materials of machines, from a desk toy to a turbine and from rubber to beryllium
+    // Plausible ranges, from a desk toy to a turbine and from rubber to beryllium
     constexpr Range disc_radii = {5e-3, 5.};    ///< [m]
     constexpr Range heights    = {1e-5, 1.};    ///< [m]
     constexpr Range densities  = {50., 25000.}; ///< [kg/m³]
     constexpr Range bar_speeds = {20., 20000.}; ///< [m/s]
 
-    constexpr double alike = 1e-3; ///< relative difference of pins that count as equal
+    constexpr double alike = 1e-3; ///< relative difference below which pins count as equal
 
-    /// For which memory is estimated: modes are counted later, and take little of it.
+    /// Number of modes assumed for the memory estimate, in which they matter little; they are counted later.
     constexpr double typical_modes = 70.;
 
-    /// The disc, or pins that are alike, as the mesh has them.
+    /// Summary of the disc, or of equal pins.
     struct Body
     {
       std::vector<std::string> names;
       double                   inner_radius = std::numeric_limits<double>::infinity(), outer_radius = 0.; ///< of nodes about z [m]
       double                   height = 0., contact_area = 0., volume = 0.; ///< extent along z [m]; [m²]; [m³]
-      double                   mass           = 0.;                         ///< of one of them [kg]
-      double                   bar_speed      = 0.;                         ///< of longitudinal waves in a bar, √(E/ρ) [m/s]
+      double                   mass           = 0.;                         ///< of each of them [kg]
+      double                   bar_speed      = 0.;                         ///< √(E/ρ), speed of longitudinal waves in a bar [m/s]
       bool                     is_orthotropic = false;                      ///< the bar lies along axis 1
 
       bool is_like(const Body &other) const
@@ -47,7 +47,7 @@ namespace Squeal
       return std::sqrt(material.young_modulus / material.density);
     }
 
-    /// The volumes, those of the disc first: those with the same height, contact area, volume and material as one.
+    /// Volumes, those of the disc first; volumes with equal height, contact area, volume and material are combined.
     std::vector<Body> summarise_bodies(const Mesh &mesh, const MaterialParameters &materials)
     {
       std::vector<Body>                     bodies(mesh.volume_names.size());
@@ -88,7 +88,7 @@ namespace Squeal
       return result;
     }
 
-    /// What in bodies and materials suggests other units than those that the program takes.
+    /// Warns if dimensions or materials suggest other units.
     void warn_of_units(const std::vector<Body> &bodies, const MaterialParameters &materials, Run &run)
     {
       if (!disc_radii.contains(bodies[0].outer_radius))
@@ -148,10 +148,10 @@ namespace Squeal
                            " GB are available"));
     run.measure("expected memory [byte]", bytes);
 
-    // Doubts
+    // Warnings
     const bool turns = SlidingVelocity(parameters.operation).turns_about_z();
     if (turns && !is_round_about_z(mesh, parameters.geometry.path()))
-      run.warn("the disc is not round about the z axis, about which it turns");
+      run.warn("the disc turns about the z axis, but is not a body of revolution about it");
     for (const MaterialAxes &axes : parameters.materials.axes)
       if (turns && is_of_disc(axes.volume))
         run.warn("the axes of " + axes.volume +
@@ -159,9 +159,8 @@ namespace Squeal
                  "and axial");
     warn_of_units(bodies, parameters.materials, run);
     if (const UnnamedContact contact = find_unnamed_contact(mesh); contact.n_nodes > 0)
-      run.warn(text(contact.n_nodes,
-                    " pairs of nodes of different bodies coincide outside of disc_contact and pin_contact, the first one of ", contact.body,
-                    " and ", contact.other, " at (", contact.place[0], ", ", contact.place[1], ", ", contact.place[2],
+      run.warn(text(contact.n_nodes, " pairs of nodes of different bodies coincide outside disc_contact and pin_contact, the first one of ",
+                    contact.body, " and ", contact.other, " at (", contact.place[0], ", ", contact.place[1], ", ", contact.place[2],
                     ") m: the bodies touch there, but nothing couples them"));
     check_memory(size, typical_modes, parameters.geometry.path(), run.communicator);
   }

@@ -7,7 +7,7 @@ namespace Squeal
 {
   namespace
   {
-    /// The state of contact, one row for each pin.
+    /// Contact state, one row for each pin.
     Table pin_table(const std::vector<PinContact> &pins)
     {
       return Table(Columns<PinContact>{{"pin", "", &PinContact::pin},
@@ -21,16 +21,16 @@ namespace Squeal
                                        {"w_0", "m/s", &PinContact::sliding_speed, 4},
                                        {"c_b", "N s/m", &PinContact::radial_damping, 3},
                                        {"c_t", "N s/m", &PinContact::sliding_damping, 3},
-                                       {"travel of backplate", "m", &PinContact::approach, 4, true},
+                                       {"backplate travel", "m", &PinContact::approach, 4, true},
                                        {"largest gap", "m", &PinContact::largest_gap, 2, true}},
                    pins);
     }
 
-    /// How well a steady sliding state fulfils its equations, and what is known of its uniqueness.
+    /// Residuals of a steady sliding state, and its uniqueness.
     Table sliding_table(const SlidingState &state, const std::vector<PinContact> &pins)
     {
       std::vector<std::pair<std::string, Entry>> rows;
-      std::map<std::string, double>              loads; // lower before upper
+      std::map<std::string, double>              loads; // lower before upper side
       for (const PinContact &pin : pins)
         loads[pin.side == 0 ? pin.pin : pin.side > 0 ? "the upper side" : "the lower side"] += pin.load;
       for (const auto &[part, load] : loads)
@@ -53,12 +53,11 @@ namespace Squeal
     std::string uniqueness_note(const ContactUniqueness &uniqueness)
     {
       if (uniqueness.is_certified)
-        return text("it is the only one: mu < ", uniqueness.unique_below);
+        return text("it is unique: mu < ", uniqueness.unique_below);
       if (uniqueness.found_other)
-        return "it is NOT the only one: another contact set fulfils all conditions too; the one found first is used";
-      return text("whether it is the only one is not certified",
-                  uniqueness.unique_below > 0. ? text(" above mu = ", uniqueness.unique_below) : "", "; ", uniqueness.n_searches,
-                  " searches from other contact sets found no other");
+        return "it is NOT unique: another contact set also satisfies all conditions; the first one found is used";
+      return text("its uniqueness is not certified", uniqueness.unique_below > 0. ? text(" above mu = ", uniqueness.unique_below) : "",
+                  "; ", uniqueness.n_searches, " searches from other contact sets found no other state");
     }
   } // namespace
 

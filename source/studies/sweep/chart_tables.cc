@@ -8,13 +8,13 @@ namespace Squeal
 {
   namespace
   {
-    /// Every mode of the band at every point of a chart, refined ones included: its branch, λ, residuals, error, verdict and whether λ grows.
+    /// Every mode of the band at every point of a chart, including refinement: branch, λ, residuals, error, verdict and growth.
     Table branch_table(const SweepChart &line, const double largest_circular_frequency, const SweepAxis &axis)
     {
       struct Row : ModalQuantities
       {
         const ChartPoint &point;
-        int               mode; ///< of the point
+        int               mode; ///< index of the mode at the point
         int               branch;
         ModeLabel         label;
         bool              is_refinement;
@@ -46,7 +46,7 @@ namespace Squeal
         rows);
     }
 
-    /// Where branches begin or cease to grow.
+    /// Thresholds of the branches.
     Table threshold_table(const SweepChart &line, const SweepAxis &axis)
     {
       using Row                = Threshold;
@@ -59,12 +59,12 @@ namespace Squeal
                                 {"branch", "-", [](const Row &row) { return row.branch + 1; }},
                                 {"label", "", [&](const Row &row) { return line.labels[row.branch]; }},
                                 {"partner", "-", partner},
-                                {"label of partner", "", partner_label},
+                                {"partner label", "", partner_label},
                                 {"frequency", "Hz", [](const Row &row) { return modal_quantities(row.lambda).frequency; }, 3}},
                    line.chart.thresholds);
     }
 
-    /// Where branches enter or leave the band.
+    /// Crossings of the band's edge by branches.
     Table crossing_table(const SweepChart &line, const SweepAxis &axis)
     {
       using Row = BandCrossing;
@@ -77,7 +77,7 @@ namespace Squeal
                    line.chart.crossings);
     }
 
-    /// Modes in the band at every point, and how many the crossings imply.
+    /// Number of modes in the band at every point, and number implied by the crossings.
     Table count_table(const StabilityChart &chart, const SweepAxis &axis)
     {
       using Row = ChartCount;

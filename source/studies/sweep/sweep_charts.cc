@@ -7,7 +7,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Known friction coefficients of a line, in parts between which the contact set is another one.
+    /// Known friction coefficients of a line, in parts with the same contact set.
     std::vector<std::vector<double>> stretches(const SweepModel &model, const int line)
     {
       std::vector<std::vector<double>> result;
@@ -24,11 +24,11 @@ namespace Squeal
       return result;
     }
 
-    /// Adds to the basis what the modes of all thresholds of a chart without refinements lack on both sides, and forgets the results there:
-    /// they were found without it.
+    /// Extends the basis by the missing components of the modes on both sides of all thresholds of an unrefined chart, and discards the
+    /// results there, which used the smaller basis.
     void sharpen(SweepModel &model, const int line, const StabilityChart &chart, const std::vector<double> &grid)
     {
-      // Values of the grid beside them: next to a coalescence the vectors of both modes are nearly the same
+      // Grid values next to them: closer to a coalescence the vectors of both modes are nearly equal
       std::map<int, std::set<int>> modes_at; // by point of the chart
       for (const Threshold &threshold : chart.thresholds)
         {
@@ -51,13 +51,13 @@ namespace Squeal
         model.known.erase({line, set.point.friction_coefficient});
     }
 
-    /// Names branches after the modes with which they begin; of a doublet the one that grows most over the chart is plus.
+    /// Labels branches by their first modes; the branch of a doublet with the largest growth over the chart is plus.
     std::vector<ModeLabel> branch_labels(const SweepModel &model, const StabilityChart &chart)
     {
       const int                       n_branches = chart.branches.size();
       std::vector<ModeLabel>          result(n_branches);
-      std::vector<double>             growth(n_branches, 0.); // largest [1/s]; zero for a branch that never grows
-      std::map<int, std::vector<int>> branches_from;          // by the point at which they begin
+      std::vector<double>             growth(n_branches, 0.); // largest growth rate [1/s]; zero for a branch that never grows
+      std::map<int, std::vector<int>> branches_from;          // by their first points
       for (int b = 0; b < n_branches; ++b)
         {
           const std::vector<int> &modes = chart.branches[b].modes;
@@ -83,7 +83,7 @@ namespace Squeal
       return result;
     }
 
-    /// The largest friction coefficient of a line below a stretch at which modes are known, with this contact set or another one; 0: none.
+    /// Largest friction coefficient with known modes on a line below a part of it, for any contact set; 0: none.
     double value_before(const SweepModel &model, const int line, const double first)
     {
       double result = 0.;
@@ -103,13 +103,13 @@ namespace Squeal
       return result;
     }
 
-    /// Modes of a line for its chart.
+    /// Evaluates modes of a line for its chart.
     EvaluateChart evaluation(SweepModel &model, const int line)
     {
       return [&model, line](const std::vector<double> &friction_coefficients) { return model.evaluate(line, friction_coefficients); };
     }
 
-    /// The chart of a line over known friction coefficients.
+    /// Chart of a line over known friction coefficients.
     StabilityChart chart_of(SweepModel &model, const int line, const std::vector<double> &grid, const EvaluateChart &evaluate)
     {
       const auto        at      = [&](const double mu) { return model.plan.point(line, mu, model.regime.closed); };
@@ -117,7 +117,7 @@ namespace Squeal
       return stability_chart(grid, evaluate, options_of(model), predict);
     }
 
-    /// Without friction as many modes as inertia counts.
+    /// Compares the number of modes without friction with the inertia count.
     void compare_with_inertia(const SweepModel &model, const StabilityChart &chart)
     {
       Progress             &progress = model.run.progress;
@@ -126,14 +126,14 @@ namespace Squeal
       const int             n_real   = static_cast<int>(n_in_band(real.eigenvalues, limit)) - real.n_rigid_body;
       const ChartCount     &first    = chart.counts.front();
       if (first.friction_coefficient != 0.)
-        progress.note("  note: the sweep does not begin at mu = 0: numbers of modes are compared among its values only");
+        progress.note("  note: the sweep does not begin at mu = 0: numbers of modes are compared only among its values");
       else if (first.n_modes + first.n_overdamped != n_real)
-        progress.note(text("  note: ", first.n_modes, " modes lie in the band at mu = 0, where ", n_real,
+        progress.note(text("  note: ", first.n_modes, " modes are in the band at mu = 0, but ", n_real,
                            " real modes were counted: damping moved some across its end"));
       const auto n =
         std::count_if(chart.counts.begin(), chart.counts.end(), [](const ChartCount &count) { return count.n_modes != count.n_expected; });
       if (n > 0)
-        progress.note(text("  note: at ", n, " points the number of modes is not the expected one, see counts.csv"));
+        progress.note(text("  note: at ", n, " points the number of modes differs from the expected one, see counts.csv"));
     }
   } // namespace
 
@@ -148,8 +148,8 @@ namespace Squeal
     };
     run.progress.begin("Branches");
     const ChartOptions options = options_of(model);
-    // Thresholds ask for more than λ: where modes hardly interact, μ_c moves far for a small error. The values of the grid
-    // tell between which modes there are thresholds; which of them are uncertain is not asked, for that hangs on rounding.
+    // Thresholds need more accuracy than λ: for weakly interacting modes, μ_c is sensitive to small errors. The grid determines the modes
+    // of all thresholds; all are treated, because a selection by uncertainty would depend on rounding
     ChartOptions coarse        = options;
     coarse.maximum_refinements = 0;
     if (model.reduced)
@@ -163,7 +163,7 @@ namespace Squeal
     run.progress.finish(text(chart.branches.size(), " branches, ", chart.thresholds.size(), " thresholds, ", chart.crossings.size(),
                              " crossings of the band's edge, ", chart.points.size() - grid.size(), " refinements"));
     if (chart.n_doubtful_steps > 0)
-      run.progress.note(text("  note: in ", chart.n_doubtful_steps, " steps modes could be told apart by their frequencies only"));
+      run.progress.note(text("  note: in ", chart.n_doubtful_steps, " steps modes could be distinguished only by their frequencies"));
     return result;
   }
 
@@ -225,10 +225,10 @@ namespace Squeal
                       const double                   largest_circular_frequency,
                       const std::string             &parameter)
   {
-    double          at = 0.; // the friction coefficient at which a mode grows most
+    double          at = 0.; // friction coefficient with the fastest growing mode
     ModalQuantities most{};
     std::string     label;
-    std::size_t     n_known = 0; // of the values asked for
+    std::size_t     n_known = 0; // number of the requested values
     for (const SweepChart &line : charts)
       {
         const StabilityChart &chart = line.chart;
@@ -249,11 +249,11 @@ namespace Squeal
     if (onsets.empty())
       return n_known == n_asked ?
                "  stable: no mode of the band grows at any value of the sweep" :
-               text("  no mode of the band grows at ", n_known, " of ", n_asked, " values; the others miss the tolerance");
+               text("  no mode of the band grows at ", n_known, " of ", n_asked, " values; other values miss the tolerance");
     std::string result = "  squeal";
     for (const auto &[rate, onset, of_onset] : onsets)
       {
-        // What the digits shown do not hide
+        // Uncertainty visible in the digits shown
         const bool is_uncertain = onset.uncertainty > 1e-3 * onset.friction_coefficient;
         result += text(rate > 0. ? text(", beyond ", 100. * rate, " %") : "", " from ", parameter, " = ", onset.friction_coefficient,
                        is_uncertain ? text(" +- ", onset.uncertainty) : "", " on (", to_string(of_onset), ")");

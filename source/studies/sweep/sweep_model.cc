@@ -11,7 +11,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Sum of all damping coefficients of the contact.
+    /// Sum of all contact damping coefficients [N s/m].
     double damping_of(const OperatingPoint &point)
     {
       double sum = 0.;
@@ -21,7 +21,7 @@ namespace Squeal
       return sum;
     }
 
-    /// Ends, middle and quarters of the outer lines: what lies between is evaluated later.
+    /// Training points: ends, middle and quarters of the outer lines; the others are evaluated later.
     std::vector<int> training(const ContactRegime &regime)
     {
       const auto [first, last] = std::minmax_element(regime.points.begin(), regime.points.end(),
@@ -37,7 +37,7 @@ namespace Squeal
       return result;
     }
 
-    /// Before anything is computed.
+    /// Checks before the computation that modes can be counted.
     void check_countable(const CoupledSystem &system, const Run &run)
     {
       if (run.parameters.study->has("Sweep/Count modes at") && !run.parameters.sweep.counts.empty() && !is_countable(system))
@@ -45,7 +45,7 @@ namespace Squeal
                              "run on one process, or leave it empty");
     }
 
-    /// The modes of a point in the band, at full order, and their products by the reduced model.
+    /// Full-order modes of a point in the band, and their products from the reduced model.
     std::pair<ComplexModes, ModalProducts> modes_in_band(const SweepModel &model, const ChartPoint &point)
     {
       const std::vector<int> numbers = model.in_band(point);
@@ -111,7 +111,7 @@ namespace Squeal
     const Linearisation       damped    = linearise(*plan.scene, plan.sliding_state(operation), operation);
 
     check_countable(damped.coupled, run);
-    // Neither real modes nor the factor know of damping
+    // Real modes and factor do not include damping
     Linearisation bare         = damped;
     bare.coupled               = undamped(damped.coupled);
     frictionless               = frictionless_modes(bare, run, band_margin);
@@ -127,7 +127,7 @@ namespace Squeal
         if (run.parameters.output.write_system == SystemOutput::reduced)
           throw ParameterError("the system has no definite part, and so no reduced model to write", "parameter Output/Write system",
                                "set it to full or none");
-        run.progress.note("  no definite part: every value is solved at full order, and modes are named by their numbers at the first one");
+        run.progress.note("  no definite part: every value is solved at full order, and modes are numbered at the first one");
         return;
       }
     run.progress.begin("Reduced model");
@@ -135,7 +135,7 @@ namespace Squeal
                                            *frictionless.real.vectors, largest_circular_frequency);
     if (const auto &discretization = run.parameters.discretization; plan.file || discretization.maximum_rate > 0.)
       reduced->leave_out_faster_decay(discretization.band().rate);
-    run.progress.finish(text(reduced->size(), " vectors to start from"));
+    run.progress.finish(text(reduced->size(), " vectors initially"));
   }
 
   std::vector<ChartPoint> SweepModel::evaluate(const int line, const std::vector<double> &friction_coefficients)
@@ -269,7 +269,8 @@ namespace Squeal
                              " vectors, estimated error ", sweep.worst_error));
     run.count("basis vectors", model.reduced->size());
     run.measure("largest estimated error of lambda [-]", sweep.worst_error);
-    // Of the last value: friction makes eigenvalues ill-conditioned. The basis leaves errors up to the tolerance, and rounding may add to them
+    // Conditioning at the last value: friction makes eigenvalues ill-conditioned. The basis causes errors up to the tolerance, to which
+    // rounding may add
     if (last >= 0)
       {
         const auto [modes, products] = modes_in_band(model, model.known.at({points[last].line, points[last].friction_coefficient}));
@@ -281,6 +282,6 @@ namespace Squeal
     if (!sweep.why_stopped.empty())
       run.progress.note(text("  note: ", points.size() - model.known.size(), " operating points miss the tolerance of ", options.tolerance,
                              ": ", sweep.why_stopped,
-                             "; what is written meets it. Raise Sweep/Tolerance, or Sweep/Maximum basis if that is in the way"));
+                             "; written results meet it. Raise Sweep/Tolerance, or Sweep/Maximum basis if it limits the basis"));
   }
 } // namespace Squeal

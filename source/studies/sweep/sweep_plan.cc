@@ -117,8 +117,8 @@ namespace Squeal
     const SweepParameters &sweep  = run.parameters.sweep;
     NamedRange             result = sweep.varied_parameter();
     if (sweep.parameter.empty() && file.find(result.name) == nullptr)
-      throw ParameterError("the sweep has no parameter: the system has none that is called mu", "parameter Sweep/Parameter",
-                           "name the one that varies: omega, 6.28, 25.1, 31");
+      throw ParameterError("the sweep has no parameter: the system has no parameter mu", "parameter Sweep/Parameter",
+                           "give the varied parameter: omega, 6.28, 25.1, 31");
     std::map<std::string, double> given = run.parameters.system.values;
     for (const double value : {result.values.first, result.values.last})
       {
@@ -133,7 +133,7 @@ namespace Squeal
     const auto       second = run.parameters.sweep.second_varied_parameter();
     SystemFile       file   = read_system(run);
     const NamedRange varied = swept_parameter(file, run);
-    // The ends of the other range, too, are checked before anything is computed
+    // The ends of the other range are also checked before the computation
     std::map<std::string, double> given = run.parameters.system.values;
     if (second)
       for (const double value : {second->values.last, second->values.first})

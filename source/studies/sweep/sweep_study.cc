@@ -13,16 +13,16 @@ namespace Squeal
 {
   namespace
   {
-    /// What is known about stability at one friction coefficient and one load or speed.
+    /// Stability at one friction coefficient and one load or speed.
     struct MapCell
     {
       double                         friction_coefficient; ///< [-]
       double                         value;                ///< load [N] or speed [rad/s]
-      std::size_t                    n_open;               ///< contact nodes that are lifted
-      std::optional<ModalQuantities> leading;              ///< of the most unstable mode; nothing where none was computed
+      std::size_t                    n_open;               ///< number of open contact nodes
+      std::optional<ModalQuantities> leading;              ///< fastest growing, or least damped, mode; nothing if not computed
       ModeLabel                      label;                ///< of that mode
       int                            n_unstable  = 0;
-      int                            n_undecided = 0;  ///< modes whose growth is undecided
+      int                            n_undecided = 0;  ///< number of undecided modes
       double                         error       = 0.; ///< largest estimated |δλ| / |λ| [-]
     };
 
@@ -41,12 +41,12 @@ namespace Squeal
     struct CountAt
     {
       double       friction_coefficient;
-      int          n_found; ///< in the rectangle
+      int          n_found; ///< number in the rectangle
       ContourCount count;
-      bool         has_real_modes; ///< whether the system has a definite part
+      bool         has_real_modes; ///< the system has a definite part
     };
 
-    /// Label of the branch that a mode resembles most, at the point of the chart nearest to its own.
+    /// Label of the most similar branch at the nearest point of the chart.
     ModeLabel nearest_label(const SweepChart &main, const ChartPoint &point, const int mode)
     {
       const auto &points   = main.chart.points;
@@ -57,7 +57,7 @@ namespace Squeal
       return branch >= 0 ? main.labels[branch] : ModeLabel();
     }
 
-    /// The modes of a line at one of the chosen friction coefficients, which may miss the tolerance.
+    /// Modes of a line at one of the requested friction coefficients; notes if they miss the tolerance.
     ChartPoint modes_at(SweepModel &model, const double mu, const int line = 0)
     {
       const bool       is_new    = model.known.count({line, mu}) == 0;
@@ -69,7 +69,7 @@ namespace Squeal
       return point;
     }
 
-    /// Appends the points of the map in a contact set; modes are named after the branches of the chart @p main, unless it is null.
+    /// Appends the points of the map in a contact set; modes are labelled by the branches of the chart @p main, unless it is null.
     void append_map_cells(const SweepModel &model, const SweepChart *main, std::vector<MapCell> &cells)
     {
       for (const OperatingPoint &operating : model.regime.points)
@@ -100,8 +100,8 @@ namespace Squeal
         }
     }
 
-    /// Appends the modes of the band at the friction coefficients of the complex plane that belong to the contact set, on the main line and
-    /// on that without radial dissipation, from the basis as it is then: charts do not change.
+    /// Appends the modes of the band at those friction coefficients of the complex plane that belong to the contact set, on the main line
+    /// and on the line without radial dissipation, without extending the basis: charts do not change.
     void append_plane_modes(SweepModel &model, std::vector<PlaneMode> &modes)
     {
       for (const double mu : model.run.parameters.sweep.complex_plane())
@@ -122,7 +122,7 @@ namespace Squeal
           }
     }
 
-    /// Counts the modes at the friction coefficients that the parameters choose, where they belong to the contact set.
+    /// Counts the modes at the requested friction coefficients that belong to the contact set.
     void append_counts(SweepModel &model, std::vector<CountAt> &counts)
     {
       Run &run = model.run;
@@ -137,12 +137,12 @@ namespace Squeal
           run.progress.finish(text(count.n_modes, " modes counted, ", n_found, " found at ", model.plan.axis.name, " = ", mu, ", ",
                                    count.n_points, " points"));
           if (count.n_modes != n_found)
-            run.progress.note(text("  note: at ", model.plan.axis.name, " = ", mu, " the sweep has ", n_found, " modes where ",
+            run.progress.note(text("  note: at ", model.plan.axis.name, " = ", mu, " the sweep has ", n_found, " modes, but ",
                                    count.n_modes, " were counted"));
         }
     }
 
-    /// Writes fields of the leading modes at the friction coefficients that the parameters choose, where they belong to the contact set.
+    /// Writes fields of the leading modes at the requested friction coefficients that belong to the contact set.
     void write_leading_modes(SweepModel &model)
     {
       Run        &run    = model.run;
@@ -177,7 +177,7 @@ namespace Squeal
       run.progress.finish(text(n_written, " leading modes"));
     }
 
-    /// Throws ParameterError where nothing depends on what a map varies.
+    /// Throws ParameterError if nothing depends on the parameter of the map.
     void check_map(const Parameters &parameters)
     {
       const MapParameter varied = parameters.sweep.map_parameter;
@@ -189,29 +189,29 @@ namespace Squeal
         throw ParameterError("without contact damping nothing depends on the " + to_string(varied), "parameter Sweep/Map parameter",
                              "set Operation/Radial dissipation or Operation/Friction slope, or Sweep/Map parameter = none");
       if (is_steady && varied == MapParameter::load && !parameters.uses_load_per_side())
-        throw ParameterError("a map over the load needs backplates or faces that are pressed with it", "parameter Steady sliding/Control",
+        throw ParameterError("a map over the load needs backplates or faces with this load", "parameter Steady sliding/Control",
                              "set it to load per side or pressure, or Sweep/Map parameter = none");
     }
 
-    /// Friction coefficients of the parameters at which other contact nodes are closed than at any value of the sweep.
+    /// Reports requested friction coefficients with contact sets that do not occur at any value of the sweep.
     void note_unknown_contact(const SweepPlan &plan, Run &run)
     {
       const SweepParameters                                                  &sweep  = run.parameters.sweep;
       const std::vector<std::pair<const std::vector<double> *, const char *>> chosen = {
         {&sweep.mode_shapes, "no mode shape is written"},
-        {&sweep.complex_plane(), "the complex plane is left out"},
+        {&sweep.complex_plane(), "the complex plane is omitted"},
         {&sweep.counts, "modes are not counted"}};
       for (const auto &[values, what_is_missing] : chosen)
         for (const double mu : *values)
           if (const auto closed = plan.closed_at(mu);
               std::none_of(plan.regimes.begin(), plan.regimes.end(), [&](const ContactRegime &regime) { return regime.closed == closed; }))
-            run.progress.note(text("  note: at mu = ", mu, " other contact nodes are closed than at any value of the sweep: ",
+            run.progress.note(text("  note: at mu = ", mu, " the contact set differs from that at all values of the sweep: ",
                                    what_is_missing, ". Raise Sweep/Number of friction coefficients"));
     }
 
     // ------------------------------------------------------------------ tables
 
-    /// Where squeal begins, and from where on it is more than weak.
+    /// Onset of squeal, and onset of more than weak growth.
     Table onset_table(const std::vector<SquealOnset> &onsets, const SweepAxis &axis)
     {
       using Row     = SquealOnset;
@@ -224,7 +224,7 @@ namespace Squeal
                    onsets);
     }
 
-    /// Stability over the friction coefficient and the load or speed.
+    /// Stability map over the friction coefficient and the load or speed.
     Table map_table(std::vector<MapCell> cells, const SweepPlan &plan)
     {
       using Row        = MapCell;
@@ -250,7 +250,7 @@ namespace Squeal
                    cells);
     }
 
-    /// Modes at the friction coefficients of the complex plane, in the order of the parameter, without dissipation last.
+    /// Modes at the friction coefficients of the complex plane, in the order of the parameter, lines without dissipation last.
     Table plane_table(const std::vector<PlaneMode> &modes, const SweepAxis &axis)
     {
       using Row           = PlaneMode;
@@ -268,7 +268,7 @@ namespace Squeal
                    modes);
     }
 
-    /// Numbers of modes beside those of the argument principle.
+    /// Numbers of modes in the sweep and by the argument principle.
     Table argument_table(const std::vector<CountAt> &counts, const SweepAxis &axis)
     {
       using Row = CountAt;
@@ -284,7 +284,7 @@ namespace Squeal
     }
   } // namespace
 
-  /// Solves the points of a plan contact set by contact set, and writes what they show.
+  /// Solves the points of a plan, one contact set after the other, and writes the results.
   static void run_plan(const SweepPlan &plan, Run &run)
   {
     const double                         omega_max = circular_frequency(run.parameters.discretization.maximum_frequency);
@@ -327,15 +327,15 @@ namespace Squeal
     run.finish();
   }
 
-  /// `Study = sweep`: complex modes over a range of the friction coefficient, with and without radial dissipation, where they begin and
-  /// cease to grow, and maps over load or speed.
+  /// `Study = sweep`: complex modes over a range of the friction coefficient, with and without radial dissipation, their thresholds, and
+  /// maps over load or speed.
   static void run_sweep_study(Scene &scene, Run &run)
   {
     assemble_scene(scene, run);
     run_plan(sweep_plan(scene, run), run);
   }
 
-  /// The same over a parameter of a system file, and a map over two.
+  /// `Study = sweep` for a system file: over one parameter, and a map over two.
   static void run_sweep_of_system(Run &run)
   {
     run_plan(sweep_plan_of_system(run), run);
@@ -346,21 +346,21 @@ namespace Squeal
       return unless(p.sweep.map_parameter != MapParameter::none, "Sweep/Map parameter = none");
     };
     Study study{"sweep", run_sweep_study, {"Sweep/", "Output/Write system"}};
-    study.rules         = {{"Output/Write system", [](const Parameters &) -> Reason { return nullptr; }},
-                           {"Output/",
-                            [](const Parameters &p) {
-                      return p.sweep.mode_shapes.empty() && p.output.fields != FieldSelection::none ?
-                                       "a sweep writes mode shapes for Sweep/Mode shapes at" :
-                                       as_in_general;
-                    }},
-                           {"Operation/Friction coefficient",
-                            [](const Parameters &) { return "a sweep goes from Sweep/First to Sweep/Last friction coefficient"; }},
-                           {"Operation/Rotation speed", no_sliding_speed},
-                           {"Complex modes/", [](const Parameters &) { return "a sweep solves reduced models"; }},
-                           {"Sweep/First map value", map_axis},
-                           {"Sweep/Last map value", map_axis},
-                           {"Sweep/Number of map values", map_axis},
-                           {"Sweep/Map friction coefficients", map_axis}};
+    study.rules = {
+      {"Output/Write system", [](const Parameters &) -> Reason { return nullptr; }},
+      {"Output/",
+       [](const Parameters &p) {
+         return p.sweep.mode_shapes.empty() && p.output.fields != FieldSelection::none ?
+                  "a sweep writes mode shapes for Sweep/Mode shapes at" :
+                  as_in_general;
+       }},
+      {"Operation/Friction coefficient", [](const Parameters &) { return "a sweep uses Sweep/First to Sweep/Last friction coefficient"; }},
+      {"Operation/Rotation speed", no_sliding_speed},
+      {"Complex modes/", [](const Parameters &) { return "a sweep solves reduced models"; }},
+      {"Sweep/First map value", map_axis},
+      {"Sweep/Last map value", map_axis},
+      {"Sweep/Number of map values", map_axis},
+      {"Sweep/Map friction coefficients", map_axis}};
     study.check         = check_map;
     study.run_of_system = run_sweep_of_system;
     return study;

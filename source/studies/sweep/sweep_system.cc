@@ -18,7 +18,7 @@ namespace Squeal
       });
     }
 
-    /// The terms of the reduced model, those of low rank without weights multiplied out.
+    /// Terms of the reduced model; low-rank terms without weights are multiplied out.
     std::vector<Term> reduced_terms(const ReducedModel &model)
     {
       const CoupledSystem                                                  &system = model.full_order();
@@ -50,7 +50,7 @@ namespace Squeal
       return result;
     }
 
-    /// The range that the plan covers, of each parameter.
+    /// Range of each parameter covered by the plan.
     std::vector<FileParameter> covered_parameters(const SweepModel &model)
     {
       const SweepPlan &plan  = model.plan;
@@ -58,7 +58,7 @@ namespace Squeal
       if (plan.scene != nullptr)
         {
           FileParameter mu = friction_parameter(model.run.parameters);
-          if (mu.lower == mu.upper) // the state of contact is that of one value
+          if (mu.lower == mu.upper) // the contact state depends on the value
             first = last = most_damped(model.regime).friction_coefficient;
           mu.value = mu.upper = last;
           mu.lower            = first;
@@ -80,7 +80,7 @@ namespace Squeal
       return result;
     }
 
-    /// T on the dofs of the bodies or of the file, as a dense Matrix Market file. All processes must call.
+    /// T on the dofs of the bodies or of the file, as a dense Matrix Market file. Collective.
     void write_basis(const SweepModel &model, std::ostream &stream)
     {
       const MultiVector  &T      = model.reduced->reduced().basis();
@@ -90,7 +90,7 @@ namespace Squeal
       for (int j = 0; j < T.n_columns(); ++j)
         stream << replicate(kernel * view(T, j, 1)) << '\n';
     }
-    /// The largest estimated error of λ at every point.
+    /// Largest estimated error of λ at every point.
     Table point_table(const SweepModel &model)
     {
       using Row             = const std::pair<const std::pair<int, double>, ChartPoint>;

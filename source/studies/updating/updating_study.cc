@@ -224,7 +224,7 @@ namespace Squeal
                                 {"updated", "", [](const Row &row) { return row.shown(row.updated); }, 3},
                                 {"difference of the start", "%", difference(&Row::start), 3},
                                 {"difference after the fit", "%", difference(&Row::updated), 3},
-                                {"residual of the start", "-", [](const Row &row) { return row.residual(row.start); }, 3},
+                                {"residual at start", "-", [](const Row &row) { return row.residual(row.start); }, 3},
                                 {"residual after the fit", "-", [](const Row &row) { return row.residual(row.updated); }, 3},
                                 {"computed label", "", [](const Row &row) { return row.partner.label; }},
                                 {"MAC", "-", [](const Row &row) { return Entry(row.partner.mac); }, 3}},

@@ -13,12 +13,12 @@
 
 namespace Squeal
 {
-  /// Where a mode of a design begins or ceases to grow.
+  /// Stability threshold of a mode of a design.
   struct DesignThreshold
   {
     double                  friction_coefficient = 0.;
     double                  uncertainty          = 0.;
-    std::string             event, mechanism, label; ///< of the mode that grows
+    std::string             event, mechanism, label; ///< of the growing mode
     boost::optional<double> overlap;                 ///< with the reference mode of that label [-]; none in a cluster
     std::string             partner;                 ///< empty: none
     double                  frequency = 0.;          ///< [Hz]
@@ -30,17 +30,17 @@ namespace Squeal
     }
   };
 
-  /// A mode of a design, at the smallest and at the largest friction coefficient at which it is in the band.
+  /// A mode of a design, at the smallest and largest friction coefficients at which it is in the band.
   struct DesignMode
   {
-    std::string             label;     ///< that of the reference mode it resembles; else its own
-    std::string             own_label; ///< by the component modes of the design
-    boost::optional<double> overlap;   ///< with the reference mode [-]; none in a cluster, whose members rounding mixes
+    std::string             label;     ///< label of the most similar reference mode; else its own
+    std::string             own_label; ///< from the component modes of the design
+    boost::optional<double> overlap;   ///< with the reference mode [-]; none in a cluster, whose members are mixed by rounding
     double                  first_frequency = 0., last_friction_coefficient = 0., last_frequency = 0.; ///< [Hz]
     double                  last_growth_rate = 0., last_divergence_rate = 0., last_error = 0.;         ///< [1/s], [-], [-]
     std::string             verdict;                                                                   ///< at the largest one
     double                  largest_divergence_rate = 0.;                                              ///< at any friction coefficient [-]
-    boost::optional<double> onset;                                                                     ///< where it first begins to grow
+    boost::optional<double> onset; ///< smallest friction coefficient at which it grows
 
     template <class Archive>
     void serialize(Archive &archive, const unsigned int /*version*/)
@@ -50,12 +50,12 @@ namespace Squeal
     }
   };
 
-  /// What became of a design.
+  /// Outcome of a design.
   enum class DesignOutcome
   {
     solved,
-    refused, ///< its parameters or its geometry make no sense
-    failed   ///< meshing or solving it did not succeed
+    refused, ///< rejected parameters or geometry
+    failed   ///< meshing or solution failed
   };
 
   template <>
@@ -63,11 +63,11 @@ namespace Squeal
                                                                           {DesignOutcome::refused, "refused"},
                                                                           {DesignOutcome::failed, "failed"}};
 
-  /// A friction coefficient and the mode that grows there.
+  /// A friction coefficient and the growing mode there.
   struct DesignGrowth
   {
     double      friction_coefficient = 0.;
-    double      uncertainty          = 0.; ///< of the friction coefficient; 0 where it is given
+    double      uncertainty          = 0.; ///< of the friction coefficient; 0 if prescribed
     std::string label;
     double      frequency       = 0.; ///< [Hz]
     double      divergence_rate = 0.; ///< [-]
@@ -80,23 +80,23 @@ namespace Squeal
     }
   };
 
-  /// A row of the table of designs, with what its other tables show of it.
+  /// A row of the table of designs, with the data for the other tables.
   struct DesignResult
   {
-    int                      number = 0; ///< from one on
-    std::vector<std::string> values;     ///< of the variables, with those of the scene where the design has none
+    int                      number = 0; ///< counted from one
+    std::vector<std::string> values;     ///< of the variables; those of the given model if the design does not set them
     DesignOutcome            outcome = DesignOutcome::failed;
-    std::string              reason; ///< why it was refused or failed
+    std::string              reason; ///< for refusal or failure
 
-    int    n_dofs = 0, n_modes = 0, n_counted = 0; ///< modes in the band at the smallest friction coefficient, and real ones by inertia
-    bool   is_complete = false;                    ///< the same number, and the expected one at every friction coefficient
+    int    n_dofs = 0, n_modes = 0, n_counted = 0; ///< modes in the band at the smallest friction coefficient; real modes by inertia
+    bool   is_complete = false;                    ///< these numbers agree, and the count is as expected at every friction coefficient
     int    n_unstable = 0, n_undecided = 0;        ///< at the largest friction coefficient
-    int    n_growing     = 0;                      ///< modes that grow at some friction coefficient
+    int    n_growing     = 0;                      ///< number of modes that grow at any friction coefficient
     double largest_error = 0., largest_residual = 0.;
-    int    n_doubtful = 0; ///< steps in which modes could be told apart by their frequencies only
+    int    n_doubtful = 0; ///< number of steps in which modes were distinguished only by frequency
 
-    boost::optional<DesignGrowth> onset;      ///< where the first mode begins to grow
-    boost::optional<DesignGrowth> weak_onset; ///< where the first divergence rate exceeds weak_divergence
+    boost::optional<DesignGrowth> onset;      ///< smallest friction coefficient at which a mode grows
+    boost::optional<DesignGrowth> weak_onset; ///< smallest friction coefficient at which a divergence rate exceeds weak_divergence
     boost::optional<DesignGrowth> worst;      ///< the largest divergence rate at any friction coefficient
     std::vector<DesignThreshold>  thresholds;
     std::vector<DesignMode>       modes;
@@ -110,7 +110,7 @@ namespace Squeal
     }
   };
 
-  /// How a design went, in a few words.
+  /// Outcome of a design, in a few words.
   std::string outcome_of(const DesignResult &result);
 
   /// One row for each design; @p names of the variables.
@@ -122,9 +122,9 @@ namespace Squeal
   /// Modes of all designs.
   Table design_mode_table(const std::vector<DesignResult> &designs);
 
-  /// The designs that stay quiet up to the largest friction coefficient, then those that do longest, as far as the screen has place for them.
+  /// Designs without growth up to the largest friction coefficient, then those with the largest onsets; as many as fit on the screen.
   Table quietest_designs(const std::vector<std::string> &names, const std::vector<DesignResult> &designs);
 
-  /// Which design is the quietest and which squeals most, and how many were refused or failed, one line each.
+  /// Quietest and loudest designs, and numbers of refused and failed ones, one line each.
   std::vector<std::string> verdict(const std::vector<std::string> &names, const std::vector<DesignResult> &designs);
 } // namespace Squeal

@@ -10,14 +10,14 @@
 
 namespace Squeal
 {
-  /// Modes of a scene without friction, by which those of its designs are named: their displacements at the centres of its cells, in
-  /// cylindrical components.
+  /// Frictionless modes of the given model, by which modes of its designs are labelled: displacements at the cell centres, in cylindrical
+  /// components.
   struct ReferenceModes
   {
     std::vector<BodyFrame>            frames;
     CommonPoints                      points;
     std::vector<std::complex<double>> lambda; ///< i ω [rad/s]
-    DenseMatrix                       shapes; ///< times √m, a row for each component at each point
+    DenseMatrix                       shapes; ///< displacements times √m, one row for each component at each point
     std::vector<std::string>          names;
 
     template <class Archive>
@@ -27,25 +27,25 @@ namespace Squeal
     }
   };
 
-  /// On process 0 with their shapes; the others have none.
+  /// Shapes are on process 0 only.
   ReferenceModes reference_modes(const FrictionlessModes &modes, const MaterialParameters &materials);
 
-  /// The reference mode that a mode of a design resembles.
+  /// Reference mode that resembles a mode of a design.
   struct ReferenceName
   {
     std::string name;               ///< empty if there is none
     double      overlap    = 0.;    ///< of both shapes [-]
-    bool        in_cluster = false; ///< the design decides which of several modes is the partner
+    bool        in_cluster = false; ///< one of several modes that mix between designs
   };
 
-  /// Names of modes of a design: their shapes are compared at the points of the reference, carried over to the bodies that both have.
+  /// Labels modes of a design: shapes are compared at the points of the reference, mapped to the bodies that both models have.
   std::vector<ReferenceName> names_by(const ReferenceModes &reference,
                                       const Model          &model,
                                       const SparseMatrix   &kernel,
                                       const ComplexModes   &modes);
 
-  /// What must agree for designs to share a mesh and its matrices: their parameters but for those that are coefficients of terms. Empty
-  /// where a design cannot share them.
+  /// Key of the parameters that designs must share to use the same mesh and matrices: all except coefficients of terms. Empty if a design
+  /// cannot share them.
   std::string family_key(const Parameters &design);
 
   /**
@@ -58,8 +58,8 @@ namespace Squeal
   class DesignFamily
   {
   public:
-    /// Meshes and assembles what @p designs of the same family_key() share, and finds the real modes in the middle. They and @p run must
-    /// outlive it.
+    /// Meshes and assembles @p designs with the same family_key(), and computes the real modes in the middle. Designs and @p run must
+    /// outlive the object.
     DesignFamily(const std::vector<Parameters> &designs, Run &run);
 
     /// The chart of a design by the model of the family.
@@ -87,13 +87,13 @@ namespace Squeal
     std::unique_ptr<SweepModel> model;
   };
 
-  /// The sweep of a design: what only adds to the results of a single run is left out.
+  /// Parameters of the sweep of a design, without optional output of a single run.
   Parameters sweep_of(const Parameters &design);
 
-  /// Follows the modes of a scene over the friction coefficients of the sweep, and says what a study of designs wants to know of them, which
-  /// are named by @p reference. Throws Error where it cannot be.
+  /// Follows the modes over the friction coefficients of the sweep and extracts the results of a design, with labels by @p reference.
+  /// Throws Error if this fails.
   DesignResult solve_design(const Parameters &parameters, const ReferenceModes &reference, Run &run);
 
-  /// The same of a design of a family.
+  /// solve_design() for a member of a family.
   DesignResult solve_member(DesignFamily &family, std::size_t design, const ReferenceModes &reference);
 } // namespace Squeal

@@ -7,28 +7,28 @@
 
 namespace Squeal
 {
-  /// The step from which on a variant of a model differs from it; what comes before serves both.
+  /// First step in which a variant of a model differs from the reference; results of earlier steps are shared.
   enum class Departure
   {
-    mesh,    ///< mesh, matrices and all that follows
-    contact, ///< the state about which the system is linearised
+    mesh,    ///< mesh, matrices and all later steps
+    contact, ///< contact state for the linearisation
     modes,   ///< component modes, factorisation and real modes
-    friction ///< damping of contact and modes, complex modes
+    friction ///< contact and modal damping, complex modes
   };
 
-  /// What the steps to the modes of one model take, as in a run of its own.
+  /// Cost of each step up to the modes of one model, as in a separate run.
   struct StepCosts
   {
     Cost mesh, assembly, sliding, modes, friction;
 
-    /// Of all steps.
+    /// Sum over all steps.
     double sum(double Cost::*quantity) const
     {
       return mesh.*quantity + assembly.*quantity + sliding.*quantity + modes.*quantity + friction.*quantity;
     }
   };
 
-  /// A model of a scene, solved for its complex modes.
+  /// A model with its complex modes.
   struct SolvedModel
   {
     Parameters                     parameters;
@@ -38,15 +38,15 @@ namespace Squeal
     StepCosts                      costs;
   };
 
-  /// The scene as its parameters describe it, with all that variants of it may share.
+  /// The model as described by its parameters, with all data that variants may share.
   struct ReferenceModel : SolvedModel
   {
     FrictionlessModes                   frictionless;
-    CommonPoints                        points;        ///< of its mesh
-    std::shared_ptr<const SparseMatrix> displacements; ///< there; see displacements_at()
+    CommonPoints                        points;        ///< of its own mesh
+    std::shared_ptr<const SparseMatrix> displacements; ///< at these points; see displacements_at()
   };
 
-  /// How a variant differs from the reference.
+  /// Difference between a variant and the reference.
   struct Variation
   {
     Parameters parameters;
@@ -55,148 +55,147 @@ namespace Squeal
     /// All contact nodes stay closed, with the reactions of steady sliding.
     bool without_lift_off = false;
 
-    /// Reduced model in the place of the full one: name of a recipe; empty: none.
+    /// Reduced model instead of the full one: name of a recipe; empty: none.
     std::string basis = "";
 
     /// The basis has real modes up to (1 + margin) times the end of the band.
     double margin = 0.;
   };
 
-  /// Solves a meshed scene, as steps of the run.
+  /// Solves a meshed model, as steps of the run.
   ReferenceModel solve_reference(Scene &&scene, Run &run);
 
   /**
-   * Solves a variant; only what it does not share with the reference is computed, and shared steps are charged as the reference took them.
-   * Nothing is printed.
+   * Solves a variant without output. Only the differing steps are computed; shared steps are charged at their cost in the reference.
    *
-   * Throws ParameterError, MeshError or SolverError where there is no such model.
+   * Throws ParameterError, MeshError or SolverError if there is no such model.
    */
   SolvedModel solve_variant(const ReferenceModel &reference, const Variation &variation, const Run &run);
 
-  /// What a change of the model is good for.
+  /// Type of a change of the model.
   enum class ChangeKind
   {
-    removes, ///< makes the model simpler: the cheapest one may have it
-    adds,    ///< what the scene leaves out
-    speeds,  ///< another way to the same modes: the cheapest model may have it where it is faster
-    shows    ///< what matters, no more: no parameters make a model of that kind
+    removes, ///< simplifies the model: a candidate for the cheapest model
+    adds,    ///< adds a feature that the model lacks
+    speeds,  ///< another method for the same modes: a candidate for the cheapest model if faster
+    shows    ///< for information only: no parameters describe such a model
   };
 
-  /// A part of the model that may be switched on, off, or over to something else, by itself.
+  /// A model feature that can be varied individually: removed, added or replaced.
   struct Ingredient
   {
     const char *name;
 
-    /// What the scene has, and what is tried in its place, in a few words.
+    /// Current value and trial value of the feature, in a few words.
     std::function<std::string(const Parameters &)> here, tried;
 
-    /// Whether the scene is that way already, so that there is nothing to try.
+    /// True if the model already has the trial value, so that there is nothing to try.
     std::function<bool(const Parameters &)> is_present;
 
-    /// Makes the change. What no parameter expresses is changed in the variation.
+    /// Makes the change; changes that no parameter can express are made in the variation.
     std::function<void(Variation &)> change;
 
     ChangeKind kind;
     Departure  departure;
 
-    /// Why the scene cannot have it; null if it can. Null: it always can.
+    /// Reason why the model cannot have the change; returns null if it can. Null: always possible.
     Reason (*obstacle)(const Parameters &, const std::optional<SlidingState> &) = nullptr;
   };
 
-  /// All ingredients; of those with one name the simplest first.
+  /// All ingredients; the simplest variant of an ingredient comes first.
   const std::vector<Ingredient> &ingredients();
 
-  /// Those of which a scene differs, in the order of the list.
+  /// Ingredients that are not present in the model yet, in the order of the list.
   std::vector<const Ingredient *> ingredients_to_try(const Parameters &parameters);
 
-  /// The scene with some ingredients changed, from the earliest of their departures.
+  /// The model with some ingredients changed, starting from their earliest departure.
   Variation combined(const Parameters &parameters, const std::vector<const Ingredient *> &changed);
 
-  /// A mode of the reference beside its counterpart in a variant. Where there is only one of them the other has no value.
+  /// A mode of the reference and its counterpart in a variant; one of them may be missing.
   struct ModeChange
   {
-    ModeLabel                           label;              ///< in the reference; in the variant if it has no counterpart there
+    ModeLabel                           label;              ///< in the reference; in the variant if there is no counterpart
     std::optional<std::complex<double>> reference, variant; ///< λ [rad/s]
     bool                                unstable_reference = false, unstable_variant = false;
-    double                              overlap    = 0.;    ///< of the shapes; see PairedMode [-]
-    bool                                in_cluster = false; ///< single modes have no counterpart by shape: λ decides within the cluster
+    double                              overlap    = 0.;    ///< of both shapes; see PairedMode [-]
+    bool                                in_cluster = false; ///< no individual counterpart by shape: paired by λ within the cluster
 
-    /// Change of the frequency [%]; of a mode without counterpart what takes it to the end of the band at @p band_end [rad/s].
+    /// Change of the frequency [%]; for a mode without counterpart, the distance to the end of the band at @p band_end [rad/s].
     double frequency(double band_end) const;
 
-    /// Change of the divergence rate [percentage points]; nothing for a mode without counterpart.
+    /// Change of the divergence rate [percentage points]; nothing without counterpart.
     std::optional<double> divergence() const;
 
-    /// One grows by more than a weak divergence rate where the other one does not grow, or is not there.
+    /// True if one mode has a divergence rate above weak_divergence and the other one does not grow or is missing.
     bool changes_verdict() const;
   };
 
-  /// The largest change of a quantity, and its mode; null if there is none.
+  /// Largest change of a quantity, and its mode; null if there is none.
   struct LargestChange
   {
     double            amount = 0.;
     const ModeChange *mode   = nullptr;
   };
 
-  /// What a variant changes, in all modes.
+  /// Effect of a variant on all modes.
   struct Effect
   {
-    std::vector<ModeChange> modes;    ///< in the order of the reference, then those that only the variant has
+    std::vector<ModeChange> modes;    ///< in the order of the reference, then modes of the variant only
     double                  band_end; ///< of the variant [rad/s]
     int                     n_growing_real_reference, n_growing_real_variant;
 
-    LargestChange frequency() const;  ///< of the modes in the band of both [%]
+    LargestChange frequency() const;  ///< over the modes in the band of both [%]
     LargestChange divergence() const; ///< likewise [percentage points]
 
     std::size_t n_unstable(bool in_variant) const;
-    std::size_t n_lost() const; ///< modes of the reference without counterpart
+    std::size_t n_lost() const; ///< number of reference modes without counterpart
 
     bool changes_verdict() const;
 
-    /// The largest change in units of the accuracy asked for: up to 1 a model keeps it; infinite where the verdict changes.
+    /// Largest change relative to the required accuracy: acceptable up to 1; infinite if a verdict changes.
     double severity(const IngredientsParameters &accuracy) const;
   };
 
-  /// Pairs the modes of a variant with those of the reference by pair_modes() and compares them. All processes must call.
+  /// Pairs the modes of a variant with those of the reference by pair_modes() and compares them. Collective.
   Effect effect_of(const SolvedModel &reference, const SolvedModel &variant);
 
   /// A change that makes a model cheaper.
   struct CheaperChange
   {
-    std::string ingredient; ///< of several changes of one ingredient at most one is made
-    double      severity;   ///< its effect by itself in units of the accuracy asked for; up to 1 it keeps it
+    std::string ingredient; ///< at most one change of each ingredient is made
+    double      severity;   ///< its individual effect relative to the required accuracy; acceptable up to 1
   };
 
-  /// Changes that keep the accuracy together.
+  /// Combined changes that meet the accuracy.
   struct ChangesTogether
   {
-    std::vector<int> changes;       ///< by their numbers, ascending; empty: the model as it is
-    std::vector<int> put_back;      ///< of changes that keep it by themselves but not together, in the order of their removal
-    int              n_solved = 0;  ///< combinations that were tried
-    double           severity = 0.; ///< of all together
+    std::vector<int> changes;       ///< indices, ascending; empty: the model is unchanged
+    std::vector<int> put_back;      ///< changes that are acceptable individually but not in combination, in the order of removal
+    int              n_solved = 0;  ///< number of combinations tried
+    double           severity = 0.; ///< of the combination
   };
 
   /**
-   * Makes all changes that keep the accuracy by themselves, of one ingredient the first in the list, and tries them together. While the
-   * accuracy is not kept the change with the largest effect by itself is replaced by the next one of its ingredient with a smaller effect,
-   * or left out if there is none.
+   * Combines all changes that are individually acceptable, for each ingredient the first one in the list. While the accuracy is not met,
+   * the change with the largest individual effect is replaced by the next one of its ingredient with a smaller effect, or removed if there
+   * is none.
    *
-   * @param severity_of of changes made together; not asked for none, and for one alone it is that of the change
+   * @param severity_of severity of a combination of at least two changes
    */
   ChangesTogether cheapest_changes(const std::vector<CheaperChange>                            &changes,
                                    const std::function<double(const std::vector<int> &chosen)> &severity_of);
 
-  /// What came of a change of the model, or why it could not be made.
+  /// Result of a change of the model, or the reason why it could not be made.
   struct IngredientResult
   {
-    const Ingredient *ingredient; ///< null for several changes together
+    const Ingredient *ingredient; ///< null for combined changes
     std::string       name, here, tried;
-    std::string       obstacle = {}; ///< empty if it was made; else nothing below has a meaning
+    std::string       obstacle = {}; ///< empty if the change was made; otherwise the following members are unused
     Effect            effect   = {};
     double            severity = 0.; ///< see Effect::severity()
     StepCosts         costs    = {};
     int               n_dofs   = 0;
 
-    std::vector<std::string> answer = {}; ///< the verdict of the variant, line by line
+    std::vector<std::string> answer = {}; ///< verdict of the variant, line by line
   };
 } // namespace Squeal

@@ -10,49 +10,50 @@
 
 namespace Squeal
 {
-  /// A basis of a study with what was measured of it.
+  /// A basis of a study and its measured accuracy and cost.
   struct MeasuredBasis
   {
     const BasisRecipe     *recipe;
-    std::string            name;       ///< with the variant where there are several
+    std::string            name;       ///< with the variant if there are several
     std::string            truncation; ///< of the component modes
-    ReducedBasis           basis;      ///< its vectors go when it has been measured
+    ReducedBasis           basis;      ///< its vectors are freed after the measurement
     int                    n_r           = 0;
     double                 build_seconds = 0., solve_seconds = 0.;
     std::vector<ModeError> errors = {};
   };
 
-  /// The modes of full order that bases are measured against.
+  /// Full-order modes as reference for the bases.
   struct ReferenceSolution
   {
     ComplexModes                          modes;
     std::vector<ModeLabel>                labels;      ///< of the modes
-    std::vector<double>                   disc_shares; ///< of their energy [-]; empty: there is no disc
+    std::vector<double>                   disc_shares; ///< disc's share of their energy [-]; empty: there is no disc
     std::vector<std::string>              groups;
-    std::vector<std::vector<std::string>> joined; ///< groups whose maxima the paper takes together
+    std::vector<std::vector<std::string>> joined; ///< groups that the paper combines
     std::vector<bool>                     unstable;
-    double                                seconds; ///< of the processor for the solution, its factorisation included
+    double                                seconds; ///< CPU time of the solution, including its factorisation
   };
 
-  /// Numbers of component modes that a truncation has led to.
+  /// Numbers of component modes for a truncation.
   struct TruncatedModes
   {
     ModeTruncation             truncation;
     std::map<BasisSource, int> n;
   };
 
-  /// Largest errors in each group of modes, and times.
+  /// Table of the largest errors in each group of modes, and times.
   Table reduction_error_table(const std::vector<MeasuredBasis> &candidates, const ReferenceSolution &reference);
 
-  /// Columns, sizes, decisions on rank, gains and times beside @p n dofs of the uncoupled structure and @p full_seconds at full order.
+  /// Table of columns, sizes, ranks, speed-ups and times of the bases; @p n: dofs of the uncoupled structure, @p full_seconds: time at full
+  /// order.
   Table reduction_basis_table(const std::vector<MeasuredBasis> &candidates, int n, double full_seconds);
 
-  /// Every mode of every basis beside the reference.
+  /// Table of all modes of all bases and the reference.
   Table reduction_mode_table(const std::vector<MeasuredBasis> &candidates, const ReferenceSolution &reference);
 
-  /// How far the estimates are to be trusted: they know nothing of the reference.
+  /// Table of the reliability of the error estimates, which do not use the reference.
   Table reduction_estimate_table(const std::vector<MeasuredBasis> &candidates, const ReferenceSolution &reference);
 
-  /// Numbers of component modes below each truncation.
+  /// Table of the numbers of component modes of each truncation.
   Table reduction_truncation_table(const std::vector<TruncatedModes> &truncations);
 } // namespace Squeal

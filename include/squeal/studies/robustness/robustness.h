@@ -8,14 +8,14 @@
 
 namespace Squeal
 {
-  /// A number that differs from sample to sample.
+  /// An uncertain number.
   struct UncertainNumber
   {
-    std::string  name; ///< for tables: "Pin material/Density", with the pin where each has its own
+    std::string  name; ///< for tables: "Pin material/Density", with the pin if each pin has its own
     std::string  parameter;
-    std::string  pin; ///< the volume whose number it is; empty: all that the parameter sets
+    std::string  pin; ///< volume with this number; empty: all volumes of the parameter
     Distribution distribution;
-    bool         is_relative = false;                                ///< its distribution is in percent of the nominal value
+    bool         is_relative = false;                                ///< its distribution is in per cent of the nominal value
     const char  *where       = "parameter Robustness/Distributions"; ///< for messages
   };
 
@@ -23,10 +23,10 @@ namespace Squeal
   struct SamplePlan
   {
     std::vector<UncertainNumber> numbers;
-    DenseMatrix                  values;        ///< a row for each sample
-    int                          n_independent; ///< of them, the first ones: probabilities follow from these
-    bool                         has_indices;   ///< all of them are saltelli_samples()
-    int n_followed = 0; ///< of the independent ones, the first: their modes are followed over the friction coefficient
+    DenseMatrix                  values;        ///< one row for each sample
+    int                          n_independent; ///< the first ones are independent, for probabilities
+    bool                         has_indices;   ///< all samples together are saltelli_samples()
+    int n_followed = 0; ///< number of independent samples, the first ones, with modes followed over the friction coefficient
 
     int n() const
     {
@@ -34,88 +34,88 @@ namespace Squeal
     }
   };
 
-  /// @param current value that a parameter has, by its name
-  /// @param pins    volumes of pins, each of which may have its own numbers
+  /// @param current nominal value of a parameter, by its name
+  /// @param pins    volumes of pins, which may have individual values
   SamplePlan sample_plan(const RobustnessParameters                       &parameters,
                          const std::function<double(const std::string &)> &current,
                          const std::vector<std::string>                   &pins);
 
-  /// Designs as samples: lists of values of the parameters of a system file, which has values of its own where a design has none.
+  /// Designs as samples: values for the parameters of a system file; missing values are those of the file.
   SamplePlan listed_samples(const DesignPlan &plan, const std::function<double(const std::string &)> &current);
 
-  /// The value of a parameter of a system file as the parameters have it. Throws ParameterError if there is no such parameter.
+  /// Nominal value of a parameter of a system file. Throws ParameterError if there is no such parameter.
   double value_in(const SystemFile &file, const std::string &name, const Parameters &parameters);
 
-  /// The value of a parameter of a scene. Throws ParameterError unless it is a number.
+  /// Nominal value of a parameter of a meshed model. Throws ParameterError unless it is a number.
   double nominal_value(const Parameters &parameters, const std::string &name, const char *where = "parameter Robustness/Distributions");
 
-  /// Volumes of pins that have no material of their own.
+  /// Volumes of pins without their own material.
   std::vector<std::string> alike_pins(const Scene &scene, const Parameters &parameters);
 
-  /// The scene of a sample. Throws ParameterError where it makes no sense.
+  /// Parameters of a sample. Throws ParameterError if they are invalid.
   Parameters with_sample(const Parameters &parameters, const SamplePlan &samples, int sample);
 
-  /// The system file at the values of a sample.
+  /// Parameters of a system file at the values of a sample.
   Parameters system_with_sample(const Parameters &parameters, const SamplePlan &samples, int sample);
 
-  /// Samples as operating points of contact sets, each of which has a system: `line` of a point is the number of its sample.
+  /// Samples as operating points of contact sets, each with one system: `line` of a point is the index of its sample.
   struct SampledSystems
   {
-    SweepPlan                      plan;      ///< a line for each sample that is followed over the friction coefficient
-    std::vector<FrictionlessModes> middles;   ///< of each contact set of the plan, in the middle of its samples
-    std::vector<std::size_t>       n_samples; ///< of the points of each contact set, the first ones: the others are those of lines
+    SweepPlan                      plan;      ///< one line for each sample that is followed over the friction coefficient
+    std::vector<FrictionlessModes> middles;   ///< modes at the mean sample of each contact set in the plan
+    std::vector<std::size_t>       n_samples; ///< number of samples in each contact set, the first points; the others belong to lines
 
-    /// A further sample as a point of the first contact set, of the same numbers; its `line` is the number of the sample.
+    /// Converts an additional sample to a point of the first contact set; its `line` is the index of the sample.
     std::function<OperatingPoint(const SamplePlan &, int sample)> point;
   };
 
-  /// The systems of the samples of an assembled scene, as steps of the run. Throws ParameterError where a parameter is no coefficient of a
+  /// Systems of the samples of an assembled model, as steps of the run. Throws ParameterError if a parameter is not a coefficient of a
   /// term.
   SampledSystems sampled_scene(const Scene &scene, const BodyTerms &bodies, const SamplePlan &samples, Run &run);
 
-  /// The same of a system file.
+  /// Systems of the samples of a system file.
   SampledSystems sampled_file(SystemFile file, const SamplePlan &samples, Run &run);
 
-  /// A mode of the band at a sample.
+  /// A mode in the band of a sample.
   struct SampledMode
   {
     std::complex<double> lambda;
     double               error; ///< estimated |δλ| / |λ| [-]
     Verdict              verdict;
     std::string          label;
-    bool                 is_alone; ///< no other mode of the sample has the label
+    bool                 is_alone; ///< no other mode of the sample has this label
   };
 
-  /// The modes of a sample, in the order of their frequencies.
+  /// Modes of a sample in ascending order of frequency.
   using Sample = std::vector<SampledMode>;
 
-  /// Where the modes of a sample begin to grow over the friction coefficient.
+  /// Onsets of the modes of a sample over the friction coefficient.
   struct FollowedSample
   {
-    std::vector<SquealOnset> onsets;       ///< once for each label and divergence rate in a contact set
-    std::size_t              n_missed = 0; ///< friction coefficients that miss the tolerance
+    std::vector<SquealOnset> onsets;       ///< one for each label and divergence rate in a contact set
+    std::size_t              n_missed = 0; ///< number of friction coefficients that miss the tolerance
 
-    /// The first onset of the modes of a label, or of all modes if it is empty, with this divergence rate; null: none.
+    /// First onset of modes with this label, or of all modes if empty, for this divergence rate; null: none.
     const SquealOnset *first(double divergence_rate, const std::string &label = "") const;
   };
 
-  /// What is found of samples.
+  /// Results of the samples.
   struct SolvedSamples
   {
-    std::vector<std::optional<Sample>> samples;  ///< nothing where the tolerance is missed
+    std::vector<std::optional<Sample>> samples;  ///< nothing if the tolerance is missed
     std::vector<FollowedSample>        followed; ///< the first ones
   };
 
-  /// Starts the model of a contact set of samples, whose errors are estimated for @p tolerance.
+  /// Starts the model of a contact set of samples, with error estimates suited to @p tolerance.
   std::unique_ptr<SweepModel> sample_model(const SampledSystems &systems, std::size_t contact_set, double tolerance, Run &run);
 
-  /// Solves operating points of a system without a definite part, each at full order; those that cannot be solved are left.
+  /// Solves operating points of a system without a definite part, each at full order; failed points are left.
   ErrorControlledSweep solve_directly(const SweepModel &model, const std::vector<OperatingPoint> &points, const KeepPoint &keep);
 
-  /// Solves operating points to the tolerance by the basis of their contact set, or at full order without one, as a step of the run with this name: set by set, each
-  /// larger than all before it, so that few points are evaluated by a basis that is still too small.
+  /// Solves operating points to the tolerance with the basis of their contact set, or at full order without one, as a step of the run with
+  /// this name. Points are processed in batches of increasing size, so that few points are evaluated with a basis that is still too small.
   ///
-  /// @param n_training first points at which the basis is grown and compressed
+  /// @param n_training number of first points at which the basis is extended and compressed
   ErrorControlledSweep solve_points(SweepModel                        &model,
                                     const std::vector<OperatingPoint> &points,
                                     int                                n_training,
@@ -123,25 +123,25 @@ namespace Squeal
                                     const KeepPoint                   &keep,
                                     const std::string                 &name);
 
-  /// Solves all samples by one reduced model for each contact set, as steps of the run.
+  /// Solves all samples with one reduced model for each contact set, as steps of the run.
   SolvedSamples solve_samples(const SampledSystems &systems, int n_samples, double tolerance, Run &run);
 
-  /// Follows the modes of lines over the friction coefficient by the basis of the samples, which grows where a point misses
+  /// Follows the modes of lines over the friction coefficient with the basis of the samples, which is extended if a point misses
   /// Sweep/Tolerance, as a step of the run.
   ///
-  /// @param n_samples first points of the contact set that are on no line
+  /// @param n_samples number of points of the contact set, the first ones, that do not belong to a line
   void follow_samples(SweepModel &model, std::size_t n_samples, std::vector<FollowedSample> &followed);
 
-  /// Writes the tables of onsets and says when modes begin to grow.
+  /// Writes the tables of onsets and reports them.
   void write_onsets(const std::vector<FollowedSample> &followed, const std::string &parameter, Run &run);
 
-  /// A row for each sample, and one for each mode of the independent ones.
+  /// One row for each sample, and one for each mode of the independent ones.
   Table sample_table(const SamplePlan &plan, const std::vector<std::optional<Sample>> &samples);
   Table cloud_table(const SamplePlan &plan, const std::vector<std::optional<Sample>> &samples);
 
-  /// Writes the tables and says what they mean.
+  /// Writes and reports the results of the samples.
   void write_samples(const SamplePlan &plan, const std::vector<std::optional<Sample>> &samples, Run &run);
 
-  /// The largest divergence rate of a sample whose verdict is unstable, and its mode; −1: none is.
+  /// Mode with the largest divergence rate among the unstable modes of a sample; −1: none.
   int leading_mode(const Sample &sample);
 } // namespace Squeal

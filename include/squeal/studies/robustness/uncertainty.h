@@ -9,44 +9,44 @@
 
 namespace Squeal
 {
-  /// Independent samples of uncertain numbers, n × d, equal for equal seeds. Correlated ones have a normal copula.
+  /// Independent samples of uncertain numbers, n × d, reproducible by the seed. Correlated numbers have a normal copula.
   ///
-  /// @param correlations d × d, of normal scores. Throws ParameterError if it is not positive definite.
+  /// @param correlations d × d, of normal scores. Throws ParameterError if not positive definite.
   DenseMatrix independent_samples(const std::vector<Distribution> &distributions,
                                   const DenseMatrix               &correlations,
                                   int                              n,
                                   unsigned int                     seed);
 
-  /// Samples from which sobol_indices() follow, n (d + 2) × d: two independent sets of n, and for each number the first set with that
-  /// number of the second (A. Saltelli et al. 2010).
+  /// Samples for sobol_indices(), n (d + 2) × d: two independent sets of n, and for each number the first set with this number taken from
+  /// the second (A. Saltelli et al. 2010).
   DenseMatrix saltelli_samples(const std::vector<Distribution> &distributions, int n, unsigned int seed);
 
-  /// A number with its interval of 95 % confidence.
+  /// A number with its 95 % confidence interval.
   struct Estimate
   {
     double value, lower, upper;
   };
 
-  /// Parts of the variance of an output that uncertain numbers explain.
+  /// Fractions of the variance of an output due to each uncertain number.
   struct SobolIndices
   {
-    std::vector<Estimate> first; ///< by each number alone
-    std::vector<Estimate> total; ///< by each number with all its interactions
+    std::vector<Estimate> first; ///< due to each number alone
+    std::vector<Estimate> total; ///< due to each number, including interactions
   };
 
-  /// Indices (I. M. Sobol' 1993) by the estimators of J.-M. Martinez (2011), with intervals from resampling.
+  /// Sobol' indices (I. M. Sobol' 1993) by the estimators of J.-M. Martinez (2011), with confidence intervals from resampling.
   ///
-  /// @param samples of saltelli_samples()
-  /// @param outputs one for each of them, not all of the same value
+  /// @param samples from saltelli_samples()
+  /// @param outputs one for each sample, not all equal
   SobolIndices sobol_indices(const DenseMatrix &samples, const std::vector<double> &outputs);
 
-  /// Probability of an event that @p k of @p n independent samples have, with the interval of C. J. Clopper and E. S. Pearson (1934).
+  /// Probability of an event observed in @p k of @p n independent samples, with the interval of C. J. Clopper and E. S. Pearson (1934).
   Estimate probability(int k, int n);
 
-  /// Mean, and standard deviation about it, of one value at least.
+  /// Mean of at least one value, and standard deviation about it.
   double mean(const std::vector<double> &values);
   double deviation(const std::vector<double> &values);
 
-  /// Value below which a part @p p of some values lies, between the two nearest ones. The values are sorted, one at least.
+  /// p-quantile of at least one value, interpolated; the values must be sorted.
   double quantile(const std::vector<double> &sorted, double p);
 } // namespace Squeal

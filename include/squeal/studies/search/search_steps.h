@@ -14,44 +14,44 @@
 
 namespace Squeal
 {
-  /// A design of a search by parts of the ranges of its variables, in the unit cube.
+  /// A design in a search, in the unit cube: fractions of the ranges of its variables.
   using SearchPoint = std::vector<double>;
 
-  /// The variables of Designs/Variables. Throws ParameterError unless all of them have ranges.
+  /// Variables of Designs/Variables. Throws ParameterError unless all have ranges.
   std::vector<DesignVariable> search_variables(const DesignParameters &designs);
 
-  /// Divergence rate that stands for a design without a result, larger than any other [-].
+  /// Penalty for a design without a result, larger than any divergence rate [-].
   inline constexpr double penalty_rate = 1.;
 
-  /// Numbers of the points from which a search goes on, those with the smallest values first.
+  /// Indices of the starting points of a search, smallest values first.
   std::vector<std::size_t> starts_of_search(const std::vector<double> &values);
 
-  /// Minimises by a method of NLopt from a start. Returns why it ended: empty if @p value ended it by returning nothing.
+  /// Minimises by a method of NLopt from a starting point. Returns the reason for its end; empty if @p value ended it by returning nothing.
   std::string minimise(const SearchParameters                                          &parameters,
                        const SearchPoint                                               &start,
                        const std::function<std::optional<double>(const SearchPoint &)> &value);
 
-  /// Modes of a design at full order, at one friction coefficient.
+  /// Full-order modes of a design at one friction coefficient.
   struct FullOrder
   {
-    std::optional<double> friction_coefficient; ///< nothing if a system file has none
+    std::optional<double> friction_coefficient; ///< nothing for a system file without one
     std::size_t           n_modes, n_unstable;
-    ModalQuantities       leading; ///< the mode that grows most, or is damped least
+    ModalQuantities       leading; ///< fastest growing, or least damped, mode
     std::string           label;
     double                residual; ///< largest
   };
 
-  /// The design of a mesh at μ, or a system file at the values of the parameters, as a step of the run.
+  /// Solves a design at full order, at μ or at the parameter values of a system file, as a step of the run.
   FullOrder at_full_order(const Parameters &design, double mu, Run &run);
 
   Table full_order_table(const std::vector<FullOrder> &rows);
 
-  /// Whether the goal of a search depends on uncertain parameters.
+  /// True if the goal of a search depends on uncertain parameters.
   bool is_robust(const SearchParameters &parameters);
 
-  /// Searches for the design with the smallest probability of squeal, or quantile of the largest divergence rate of a sample: Sobol's points
-  /// of the ranges, then a method without derivatives from the best two of them. One reduced model solves all samples of all designs and
-  /// grows where they need it. Every design has the same random numbers.
+  /// Minimises the probability of squeal, or a quantile of the largest divergence rate of the samples: points of the Sobol sequence in the
+  /// ranges, then a derivative-free method from the best two of them. One reduced model solves all samples of all designs and is extended
+  /// if necessary. Every design uses the same random numbers.
   void run_robust_search(Scene &scene, Run &run);
   void run_robust_search_of_system(Run &run);
 } // namespace Squeal

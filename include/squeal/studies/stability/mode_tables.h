@@ -6,20 +6,20 @@
 
 namespace Squeal
 {
-  /// Numbers of modes and what their accuracy rests on, for the run record.
+  /// Records numbers of modes and their accuracy in the run record.
   void record_modes(const FrictionlessModes &frictionless, const FrictionModes &friction, Run &run);
 
-  /// Verdict and unstable modes, which is what most users want to know.
+  /// Prints the verdict and the unstable modes.
   void report_modes(const FrictionlessModes                &frictionless,
                     const FrictionModes                    &friction,
                     const std::vector<DiscretisationError> &mesh_errors,
                     Run                                    &run);
 
   /**
-   * Tables of the modes with friction, of those without, and of real eigenvalues where there are any.
+   * Stores the tables of modes with friction, of modes without friction, and of real eigenvalues if there are any.
    *
-   * @param energies columns of the numbers of the modes with friction: where they are and how they travel
-   * @param more     others, with the verdict; empty: the verdict is that of the arithmetic
+   * @param energies columns by mode index: location of the energy and travelling waves
+   * @param more     further columns, with the verdict; empty: verdict of the solver
    */
   void store_mode_tables(const FrictionlessModes &frictionless,
                          const FrictionModes     &friction,

@@ -6,12 +6,12 @@
 
 namespace Squeal
 {
-  /// A number of a material that the terms of a body contain as a factor.
+  /// A material constant that is a factor of the terms of a body.
   struct MaterialNumber
   {
-    const char *name, *unit; ///< as parameter files have them
+    const char *name, *unit; ///< as in parameter files
     double Material::*value;
-    std::string (*parameter)(const std::string &volume); ///< of the terms
+    std::string (*parameter)(const std::string &volume); ///< parameter of the terms
   };
 
   inline constexpr MaterialNumber material_numbers[] = {{"Young modulus", "Pa", &Material::young_modulus, BodyParameter::young_modulus},

@@ -6,26 +6,26 @@
 
 namespace Squeal
 {
-  /// A parameter that a run does not use, and why.
+  /// A parameter without effect on a run, and the reason.
   struct UnusedParameter
   {
     std::string path; ///< "Section/Name"
     std::string why;
   };
 
-  /// Parameters that differ from their defaults and yet change nothing in the results of the run, in the order of their declaration. Throws
-  /// MeshError if there is no geometry of the name that the parameters give.
+  /// Non-default parameters without effect on the results of the run, in the order of declaration. Throws MeshError if the geometry does
+  /// not exist.
   std::vector<UnusedParameter> unused_parameters(const Parameters &parameters);
 
-  /// Those of some parameters that change nothing in the results of the run. Throws MeshError as unused_parameters() does.
+  /// Those of some parameters that have no effect on the results of the run. Throws MeshError as unused_parameters() does.
   std::vector<UnusedParameter> unused_among(const std::vector<std::string> &paths, const Parameters &parameters);
 
-  /// What unused_parameters() finds in one line: "  note: not used here: Operation/Load per side (no contact damping), ..."; empty if there are none.
+  /// unused_parameters() in one line: "  note: not used here: Operation/Load per side (no contact damping), ..."; empty if there are none.
   std::string unused_parameters_note(const Parameters &parameters);
 
-  /// Why the sliding speed damps nothing; null if it does. For studies that do not show it either.
+  /// Reason why the sliding speed causes no damping; null if it does. Also for studies that do not output it.
   Reason no_sliding_speed(const Parameters &parameters);
 
-  /// Paths of the parameters that differ from their defaults.
+  /// Paths of the parameters with non-default values.
   std::vector<std::string> changed_parameters(Parameters parameters);
 } // namespace Squeal

@@ -16,34 +16,34 @@ namespace Squeal
   /// MPI processes on this machine.
   unsigned int n_processes_here(MPI_Comm communicator);
 
-  /// What the command line adds to the parameters.
+  /// Command-line settings in addition to the parameters.
   struct RunOptions
   {
-    std::string command;  ///< that repeats the run in a shell, for the run record
+    std::string command;  ///< shell command that repeats the run, for the run record
     std::string revision; ///< of the program's sources
     std::string output;   ///< result folder
     bool        dry_run = false;
 
-    std::vector<std::string> again;   ///< words of the command line that give another process these parameters
-    std::string              designs; ///< numbers of designs that are wanted, as in "3, 7-9"; empty: all
+    std::vector<std::string> again;   ///< command-line words that give a worker process the same parameters
+    std::string              designs; ///< numbers of the requested designs, as in "3, 7-9"; empty: all
   };
 
-  /// The context of a run: its question, its processes, and where it says how it goes.
+  /// Context of a run: parameters, processes and progress output.
   struct RunContext
   {
     const Parameters &parameters;
     const MPI_Comm    communicator;
     Progress         &progress;
-    std::ostream     &screen; ///< where tables go; a null stream buffer on all processes but one
+    std::ostream     &screen; ///< for tables; a null stream buffer on all processes but one
     const bool        is_dry, is_root;
     const RunOptions  options;
   };
 
-  /// The results of a run: its tables and fields in a folder, and its record.
+  /// Results of a run: tables and fields in a folder, and the run record.
   class RunResults
   {
   public:
-    /// Folder of the results; a dry run has none.
+    /// Result folder; a dry run has none.
     const ResultFolder &folder() const
     {
       return *place;
@@ -64,33 +64,33 @@ namespace Squeal
   protected:
     RunRecord                     record = {};
     std::unique_ptr<ResultFolder> place;
-    std::vector<std::string>      tables; ///< files, in the order in which they were written
+    std::vector<std::string>      tables; ///< files in the order of writing
   };
 
-  /// What every study has at hand.
+  /// Context and results of a run, for all studies.
   class Run : public RunContext, public RunResults
   {
   public:
-    /// Throws FileError if the result folder cannot be made; a dry run makes none.
+    /// Throws FileError if the result folder cannot be created; a dry run creates none.
     Run(const Parameters &parameters, const RunOptions &options, MPI_Comm communicator, Progress &progress, std::ostream &screen);
 
-    /// Part of @p whole that computes with other parameters, reports to a channel of its own, and writes nothing.
+    /// A part of @p whole with other parameters and its own progress channel, without output files.
     Run(const Parameters &parameters, const RunContext &whole, Progress &progress);
 
-    /// Keeps a copy of a geometry of the user's own, so that the results repeat themselves.
+    /// Copies the user's geometry to the results, so that they are reproducible.
     void keep_geometry();
 
-    /// Prints a doubt about the input and keeps it for the run record.
+    /// Prints a warning about the input and adds it to the run record.
     void warn(const std::string &text);
 
-    /// Writes NAME.csv and shows the table.
+    /// Writes NAME.csv and prints the table.
     void write_table(const std::string &name, const Table &table);
 
-    /// Writes the parameters as used and the run record, and gives the folder its name; @p afterwards removes what only an unfinished run
-    /// needs.
+    /// Writes the parameters as used and the run record, and completes the result folder; @p afterwards removes data that only an
+    /// unfinished run needs.
     void finish(const std::function<void()> &afterwards = {});
   };
 
-  /// Meshes the scene and answers the question of the run; a dry run only meshes.
+  /// Meshes the model and runs the study; a dry run only meshes.
   void run_study(Run &run);
 } // namespace Squeal
