@@ -40,6 +40,7 @@ namespace Squeal
       plan->lines[d].values = family.terms.members[d];
     model = std::make_unique<SweepModel>(*plan, regime, run, std::move(family.middle));
     model->reduced->estimate_without_cancellation();
+    model->sharpens_thresholds = false; // every design would add its vectors
 
     // Compressed where friction changes the modes most
     std::vector<OperatingPoint> ends;

@@ -152,7 +152,7 @@ namespace Squeal
     // of all thresholds; all are treated, because a selection by uncertainty would depend on rounding
     ChartOptions coarse        = options;
     coarse.maximum_refinements = 0;
-    if (model.reduced)
+    if (model.reduced && model.sharpens_thresholds)
       sharpen(model, line, stability_chart(grid, evaluate, coarse), grid);
     SweepChart            result{chart_of(model, line, grid, evaluate), {}, {}, {}};
     const StabilityChart &chart  = result.chart;

@@ -135,8 +135,9 @@ namespace Squeal
     Run                                         &run;
     const double                                 largest_circular_frequency; ///< end of the band [rad/s]
     FrictionlessModes                            frictionless;
-    std::unique_ptr<ChartModel>                  reduced; ///< null without a definite part
-    std::map<std::pair<int, double>, ChartPoint> known;   ///< by line and friction coefficient
+    bool                                         sharpens_thresholds = true; ///< whether follow_branches() enriches the basis for them
+    std::unique_ptr<ChartModel>                  reduced;                    ///< null without a definite part
+    std::map<std::pair<int, double>, ChartPoint> known;                      ///< by line and friction coefficient
 
   private:
     /// Starts the reduced model.
