@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-# squeal_import_library(NAME) makes the target squeal::NAME of a library whose package brings no CMake target on every system that
-# is supported. Its headers lie where deal.II's own are looked for.
-function(squeal_import_library name)
-  string(TOUPPER SQUEAL_${name} file)
-  find_library(${file} ${name} REQUIRED)
-  mark_as_advanced(${file})
+# squeal_import_library(NAME HEADER [OTHER_NAME...]) makes the target squeal::NAME of a library without a CMake target on every
+# supported system. Some systems keep the headers in a folder of their own.
+function(squeal_import_library name header)
+  string(TOUPPER SQUEAL_${name} variable)
+  find_library(${variable} NAMES ${name} ${ARGN} REQUIRED)
+  find_path(${variable}_HEADERS ${header} PATH_SUFFIXES suitesparse REQUIRED)
+  mark_as_advanced(${variable} ${variable}_HEADERS)
   add_library(squeal::${name} UNKNOWN IMPORTED GLOBAL)
-  set_target_properties(squeal::${name} PROPERTIES IMPORTED_LOCATION ${${file}})
+  set_target_properties(squeal::${name} PROPERTIES IMPORTED_LOCATION ${${variable}} INTERFACE_INCLUDE_DIRECTORIES ${${variable}_HEADERS})
 endfunction()

@@ -3,9 +3,6 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/base/worker_process.h>
 
-#include <boost/process.hpp>
-#include <boost/process/extend.hpp>
-
 #include <algorithm>
 #include <csignal>
 #include <cstdlib>
@@ -17,8 +14,6 @@
 
 namespace Squeal
 {
-  namespace process = boost::process;
-
   namespace
   {
     /// Environment variable for the number of threads of this program and of libraries.

@@ -119,7 +119,7 @@ namespace Squeal
         const MultiVector some = selected(B, columns);
         MultiVector       found(B.map(), some.n_columns());
         frictionless().apply(some, found);
-        Y.local()(Eigen::all, columns) = found.local();
+        Y.local()(Eigen::placeholders::all, columns) = found.local();
       }
     return Y;
   }

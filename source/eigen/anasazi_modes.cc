@@ -53,7 +53,7 @@ namespace Anasazi
     static RCP<MV> CloneCopy(const MV &X, const std::vector<int> &index)
     {
       const auto copy = Teuchos::rcp(new MV(X.map(), static_cast<int>(index.size()), false));
-      copy->local()   = X.local()(Eigen::all, index);
+      copy->local()   = X.local()(Eigen::placeholders::all, index);
       return copy;
     }
     static RCP<MV> CloneViewNonConst(MV &X, const std::vector<int> &index)

@@ -391,7 +391,7 @@ namespace Squeal
 
   MultiVector CompactKrylov::ritz_vectors(const RitzPairs &ritz, const std::vector<int> &positions) const
   {
-    const DenseMatrix Y = ritz.eigenvectors(Eigen::all, positions);
+    const DenseMatrix Y = ritz.eigenvectors(Eigen::placeholders::all, positions);
     return basis() * (G.topRows(n_vectors) * (H * Y));
   }
 } // namespace Squeal

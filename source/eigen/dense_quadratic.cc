@@ -148,7 +148,8 @@ namespace Squeal
       std::vector<int> columns;
       for (const int j : wanted)
         columns.push_back(static_cast<int>(std::lower_bound(pairs.numbers.begin(), pairs.numbers.end(), j) - pairs.numbers.begin()));
-      ComplexDenseMatrix right_parts = pairs.right(Eigen::all, columns), left_parts = pairs.left(Eigen::all, columns).conjugate();
+      ComplexDenseMatrix right_parts = pairs.right(Eigen::placeholders::all, columns),
+                         left_parts  = pairs.left(Eigen::placeholders::all, columns).conjugate();
       if (band)
         {
           right_parts = multiply(band->right, right_parts);

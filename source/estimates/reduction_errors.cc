@@ -125,7 +125,7 @@ namespace Squeal
     // Counterparts: the span of the cluster selects the reduced modes, MAC-M of single modes assigns them to members
     std::vector<Eigen::RowVectorXd> shares(k); // by the first member
     for (const std::vector<int> &all : members)
-      shares[all.front()] = shares_in_span(A(all, all), C(all, Eigen::all), B);
+      shares[all.front()] = shares_in_span(A(all, all), C(all, Eigen::placeholders::all), B);
     const auto mac  = [&](const int i, const int j) { return std::norm(C(i, j)) / (A(i, i).real() * B(j, j).real()); };
     const auto gain = [&](const int i, const int j) {
       const double distance = std::abs(modes.lambda[j] - lambda[i]) / std::abs(lambda[i]);

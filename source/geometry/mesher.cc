@@ -2,10 +2,9 @@
 
 #include <squeal/base/exceptions.h>
 #include <squeal/base/installation.h>
+#include <squeal/base/process.h>
 #include <squeal/base/text.h>
 #include <squeal/geometry/mesher.h>
-
-#include <boost/process.hpp>
 
 #include <algorithm>
 #include <csignal>
@@ -21,8 +20,6 @@ namespace Squeal
 {
   namespace
   {
-    namespace process = boost::process;
-
     constexpr const char *repair       = "correct the geometry; opening it in Gmsh shows the place";
     constexpr const char *add_entities = "a .msh of format 4 must declare the entities of its elements, with their physical groups, in "
                                          "$Entities; write it with them, or in format 2.2";

@@ -6,7 +6,7 @@
 #include <squeal/linear_algebra/blas_threads.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
 
-#include <suitesparse/cholmod.h>
+#include <cholmod.h>
 
 #include <algorithm>
 #include <memory>

@@ -12,9 +12,9 @@ namespace Squeal
         kept.push_back(j);
     if (static_cast<Eigen::Index>(kept.size()) == X.cols())
       return operation(X);
-    const DenseMatrix of_kept = operation(X(Eigen::all, kept));
-    DenseMatrix       result  = DenseMatrix::Zero(of_kept.rows(), X.cols());
-    result(Eigen::all, kept)  = of_kept;
+    const DenseMatrix of_kept              = operation(X(Eigen::placeholders::all, kept));
+    DenseMatrix       result               = DenseMatrix::Zero(of_kept.rows(), X.cols());
+    result(Eigen::placeholders::all, kept) = of_kept;
     return result;
   }
 

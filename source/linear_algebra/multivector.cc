@@ -274,7 +274,7 @@ namespace Squeal
   MultiVector selected(const MultiVector &X, const std::vector<int> &columns)
   {
     MultiVector result(X.map(), static_cast<int>(columns.size()), false);
-    result.local() = X.local()(Eigen::all, columns);
+    result.local() = X.local()(Eigen::placeholders::all, columns);
     return result;
   }
 

@@ -6,7 +6,7 @@
 #include <squeal/linear_algebra/sparse_matrix.h>
 #include <squeal/linear_algebra/sparse_determinant.h>
 
-#include <suitesparse/umfpack.h>
+#include <umfpack.h>
 
 #include <cmath>
 #include <limits>

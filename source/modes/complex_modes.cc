@@ -94,7 +94,7 @@ namespace Squeal
     reorder(modes.estimated_errors);
     for (const auto part : {&modes.real_part, &modes.imaginary_part, &modes.left_real_part, &modes.left_imaginary_part})
       if (*part)
-        (*part)->local() = DenseMatrix((*part)->local()(Eigen::all, order));
+        (*part)->local() = DenseMatrix((*part)->local()(Eigen::placeholders::all, order));
 
     normalize(*system.mass, *modes.real_part, *modes.imaginary_part);
     if (modes.left_real_part)

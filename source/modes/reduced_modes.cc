@@ -207,7 +207,7 @@ namespace Squeal
           kept.push_back(static_cast<int>(j));
           modes.lambda.emplace_back(0., std::sqrt(squares[j]));
         }
-    modes.right = modes.left = vectors(Eigen::all, kept).cast<Complex>();
+    modes.right = modes.left = vectors(Eigen::placeholders::all, kept).cast<Complex>();
     agree_on_modes(model.basis().communicator(), modes);
     return modes;
   }
@@ -218,8 +218,8 @@ namespace Squeal
     result.lambda.clear();
     for (const int j : chosen)
       result.lambda.push_back(modes.lambda[j]);
-    result.right = modes.right(Eigen::all, chosen);
-    result.left  = modes.left(Eigen::all, chosen);
+    result.right = modes.right(Eigen::placeholders::all, chosen);
+    result.left  = modes.left(Eigen::placeholders::all, chosen);
     return result;
   }
 } // namespace Squeal

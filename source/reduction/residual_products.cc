@@ -381,8 +381,8 @@ namespace Squeal
       return sparing_zeros(X, [&A](const DenseMatrix &Y) -> DenseMatrix { return (A * Y.cast<Number>()).template cast<double>(); });
     };
     const DenseMatrix c = stack(C, right), d = stack(D, left), products = apply(small.leftCols(c.rows()), c);
-    return {product_of_halves(d.transpose() * products(rows_of_D, Eigen::all)), hermitian_products(c, products.topRows(c.rows())),
-            hermitian_products(d, apply(small(rows_of_D, rows_of_D), d))};
+    return {product_of_halves(d.transpose() * products(rows_of_D, Eigen::placeholders::all)),
+            hermitian_products(c, products.topRows(c.rows())), hermitian_products(d, apply(small(rows_of_D, rows_of_D), d))};
   }
 
   ResidualProducts ProjectedResiduals::products(const ParameterValues      &values,
@@ -410,7 +410,7 @@ namespace Squeal
     for (int j = 0; j < result.cols(); ++j)
       if (!(result.col(j).array() == 0.).all())
         others.push_back(j);
-    return result(Eigen::all, others);
+    return result(Eigen::placeholders::all, others);
   }
 
   std::optional<MultiVector> ProjectedResiduals::principal_responses(const ReducedModel         &model,

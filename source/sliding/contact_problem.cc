@@ -74,9 +74,9 @@ namespace Squeal
 
         // [G_CC/unit  B_C; L_C  0] [r; z/unit] = [−g_0/unit; f], columns of B and rows of L scaled to entries of 1
         DenseMatrix A = DenseMatrix::Zero(n + n_z, n + n_z), b(n + n_z, k);
-        A << G(nodes, nodes) / unit, problem.motions(nodes, Eigen::all) * motion_sizes.cwiseInverse().asDiagonal(),
-          balance_sizes.cwiseInverse().asDiagonal() * problem.balance(Eigen::all, nodes), DenseMatrix::Zero(n_z, n_z);
-        b << -initial_gap(nodes, Eigen::all) / unit, (forces.array().colwise() / balance_sizes.array()).matrix();
+        A << G(nodes, nodes) / unit, problem.motions(nodes, Eigen::placeholders::all) * motion_sizes.cwiseInverse().asDiagonal(),
+          balance_sizes.cwiseInverse().asDiagonal() * problem.balance(Eigen::placeholders::all, nodes), DenseMatrix::Zero(n_z, n_z);
+        b << -initial_gap(nodes, Eigen::placeholders::all) / unit, (forces.array().colwise() / balance_sizes.array()).matrix();
         for (const int held : problem.held)
           {
             A(n + held, n + held) = 1.;
@@ -87,9 +87,9 @@ namespace Squeal
         // One step of refinement, so that the reactions balance the load to rounding
         x += lu.solve(b - A * x);
 
-        DenseMatrix result        = DenseMatrix::Zero(G.rows() + n_z, k);
-        result(nodes, Eigen::all) = x.topRows(n);
-        result.bottomRows(n_z)    = unit * (x.bottomRows(n_z).array().colwise() / motion_sizes.array()).matrix();
+        DenseMatrix result                      = DenseMatrix::Zero(G.rows() + n_z, k);
+        result(nodes, Eigen::placeholders::all) = x.topRows(n);
+        result.bottomRows(n_z)                  = unit * (x.bottomRows(n_z).array().colwise() / motion_sizes.array()).matrix();
         return result;
       }
 

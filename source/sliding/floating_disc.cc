@@ -124,14 +124,14 @@ namespace Squeal
     std::iota(free.begin(), free.end(), 0);
     while (static_cast<int>(free.size()) > n_plates)
       {
-        const DenseMatrix        B     = problem.motions(Eigen::all, free);
+        const DenseMatrix        B     = problem.motions(Eigen::placeholders::all, free);
         const Eigen::RowVectorXd sizes = B.colwise().norm();
         const auto [values, V]         = singular_values(B * sizes.cwiseInverse().asDiagonal()); // descending
         const int n                    = sizes.size();
         if (static_cast<int>(values.size()) == n && values.back() / values.front() > unchanged_gaps)
           return;
         const Eigen::VectorXd y = V.col(n - 1), forces = as_column(problem.forces)(free, 0);
-        refuse_unbalanced(y.cwiseQuotient(sizes.transpose()), forces, problem.balance(free, Eigen::all));
+        refuse_unbalanced(y.cwiseQuotient(sizes.transpose()), forces, problem.balance(free, Eigen::placeholders::all));
 
         Eigen::Index held;
         y.tail(n - n_plates).cwiseAbs().maxCoeff(&held);

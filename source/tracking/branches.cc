@@ -86,8 +86,9 @@ namespace Squeal
         for (const int j : block.second)
           farthest = std::max(farthest, std::abs(x - lambda[j]));
       const auto add_overlaps = [&](const ComplexDenseMatrix &before, const ComplexDenseMatrix &after) {
-        overlaps +=
-          0.5 * (with_rows(before(Eigen::all, block.first), r).adjoint() * with_rows(after(Eigen::all, block.second), r)).cwiseAbs2();
+        overlaps += 0.5 * (with_rows(before(Eigen::placeholders::all, block.first), r).adjoint() *
+                           with_rows(after(Eigen::placeholders::all, block.second), r))
+                            .cwiseAbs2();
       };
       add_overlaps(carried.right, modes.points[k + 1].right);
       add_overlaps(carried.left, modes.points[k + 1].left);
@@ -111,7 +112,7 @@ namespace Squeal
     {
       // Vectors in a smaller basis are extended by zeros
       const Eigen::Index       r = std::min(Q.rows(), X.rows());
-      const ComplexDenseMatrix P = Q * (Q.topRows(r).adjoint() * X.topRows(r)(Eigen::all, from));
+      const ComplexDenseMatrix P = Q * (Q.topRows(r).adjoint() * X.topRows(r)(Eigen::placeholders::all, from));
       for (std::size_t j = 0; j < to.size(); ++j)
         if (const double norm = P.col(j).norm(); norm > 0.)
           Y.col(to[j]) = P.col(j) / norm;
@@ -153,7 +154,8 @@ namespace Squeal
       for (std::vector<int> &modes : members_of(mode_clusters(point.lambda)))
         if (modes.size() > 1)
           {
-            const ComplexDenseMatrix right = point.right(Eigen::all, modes), left = point.left(Eigen::all, modes);
+            const ComplexDenseMatrix right = point.right(Eigen::placeholders::all, modes),
+                                     left  = point.left(Eigen::placeholders::all, modes);
             result.push_back({std::move(modes), orthonormal_basis(right).Q, orthonormal_basis(left).Q});
           }
       return result;

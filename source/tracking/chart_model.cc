@@ -146,7 +146,7 @@ namespace Squeal
     known.push_back(search.second);
     for (const auto &[point, modes] : known)
       for (const ComplexDenseMatrix *vectors : {&point->right, &point->left})
-        X = append_columns(X, halves(with_rows((*vectors)(Eigen::all, modes), model.size())));
+        X = append_columns(X, halves(with_rows((*vectors)(Eigen::placeholders::all, modes), model.size())));
     const ReducedModel small = model.restricted(principal_columns(X));
 
     const double     a = first.friction_coefficient, b = second.friction_coefficient;
@@ -219,8 +219,8 @@ namespace Squeal
         for (const int j : set.modes)
           lambda.push_back(set.chart->lambda[j]);
         modes.push_back({system.at(set.point.friction_coefficient, set.point.values), lambda,
-                         with_rows(orthonormal_in_clusters(set.chart->right(Eigen::all, set.modes), lambda), model.size()),
-                         with_rows(orthonormal_in_clusters(set.chart->left(Eigen::all, set.modes), lambda), model.size())});
+                         with_rows(orthonormal_in_clusters(set.chart->right(Eigen::placeholders::all, set.modes), lambda), model.size()),
+                         with_rows(orthonormal_in_clusters(set.chart->left(Eigen::placeholders::all, set.modes), lambda), model.size())});
       }
     std::optional<MultiVector> responses = residuals.principal_responses(model, modes, compression_tolerance);
     if (!responses)

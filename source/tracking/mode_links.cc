@@ -37,7 +37,7 @@ namespace Squeal
       for (int j = 0; j < X.cols(); ++j)
         if (basis.R(j, j).real() > defective)
           kept.push_back(j);
-      return basis.Q(Eigen::all, kept);
+      return basis.Q(Eigen::placeholders::all, kept);
     }
 
     /// cos² of the largest angle between two subspaces; if vectors are parallel, between a smaller subspace and its image.
@@ -54,8 +54,8 @@ namespace Squeal
       DenseMatrix result = (X.adjoint() * Y).cwiseAbs2();
       for (const std::vector<int> &members : members_of(cluster))
         if (members.size() > 1)
-          result(Eigen::all, members).colwise() =
-            (X.adjoint() * orthonormal_basis(Y(Eigen::all, members)).Q).rowwise().squaredNorm().eval();
+          result(Eigen::placeholders::all, members).colwise() =
+            (X.adjoint() * orthonormal_basis(Y(Eigen::placeholders::all, members)).Q).rowwise().squaredNorm().eval();
       return result;
     }
 
@@ -167,7 +167,8 @@ namespace Squeal
       {
         double smallest = 1.;
         for (const auto vectors : {&Side::right, &Side::left})
-          smallest = std::min(smallest, agreement_of((a.*vectors)(Eigen::all, first), (b.*vectors)(Eigen::all, second)));
+          smallest =
+            std::min(smallest, agreement_of((a.*vectors)(Eigen::placeholders::all, first), (b.*vectors)(Eigen::placeholders::all, second)));
         if (smallest < agreement)
           links.blocks.push_back({first, second, false});
         else
@@ -187,7 +188,7 @@ namespace Squeal
         DenseMatrix T = DenseMatrix::Zero(n, n);
         for (const auto vectors : {&Side::right, &Side::left})
           {
-            const auto X = transformation((a.*vectors)(Eigen::all, first), (b.*vectors)(Eigen::all, second));
+            const auto X = transformation((a.*vectors)(Eigen::placeholders::all, first), (b.*vectors)(Eigen::placeholders::all, second));
             if (!X)
               {
                 links.blocks.push_back({first, second, false});
@@ -253,7 +254,7 @@ namespace Squeal
     ComplexDenseMatrix result = vectors;
     for (const std::vector<int> &members : members_of(mode_clusters(lambda)))
       if (members.size() > 1)
-        result(Eigen::all, members) = orthonormal_basis(vectors(Eigen::all, members)).Q;
+        result(Eigen::placeholders::all, members) = orthonormal_basis(vectors(Eigen::placeholders::all, members)).Q;
     return result;
   }
 

@@ -147,8 +147,9 @@ namespace Squeal
             const double  size = std::abs(modes.lambda(p, k)), least = indistinguishable * size;
             if (before.imag() * after.imag() >= 0. || std::min(std::abs(before), std::abs(after)) <= least)
               continue;
-            const auto X = transformation(with_rows(a.right(Eigen::all, std::vector{modes.mode(p, k), modes.mode(q, k)}), r),
-                                          with_rows(b.right(Eigen::all, std::vector{modes.mode(p, k + 1), modes.mode(q, k + 1)}), r));
+            const auto X =
+              transformation(with_rows(a.right(Eigen::placeholders::all, std::vector{modes.mode(p, k), modes.mode(q, k)}), r),
+                             with_rows(b.right(Eigen::placeholders::all, std::vector{modes.mode(p, k + 1), modes.mode(q, k + 1)}), r));
             if (!X)
               continue;
             const double  t            = before.imag() / (before.imag() - after.imag());

@@ -363,7 +363,8 @@ TEST(Branches, MultipleModesAreFollowedAcrossOthers)
         multiple.push_back(j);
     const int n = multiple.size();
     for (auto *vectors : {&point.right, &point.left})
-      (*vectors)(Eigen::all, multiple) = (*vectors)(Eigen::all, multiple) * orthonormal_columns(random(generator, n, n));
+      (*vectors)(Eigen::placeholders::all, multiple) =
+        (*vectors)(Eigen::placeholders::all, multiple) * orthonormal_columns(random(generator, n, n));
   };
   // One of the grids meets the crossing of the twelve by a thirteenth
   for (const int n_steps : {3, 10, 33})

@@ -2,7 +2,7 @@
 
 #pragma once
 
-#include <boost/process/child.hpp>
+#include <squeal/base/process.h>
 
 #include <filesystem>
 #include <optional>
@@ -40,6 +40,6 @@ namespace Squeal
     std::optional<std::string> end();
 
   private:
-    boost::process::child worker;
+    process::child worker;
   };
 } // namespace Squeal

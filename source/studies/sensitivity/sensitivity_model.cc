@@ -48,7 +48,7 @@ namespace Squeal
   {
     const ReducedModel &reduced = sweep.reduced->reduced();
     const auto          shapes  = [&](const ComplexDenseMatrix &X) {
-      return reduced.basis() * halves(with_rows(X(Eigen::all, modes), reduced.size()));
+      return reduced.basis() * halves(with_rows(X(Eigen::placeholders::all, modes), reduced.size()));
     };
     Eigentriples triples{{}, shapes(point.right), shapes(point.left)};
     for (const int mode : modes)

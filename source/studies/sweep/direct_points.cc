@@ -13,7 +13,7 @@ namespace Squeal
     ComplexDenseMatrix gathered(const MultiVector &X, const MultiVector &Y, const std::vector<int> &columns)
     {
       const std::complex<double> i(0., 1.);
-      return (replicate(X).cast<std::complex<double>>() + i * replicate(Y))(Eigen::all, columns);
+      return (replicate(X).cast<std::complex<double>>() + i * replicate(Y))(Eigen::placeholders::all, columns);
     }
 
     /// Backward errors ‖ψᵀQ(λ)‖ / (w ‖ψ‖) of left vectors, see backward_errors().
@@ -84,8 +84,8 @@ namespace Squeal
   {
     if (!first_point)
       first_point = point;
-    const DenseMatrix      overlaps = 0.5 * ((first_point->right.adjoint() * point.right(Eigen::all, modes)).cwiseAbs2() +
-                                        (first_point->left.adjoint() * point.left(Eigen::all, modes)).cwiseAbs2());
+    const DenseMatrix      overlaps = 0.5 * ((first_point->right.adjoint() * point.right(Eigen::placeholders::all, modes)).cwiseAbs2() +
+                                        (first_point->left.adjoint() * point.left(Eigen::placeholders::all, modes)).cwiseAbs2());
     std::vector<ModeLabel> result;
     for (Eigen::Index j = 0; j < overlaps.cols(); ++j)
       {

@@ -62,7 +62,7 @@ namespace Squeal
       result.imaginary_part = std::make_shared<MultiVector>(std::move(im));
 
       const ReducedModel &reduced = model.reduced->reduced();
-      const DenseMatrix   X       = halves(with_rows(point.right(Eigen::all, numbers), reduced.size()));
+      const DenseMatrix   X       = halves(with_rows(point.right(Eigen::placeholders::all, numbers), reduced.size()));
       return {result, {X.transpose() * reduced.stiffness() * X, X.transpose() * reduced.mass() * X}};
     }
   } // namespace
@@ -163,10 +163,10 @@ namespace Squeal
     if (!reduced)
       {
         const RowMap            &map = frictionless.linearisation.coupled.map();
-        const ComplexDenseMatrix X   = point.right(Eigen::all, modes);
+        const ComplexDenseMatrix X   = point.right(Eigen::placeholders::all, modes);
         return {distribute(X.real(), map), distribute(X.imag(), map)};
       }
-    const ComplexDenseMatrix X = with_rows(point.right(Eigen::all, modes), reduced->size());
+    const ComplexDenseMatrix X = with_rows(point.right(Eigen::placeholders::all, modes), reduced->size());
     const MultiVector       &T = reduced->reduced().basis();
     return {T * DenseMatrix(X.real()), T * DenseMatrix(X.imag())};
   }
@@ -184,7 +184,7 @@ namespace Squeal
           reference_products[i] = append_columns(reference_products[i], added[i]);
       }
     return Squeal::shape_shares(frictionless.references(), reference_products, model.mass(),
-                                halves(with_rows(point.right(Eigen::all, modes), model.size())));
+                                halves(with_rows(point.right(Eigen::placeholders::all, modes), model.size())));
   }
 
   std::vector<ModeLabel> SweepModel::labels(const ChartPoint &point, const std::vector<int> &modes) const

@@ -3,6 +3,7 @@
 #include <squeal/base/groups.h>
 #include <squeal/studies/updating/least_squares.h>
 
+#define GLOG_USE_GLOG_EXPORT // required by the headers of glog 0.7
 #include <ceres/cost_function.h>
 #include <ceres/manifold.h>
 #include <ceres/problem.h>
@@ -55,7 +56,7 @@ namespace Squeal
       const std::vector<Eigen::Index> free = free_parameters(x, residuals);
       if (free.empty())
         return 0.;
-      Eigen::JacobiSVD<DenseMatrix> svd(residuals.J(Eigen::all, free), Eigen::ComputeThinU | Eigen::ComputeThinV);
+      Eigen::JacobiSVD<DenseMatrix> svd(residuals.J(Eigen::placeholders::all, free), Eigen::ComputeThinU | Eigen::ComputeThinV);
       svd.setThreshold(smallest_singular_value);
       return svd.solve(residuals.r).cwiseAbs().maxCoeff();
     }
@@ -165,7 +166,7 @@ namespace Squeal
       return result;
 
     const auto                          n_free = static_cast<Eigen::Index>(free.size()), m = residuals.r.size();
-    const Eigen::JacobiSVD<DenseMatrix> svd(residuals.J(Eigen::all, free), Eigen::ComputeFullV);
+    const Eigen::JacobiSVD<DenseMatrix> svd(residuals.J(Eigen::placeholders::all, free), Eigen::ComputeFullV);
     Eigen::VectorXd                     S = Eigen::VectorXd::Zero(n_free); // zero-padded if there are fewer data than parameters
     S.head(svd.singularValues().size())   = svd.singularValues();
     const DenseMatrix &V                  = svd.matrixV();
