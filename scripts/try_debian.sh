@@ -4,11 +4,12 @@
 # Tries the README's two commands on a bare Debian in a chroot: what they need and this machine happens to have
 # cannot hide there. Needs root and debootstrap.
 #
-#   scripts/try_debian.sh [RELEASE] [--kernels NAME]... [--run-only] [--keep] [--in DIR]
+#   scripts/try_debian.sh [RELEASE] [--kernels NAME]... [--run-only | --package DEB] [--keep] [--in DIR]
 #
-#   RELEASE          bookworm (Debian 12, default) or trixie (Debian 13)
+#   RELEASE          bookworm (Debian 12, default), trixie (Debian 13) or sid
 #   --kernels NAME   OPENBLAS_CORETYPE of the tests; repeated, the tests run once with each (default: as detected)
 #   --run-only       only scripts/run.sh
+#   --package DEB    instead of both commands: installs this package, runs it and writes the report
 #   --keep           leaves the chroot in place, to look around or to try again quickly
 #   --in DIR         where the chroot is made (default: a temporary folder)
 #
@@ -24,18 +25,22 @@ squeal_root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 usage() { sed -n '4,/^$/s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; }
 complain() { printf '%s\n' "$*" >&2; }
 
-release=bookworm kernels=() run_only=false keep=false directory=
+release=bookworm kernels=() run_only=false package= keep=false directory=
 while (($# > 0)); do
   case $1 in
     -h | --help) usage; exit 0 ;;
     --run-only) run_only=true; shift ;;
     --keep) keep=true; shift ;;
-    --kernels | --in)
+    --kernels | --package | --in)
       if (($# < 2)); then usage >&2; exit 2; fi
-      if [[ $1 == --in ]]; then directory=$2; else kernels+=("$2"); fi
+      case $1 in
+        --kernels) kernels+=("$2") ;;
+        --package) package=$(realpath "$2") ;;
+        --in) directory=$2 ;;
+      esac
       shift 2
       ;;
-    bookworm | trixie) release=$1; shift ;;
+    bookworm | trixie | sid) release=$1; shift ;;
     *) usage >&2; exit 2 ;;
   esac
 done
@@ -85,6 +90,15 @@ try()
 }
 
 failed=false
+if [[ -n $package ]]; then
+  cp "$package" "$root/root/"
+  try "installation of the package" sh -c 'apt-get -qq update && DEBIAN_FRONTEND=noninteractive apt-get -qq install --yes --no-install-recommends /root/squeal_*.deb >/dev/null' &&
+    try "first run" sh -c 'cd /root && OPENBLAS_NUM_THREADS=1 squeal /usr/share/squeal/prm/disc_pins.prm' &&
+    try "report" /usr/share/squeal/scripts/report.py /root/results/disc_pins || failed=true
+  printf '%s\n' "${times[@]}"
+  ! $failed
+  exit
+fi
 try "scripts/run.sh" /root/squeal/scripts/run.sh || failed=true
 if ! $run_only; then
   for kernel in "${kernels[@]}"; do
