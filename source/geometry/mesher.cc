@@ -7,6 +7,7 @@
 #include <squeal/geometry/mesher.h>
 
 #include <algorithm>
+#include <cmath>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>

@@ -26,7 +26,8 @@ class Installed(ProgramTest):
         return subprocess.run([self.prefix / "bin" / "squeal", *arguments], cwd=self.folder, text=True, capture_output=True, timeout=300)
 
     def test_runs_from_another_place(self):
-        self.assertTrue((self.prefix / "share" / "squeal" / "prm" / "disc_pins.prm").is_file())
+        for file in ("squeal/prm/disc_pins.prm", "doc/squeal/README.md", "doc/squeal/doc/install.md"):
+            self.assertTrue((self.prefix / "share" / file).is_file(), file)
         process = self.squeal("scene.prm", "--output", "results")
         self.assertEqual(process.returncode, 0, process.stderr)
         self.assert_same_eigenvalues(eigenvalues(self.folder / "results"), eigenvalues(self.run_scene("built")))

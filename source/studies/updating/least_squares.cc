@@ -56,7 +56,8 @@ namespace Squeal
       const std::vector<Eigen::Index> free = free_parameters(x, residuals);
       if (free.empty())
         return 0.;
-      Eigen::JacobiSVD<DenseMatrix> svd(residuals.J(Eigen::placeholders::all, free), Eigen::ComputeThinU | Eigen::ComputeThinV);
+      Eigen::JacobiSVD<DenseMatrix> svd(DenseMatrix(residuals.J(Eigen::placeholders::all, free)),
+                                        Eigen::ComputeThinU | Eigen::ComputeThinV);
       svd.setThreshold(smallest_singular_value);
       return svd.solve(residuals.r).cwiseAbs().maxCoeff();
     }
@@ -166,7 +167,7 @@ namespace Squeal
       return result;
 
     const auto                          n_free = static_cast<Eigen::Index>(free.size()), m = residuals.r.size();
-    const Eigen::JacobiSVD<DenseMatrix> svd(residuals.J(Eigen::placeholders::all, free), Eigen::ComputeFullV);
+    const Eigen::JacobiSVD<DenseMatrix> svd(DenseMatrix(residuals.J(Eigen::placeholders::all, free)), Eigen::ComputeFullV);
     Eigen::VectorXd                     S = Eigen::VectorXd::Zero(n_free); // zero-padded if there are fewer data than parameters
     S.head(svd.singularValues().size())   = svd.singularValues();
     const DenseMatrix &V                  = svd.matrixV();
