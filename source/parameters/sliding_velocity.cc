@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <iostream>
+#include <mutex>
 #include <sstream>
 #include <vector>
 
@@ -40,9 +41,11 @@ namespace Squeal
       const std::vector<std::string> parts = outer_parts(expressions);
       if (parts.size() != 3)
         return nullptr;
-      auto               function = std::make_shared<dealii::FunctionParser<3>>(3);
-      std::ostringstream unread; // deal.II prints the exceptions it throws
-      std::streambuf    *shown = std::cerr.rdbuf(unread.rdbuf());
+      auto                              function = std::make_shared<dealii::FunctionParser<3>>(3);
+      static std::mutex                 one_stream; // of all threads
+      const std::lock_guard<std::mutex> lock(one_stream);
+      std::ostringstream                unread; // deal.II prints the exceptions it throws
+      std::streambuf                   *shown = std::cerr.rdbuf(unread.rdbuf());
       try
         {
           function->initialize("x,y,z", parts, {{"pi", M_PI}});

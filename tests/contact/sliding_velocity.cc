@@ -6,6 +6,9 @@
 
 #include <gtest/gtest.h>
 
+#include <iostream>
+#include <thread>
+
 using namespace Squeal;
 using namespace Squeal::Testing;
 
@@ -89,6 +92,20 @@ TEST(SlidingVelocity, RailAlongXEqualsRailAlongY)
   EXPECT_LT(largest(distances(eigenvalues(along_x, moving("-1, 0, 0", Rotation::negative)), found)), 1e-9);
   EXPECT_GT(largest(distances(eigenvalues(along_x, moving("-1, 0, 0")), found)), 1e-3);
   EXPECT_GT(largest(distances(eigenvalues(along_x, moving("0, 1, 0")), found)), 1e-3);
+}
+
+TEST(SlidingVelocity, ThreadsLeaveTheErrorStreamAsItIs)
+{
+  const std::streambuf    *before = std::cerr.rdbuf();
+  std::vector<std::thread> threads;
+  for (int t = 0; t < 4; ++t)
+    threads.emplace_back([] {
+      for (int i = 0; i < 50; ++i)
+        SlidingVelocity(Rotation::positive, "-y, x, 0");
+    });
+  for (std::thread &thread : threads)
+    thread.join();
+  EXPECT_EQ(std::cerr.rdbuf(), before);
 }
 
 TEST(SlidingVelocity, Refusals)
