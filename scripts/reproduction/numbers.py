@@ -1,8 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Numbers as the pages print them, beside what is found."""
+"""Numbers as the pages print them, compared with what is found."""
 
 import dataclasses
+import itertools
+import re
+
+from squeal.program import SOURCE
 
 ENTRIES = {}
 
@@ -54,3 +58,16 @@ def of_mode(name, mode, frequency=None, rate=None):
 def several(prefix, names, quoted, found):
     """A number for each name."""
     return map(Number, (f"{prefix}{name}" for name in names), quoted, found)
+
+
+def table(page, head):
+    """Cells of the table of doc/PAGE.md whose head contains some words, row by row, without bold type, code and plus signs."""
+    text = re.sub(r"[*`]|\+(?=\d)", "", (SOURCE / "doc" / f"{page}.md").read_text(encoding="utf-8")).replace("−", "-")
+    lines = itertools.dropwhile(lambda line: not (line.startswith("|") and head in line), text.splitlines())
+    rows = itertools.takewhile(lambda line: line.startswith("|"), itertools.islice(lines, 2, None))
+    return [[cell.strip() for cell in re.split(r"(?<!\\)\|", row)[1:-1]] for row in rows]
+
+
+def numbers_in(*cells):
+    """The numbers in cells of a table, as they are printed."""
+    return [number for cell in cells for number in re.findall(r"-?\d+(?:\.\d+)?(?:e-\d+)?", cell)]

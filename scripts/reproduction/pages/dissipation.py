@@ -3,7 +3,7 @@
 """doc/dissipation.md"""
 
 import paper
-from reproduction.numbers import Number, entry
+from reproduction.numbers import Number, entry, numbers_in, table
 
 NO_SHAPES = "Output/Mode shapes=none"
 READINGS = ("equal load consistent [%]", "equal load published [%]", "steady sliding consistent [%]", "steady sliding published [%]")
@@ -13,34 +13,27 @@ def rates_with_all_readings(runs):
     return list(paper.readings({reading: runs(*how) for reading, how in paper.READINGS.items()}))
 
 
-def ends(rows, label, column):
-    """The smallest and largest divergence rate [%] of the modes of a label."""
-    values = [row[column] for row in rows if row["label"].startswith(label) and row[column] is not None]
-    return min(values), max(values)
+def rates_of(rows, label, column):
+    """Ascending divergence rates [%] of the modes of a label."""
+    return sorted(row[column] for row in rows if row["label"].startswith(label) and row[column] is not None)
 
 
 def of_modes(results, label):
-    rates = sorted(mode["divergence rate [%]"] for mode in results.complex_modes(label))
-    return rates
+    return sorted(mode["divergence rate [%]"] for mode in results.complex_modes(label))
+
+
+# Label and positions in the ascending rates, by the rows of the table; half of the 24 F1 modes bend along the radius
+POSITIONS = (("F1", 0), ("F1", 11), ("T1", 0), ("T1", -1), ("R0-1 +", 0), ("A1-2 +", 0), ("A0-4", 0, -1), ("A0-5", 0, -1), ("F1", -1))
 
 
 @entry("dissipation", "The table of divergence rates with each reading")
-def table(runs):
+def all_readings(runs):
     rows = rates_with_all_readings(runs)
-    quoted = {"F1": (("-2.07", "-5.15", "-1.41", "-3.35"), ("0.947", "0.919", "0.970", "0.934")),
-              "T1": (("-1.36", "-3.39", "-1.80", "-4.53"), ("-1.03", "-2.57", "-1.36", "-3.40")),
-              "A0-4": (("-0.686", "-0.695", "-0.686", "-0.695"), ("0.674", "0.664", "0.674", "0.665")),
-              "A0-5": (("-0.981", "-1.088", "-0.939", "-1.049"), ("0.822", "0.871", "0.819", "0.839"))}
-    for label, numbers in quoted.items():
-        for place, column in enumerate(READINGS):
-            for end, value, text in zip(("smallest", "largest"), ends(rows, label, column), (row[place] for row in numbers)):
-                yield Number(f"{label}, {column}, {end}", text, value)
-    for place, column in enumerate(READINGS):
-        # Half of the 24 F1 modes bends along the radius.
-        rates = sorted(row[column] for row in rows if row["label"].startswith("F1"))
-        yield Number(f"F1, {column}, least damped of the radial half", ("-1.43", "-3.70", "-0.89", "-2.31")[place], rates[11])
-        yield Number(f"R0-1 +, {column}", ("-0.110", "-0.275", "-0.110", "-0.275")[place], ends(rows, "R0-1 +", column)[0])
-        yield Number(f"A1-2 +, {column}", ("-0.109", "-0.213", "-0.123", "-0.255")[place], ends(rows, "A1-2 +", column)[0])
+    for (name, _, _, *cells), (label, *positions) in zip(table("dissipation", "equal, consistent"), POSITIONS, strict=True):
+        for column, cell in zip(READINGS, cells, strict=True):
+            rates = rates_of(rows, label, column)
+            for position, quoted in zip(positions, numbers_in(cell), strict=True):
+                yield Number(f"{name}, {column}", quoted, rates[position])
 
 
 @entry("dissipation", "3. What remains is the mesh of the faces: 7, 19 and 37 nodes")
@@ -64,16 +57,12 @@ def small_friction(runs):
 @entry("dissipation", "Seven F1 modes that hardly grow without it grow by 0.01 to 0.04 %; the leading pairs lose at most 0.15 %")
 def destabilised(runs):
     rows = rates_with_all_readings(runs)
-
-    def rates(column):
-        return sorted(row[column] for row in rows if row["label"].startswith("F1"))
-
-    yield Number("F1 modes that grow by more than 0.001 % without it", "3", sum(rate > 0.001 for rate in rates("no C_b [%]")))
+    yield Number("F1 modes that grow by more than 0.001 % without it", "3", sum(rate > 0.001 for rate in rates_of(rows, "F1", "no C_b [%]")))
     for column, least, most in (("equal load consistent [%]", "0.01", "0.02"), ("steady sliding consistent [%]", "0.02", "0.04")):
-        further = [rate for rate in rates(column) if rate > 0.001][:-3]
+        further = [rate for rate in rates_of(rows, "F1", column) if rate > 0.001][:-3]
         yield Number(f"further ones that grow, {column}", "7", len(further))
         yield Number("  least [%]", least, further[0])
         yield Number("  most [%]", most, further[-1])
-    losses = [max(row["no C_b [%]"] for row in rows if row["label"].startswith(label)) - ends(rows, label, column)[1]
+    losses = [rates_of(rows, label, "no C_b [%]")[-1] - rates_of(rows, label, column)[-1]
               for label in ("A0-4", "A0-5", "F1") for column in READINGS]
     yield Number("largest loss of a leading pair [%]", "0.15", max(losses), bound=True)

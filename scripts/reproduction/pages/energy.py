@@ -2,24 +2,21 @@
 
 """doc/energy.md"""
 
-from reproduction.numbers import Number, entry
+from reproduction.numbers import Number, entry, numbers_in, table
 
-# Divergence rate [%], its share into the disc [%], body and share of two that feed most and of the one that feeds least
-QUOTED = {17: ("0.680", "46", ("5", "13.2"), ("6", "12.8"), ("1", "3.6")),
-          21: ("0.856", "0", ("5", "17.9"), ("6", "11.5"), ("1", "0.9")),
-          37: ("0.322", "0", ("5", "22.5"), ("3", "10.3"), ("2", "0.4")),
-          44: ("1.068", "-4", ("5", "15.7"), ("4", "14.9"), ("2", "1.9"))}
+MODES = (17, 21, 37, 44)  # rows of complex_modes.csv
 
 
 @entry("energy", "The table of the default scene")
 def default_scene(runs):
     rows = runs("default", "disc_pins.prm", "Output/Mode shapes=none").rows("energy")
-    for mode, (rate, into_disc, *shares) in QUOTED.items():
+    for mode, (_, *cells) in zip(MODES, table("energy", "share done on the disc"), strict=True):
+        rate, into_disc, *shares = numbers_in(*cells)
         own = {row["body"]: row for row in rows if row["mode [-]"] == mode}
         found = own["disc"]["divergence rate [%]"]
         yield Number(f"mode {mode}, divergence rate [%]", rate, found)
         yield Number("  into the disc [%]", into_disc, 100 * sum(row["friction into the disc [%]"] or 0 for row in own.values()) / found)
-        for pin, share in shares:
+        for pin, share in zip(shares[::2], shares[1::2]):
             for side in ("top", "bottom"):
                 yield Number(f"  pin_{side}_{pin} [%]", share, 100 * own[f"pin_{side}_{pin}"]["total [%]"] / found)
 

@@ -3,7 +3,7 @@
 """doc/paper.md, except what has its own page"""
 
 import paper
-from reproduction.numbers import Number, entry, of_mode
+from reproduction.numbers import Number, entry, of_mode, table
 
 NO_SHAPES = "Output/Mode shapes=none"
 
@@ -59,11 +59,11 @@ def eighteen_pins(runs):
 
 @entry("paper", "Rotating waves")
 def waves(runs):
-    for name, results, quoted in zip(("without C_b", "with C_b"), solutions(runs),
-                                     (("0.989", "0.011", "0.961", "0.039"), ("0.989", "0.011", "0.956", "0.034"))):
-        modes = {mode["label"]: mode for mode in results.complex_modes()}
-        for label, share in zip(("A0-4 +", "A0-4 -", "A0-5 +", "A0-5 -"), quoted):
-            yield Number(f"{label}, {name}: share with the rotation", share, modes[label]["wave with rotation [-]"])
+    without, damped = ({mode["label"]: mode["wave with rotation [-]"] for mode in results.complex_modes()} for results in solutions(runs))
+    for name, *quoted in table("paper", "with the rotation, without C_b"):
+        label = name.split(",")[0]
+        for what, share, found in zip(("without C_b", "with C_b"), quoted, (without[label], damped[label])):
+            yield Number(f"{label}, {what}: share with the rotation", share, found)
 
 
 @entry("paper", "Bifurcation: thresholds without and with C_b")

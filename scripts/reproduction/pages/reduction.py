@@ -2,13 +2,13 @@
 
 """doc/reduction.md, but for times"""
 
-from reproduction.numbers import Number, entry, several
+from reproduction.numbers import Number, entry, several, table
 
 STUDIES = {"without": ("friction", "studies/friction.prm"), "with": ("friction_damped", "studies/friction_damped.prm")}
 
 
-def study(runs, dissipation, table):
-    return runs(*STUDIES[dissipation]).rows(f"reduction_{table}")
+def study(runs, dissipation, name):
+    return runs(*STUDIES[dissipation]).rows(f"reduction_{name}")
 
 
 def largest(rows, basis, column, group=None):
@@ -16,29 +16,24 @@ def largest(rows, basis, column, group=None):
     return max(row[column] for row in rows if row["basis"] == basis and group in (None, row["group"]))
 
 
+NAMES = {"the same + damping": "real + 1st-ord. two-sided + damping", "POD of μ = 0.05, 0.25, 0.45": "POD", "residual-grown, 10⁻⁴": "residual-grown 0.0001",
+         "residual-grown, 10⁻⁶": "residual-grown 1e-06"}
+
+
+def compared(runs, head, columns, group=None):
+    """Errors of bases with a table of the page, whose cells say `without | with` where both differ; None: a column that is not compared."""
+    for number, dissipation in enumerate(STUDIES):
+        rows = study(runs, dissipation, "errors")
+        for basis, *cells in table("reduction", head):
+            quoted = {column: cell.split(r" \| ")[-number] for column, cell in zip(columns, cells) if column}
+            if "–" not in quoted.values():
+                found = [largest(rows, NAMES.get(basis, basis), column, group) for column in quoted]
+                yield from several(f"{dissipation}: {basis}, ", quoted, quoted.values(), found)
+
+
 @entry("reduction", "At one glance: sizes and largest errors of all modes, without and with radial dissipation")
 def at_one_glance(runs):
-    quoted = {"without": (("free", "200", "1.2e-2", "2.0e-3"), ("fixed", "368", "7.4e-2", "1.7e-2"), ("mixed", "368", "5.9e-3", "3.0e-3"),
-                          ("free + t.a.m.", "428", "1.2e-3", "3.8e-4"), ("free with r.a.m.", "200", "1.6e-3", "9.2e-4"),
-                          ("fixed + t.a.m.", "596", "1.8e-2", "1.8e-2"), ("mixed + t.a.m.", "596", "1.2e-3", "9.4e-4"),
-                          ("real", "66", "6.7e-3", "3.3e-3"), ("real + t.a.m.", "294", "2.2e-3", "1.2e-3"),
-                          ("real + 1st-ord.", "132", "1.9e-3", "1.2e-3"), ("real + 1st-ord. two-sided", "198", "8.2e-5", "6.7e-5"),
-                          ("real (10000 Hz)", "113", "6.8e-3", "3.3e-3"), ("real + 1st-ord. (10000 Hz)", "226", "1.6e-3", "1.2e-3"),
-                          ("POD", "114", "1.7e-5", "3.8e-6"), ("residual-grown 0.0001", "198", "8.2e-5", "6.7e-5"),
-                          ("residual-grown 1e-06", "235", "1.0e-6", "7.8e-7")),
-              "with": (("free", "200", "1.4e-2", "4.9e-3"), ("fixed", "368", "3.3e-2", "1.7e-2"), ("mixed", "368", "9.3e-3", "2.1e-3"),
-                       ("free + t.a.m.", "428", "3.1e-4", "1.8e-4"), ("free with r.a.m.", "200", "3.9e-4", "3.0e-4"),
-                       ("fixed + t.a.m.", "596", "7.3e-2", "1.8e-2"), ("mixed + t.a.m.", "596", "1.3e-3", "9.7e-4"),
-                       ("real", "66", "6.9e-3", "2.7e-3"), ("real + t.a.m.", "294", "1.0e-3", "8.0e-4"),
-                       ("real + 1st-ord.", "132", "9.8e-4", "7.5e-4"), ("real + 1st-ord. two-sided", "198", "4.5e-4", "9.9e-5"),
-                       ("real + 1st-ord. two-sided + damping", "264", "5.9e-5", "8.9e-6"),
-                       ("POD", "151", "2.4e-5", "2.3e-5"), ("residual-grown 0.0001", "263", "5.8e-5", "9.4e-6"),
-                       ("residual-grown 1e-06", "330", "7.3e-7", "5.1e-7"))}
-    for dissipation, bases in quoted.items():
-        rows = study(runs, dissipation, "errors")
-        for basis, *texts in bases:
-            columns = ("n_r [-]", "lambda [-]", "div [-]")
-            yield from several(f"{dissipation}: {basis}, ", columns, texts, [largest(rows, basis, column) for column in columns])
+    yield from compared(runs, "error of λ", ("n_r [-]", None, "lambda [-]", "div [-]"))
 
 
 @entry("reduction", "Groups: share of the disc in A0-5, and errors of disc modes")
@@ -54,19 +49,7 @@ def groups(runs):
 
 @entry("reduction", "Largest errors over disc and unstable pins")
 def disc_and_unstable_pins(runs):
-    quoted = {"without": (("free", "2.4e-2", "2.0e-3"), ("fixed", "2.3e-2", "1.7e-2"), ("mixed", "2.8e-2", "2.8e-3"),
-                          ("free + t.a.m.", "3.4e-5", "3.8e-4"), ("free with r.a.m.", "6.2e-5", "5.9e-4"),
-                          ("fixed + t.a.m.", "3.5e-3", "1.8e-2"), ("mixed + t.a.m.", "6.4e-4", "9.4e-4"), ("real", "2.7e-2", "2.3e-3"),
-                          ("real + t.a.m.", "8.8e-5", "1.2e-3"), ("real + 1st-ord.", "3.9e-4", "1.2e-3"),
-                          ("real (10000 Hz)", "2.6e-2", "2.3e-3"), ("real + t.a.m. (10000 Hz)", "1.9e-5", "1.2e-3")),
-              "with": (("free", "2.4e-2", "2.3e-3"), ("mixed", "2.8e-2", "6.1e-4"), ("free + t.a.m.", "8.3e-5", "7.7e-5"),
-                       ("free with r.a.m.", "1.2e-4", "1.4e-4"), ("mixed + t.a.m.", "6.4e-4", "9.7e-4"), ("real", "2.7e-2", "1.1e-3"),
-                       ("real + t.a.m.", "1.5e-4", "1.2e-4"), ("real + 1st-ord.", "9.2e-4", "1.3e-4"))}
-    for dissipation, bases in quoted.items():
-        rows = study(runs, dissipation, "errors")
-        for basis, *texts in bases:
-            columns = ("res [-]", "div [-]")
-            yield from several(f"{dissipation}: {basis}, ", columns, texts, [largest(rows, basis, column, "disc and unstable pins") for column in columns])
+    yield from compared(runs, "ε_res | ε_frq", ("res [-]", "frq [-]", "div [-]"), "disc and unstable pins")
 
 
 @entry("reduction", "Wrong verdicts")

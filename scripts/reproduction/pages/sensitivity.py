@@ -2,21 +2,12 @@
 
 """doc/sensitivity.md"""
 
-from reproduction.numbers import Number, entry, of_mode
+from reproduction.numbers import Number, entry, of_mode, table
 
-# What one per cent changes of the divergence rate [percentage points] and of the frequency [Hz] of F1 at 3569 Hz
-QUOTED = {"Geometry/Disc outer radius": ("-0.1276", "-19.8"),
-          "Geometry/Pin height": ("0.0654", "-28.8"),
-          "Geometry/Disc thickness": ("0.0301", "7.6"),
-          "Pin material/Density": ("0.0281", "-12.6"),
-          "Disc material/Density": ("-0.0281", "-5.3"),
-          "Disc material/Young modulus": ("0.0232", "5.0"),
-          "Pin material/Young modulus": ("-0.0230", "12.9"),
-          "Operation/Friction coefficient": ("0.0084", "-0.05"),
-          "Pin material/Poisson ratio": ("0.0051", "-1.7"),
-          "Geometry/Disc inner radius": ("-0.0032", "-0.6"),
-          "Disc material/Poisson ratio": ("-0.0026", "-0.4"),
-          "Geometry/Pin diameter": ("0.0003", "4.3")}
+# In the order of the page's table
+PARAMETERS = ("Geometry/Disc outer radius", "Geometry/Pin height", "Geometry/Disc thickness", "Pin material/Density", "Disc material/Density",
+              "Disc material/Young modulus", "Pin material/Young modulus", "Operation/Friction coefficient", "Pin material/Poisson ratio",
+              "Geometry/Disc inner radius", "Disc material/Poisson ratio", "Geometry/Pin diameter")
 
 
 @entry("sensitivity", "What one per cent of each parameter changes of the mode that grows most")
@@ -24,7 +15,7 @@ def leading_mode(runs):
     rows = [row for row in runs("sensitivity", "studies/sensitivity.prm").rows("sensitivities")
             if row["mode [-]"] == 1 and not row["body"]]
     yield from of_mode("the mode", rows[0], "3569", "1.068")
-    for parameter, (rate, frequency) in QUOTED.items():
+    for parameter, (_, rate, frequency) in zip(PARAMETERS, table("sensitivity", "one per cent more of")):
         row = next(row for row in rows if row["parameter"] == parameter)
         yield Number(f"{parameter}, divergence rate [percentage points]", rate, row["divergence rate per 1 % [percentage points]"])
         yield Number("  frequency [Hz]", frequency, row["frequency per 1 % [Hz]"])

@@ -4,16 +4,12 @@
 
 import random
 
-from reproduction.numbers import Number, entry
+from reproduction.numbers import Number, entry, numbers_in, table
 
 NO_SHAPES = "Output/Mode shapes=none"
 FEW_MODES = "Band/Maximum frequency=600"
 PINS = [f"pin_{side}_{number}" for side in ("top", "bottom") for number in range(1, 7)]
 MEAN_PRESSURE = 1000.0 / (6 * 0.002028)  # load of a side over the area of its pins, as a run prints it [Pa]
-OVER_FRICTION = {  # mu: open nodes, largest pressure / mean, travel of the backplates [um]
-    0.0: ("0", "1.04", "1.335"), 0.2: ("0", "1.71", "1.328"), 0.4: ("0", "2.67", "1.307"), 0.6: ("24", "3.88", "1.268"),
-    0.8: ("48", "5.39", "1.201"), 1.0: ("60", "7.22", "1.106"), 1.5: ("144", "13.2", "0.604"), 2.0: ("192", "16.3", "-1.98"),
-}
 
 
 def steady(runs, name, *settings):
@@ -38,7 +34,8 @@ def proof(runs):
 
 @entry("sliding", "The table over mu: open nodes, largest pressure beside the mean, travel of the backplates")
 def over_friction(runs):
-    for mu, (n_open, ratio, travel) in OVER_FRICTION.items():
+    for cells in table("sliding", "open nodes of 228"):
+        mu, n_open, ratio, travel = numbers_in(*cells)
         pins = steady(runs, f"sliding_{mu}", f"Operation/Friction coefficient={mu}").rows("sliding_pins")
         yield Number(f"mu = {mu}: open nodes", n_open, sum(pin["open nodes [-]"] for pin in pins))
         yield Number(f"mu = {mu}: largest pressure / mean", ratio, max(pin["largest pressure [Pa]"] for pin in pins) / MEAN_PRESSURE)

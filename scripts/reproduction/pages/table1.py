@@ -3,17 +3,14 @@
 """doc/table1.md"""
 
 import paper
-from reproduction.numbers import Number, entry, of_mode
+from reproduction.numbers import Number, entry, numbers_in, of_mode, table
 
 NO_SHAPES = "Output/Mode shapes=none"
 FINE = ("Geometry/Element size=0.008", "Geometry/Disc layers=4", "Geometry/Pin layers=6")
-MESHES = {
-    "7 nodes": ("disc_pins.prm", ["Geometry/Nodes per pin face=7"], "2349", "0.556", "3471", "0.709", "3593", "0.934"),
-    "19 nodes": ("disc_pins.prm", [], "2353", "0.680", "3452", "0.856", "3569", "1.068"),
-    "37 nodes": ("disc_pins.prm", ["Geometry/Nodes per pin face=37"], "2351", "0.712", "3441", "0.884", "3556", "1.101"),
-    "37 nodes, 8 mm": ("disc_pins.prm", ["Geometry/Nodes per pin face=37", *FINE], "2335", "0.727", "3411", "0.894", "3524", "1.110"),
-    "degree 2": ("quadratic.prm", [], "2315", "0.76", "3383", "0.93", "3501", "1.10"),
-}
+MESHES = (  # in the order of the page's table: folder, parameter file, settings
+    ("mesh_7_nodes", "disc_pins.prm", "Geometry/Nodes per pin face=7"), ("default", "disc_pins.prm"),
+    ("mesh_37_nodes", "disc_pins.prm", "Geometry/Nodes per pin face=37"),
+    ("mesh_37_nodes_8_mm", "disc_pins.prm", "Geometry/Nodes per pin face=37", *FINE), ("mesh_degree_2", "quadratic.prm"))
 
 
 def solution(runs, reading):
@@ -80,11 +77,10 @@ def large_differences(runs):
 
 @entry("table1", "Convergence in the band: A0-4, A0-5 and the leading F1 on five meshes")
 def convergence(runs):
-    for name, (parameter_file, settings, *quoted) in MESHES.items():
-        folder = "default" if name == "19 nodes" else f"mesh_{name.replace(', ', '_').replace(' ', '_')}"
+    for (folder, parameter_file, *settings), (name, _, *cells) in zip(MESHES, table("table1", "leading F1"), strict=True):
         results = runs(folder, parameter_file, NO_SHAPES, *settings)
-        for label, frequency, rate in zip(("A0-4", "A0-5", "F1"), quoted[::2], quoted[1::2]):
-            yield from of_mode(f"{name}: {label}", results.leading(label), frequency, rate)
+        for label, cell in zip(("A0-4", "A0-5", "F1"), cells):
+            yield from of_mode(f"{name}: {label}", results.leading(label), *numbers_in(cell))
 
 
 @entry("table1", "F1 at 3353 Hz: the coupled modes up to there in the paper's table")
