@@ -29,6 +29,29 @@ def layout(x, y, **more):
             "font": {"family": "inherit", "size": 13}, **more}
 
 
+def points(name, x, y, about=None, mode="markers", **more):
+    """A series of points or lines; about: what the mouse shows of each point."""
+    hover = {} if about is None else {"customdata": about, "hovertemplate": "%{customdata}<extra></extra>"}
+    return {"type": "scatter", "mode": mode, "name": name, "x": x, "y": y, **hover, **more}
+
+
+def best_so_far(rows, goal, **more):
+    """The best value of a goal over the number of evaluated designs."""
+    return points("best so far", [int(row["design [-]"]) for row in rows], [short(row["best " + goal]) for row in rows], mode="lines",
+                  line={"color": "#222", "width": 1.6, "shape": "hv"}, **more)
+
+
+def name_of_mode(row):
+    """A mode in a list of choices."""
+    return f"{row['label']}, {number(row[FREQUENCY]):.0f} Hz, ξ = {digits(number(row[RATE]), 3)} %"
+
+
+def confidence(row):
+    """The interval of a probability of squeal."""
+    lower, upper = (digits(number(row[f"{end} end of confidence [%]"]), 3) for end in ("lower", "upper"))
+    return f"95 % confidence interval {lower} to {upper} %"
+
+
 def plain(text, n=5):
     """A value as the tables have it, its number with so many digits."""
     try:
@@ -47,4 +70,4 @@ def names_apart(heights, span, most=8, share=0.05):
 
 
 def end_of_band(results):
-    return f"{float(results.parameter('Band/Maximum frequency')):g} Hz"
+    return f"{results.number('Band/Maximum frequency'):g} Hz"

@@ -3,8 +3,8 @@
 """What a page says of a run: verdict, sections, tables, what was checked, and how to repeat it. Everything is read from the results, nothing is
 computed anew.
 
-Each kind of results has a module in PAGES: whether it is there (`is_of`), its `verdict`, its `sections` with charts, what was checked
-(`checks`), titles of its tables (`TITLES`), and plots that its charts replace (`REPLACED`).
+Each kind of results has a module in PAGES: the tables that such results have (`TABLES`), titles (`TITLES`), its `verdict`, and, where there are
+any, its `sections` with charts, what was checked (`checks`), and plots that its charts replace (`REPLACED`).
 """
 
 import base64
@@ -15,6 +15,11 @@ from squeal.reporting.charts import digits
 
 PAGES = (sweep, stability_map, stability, search, robust_search, designs, sensitivity, robustness, updating)
 LARGEST_TABLE = 2500  # rows
+
+
+def parts(pages, name, results):
+    """Sections or checks of all pages."""
+    return [part for page in pages if hasattr(page, name) for part in getattr(page, name)(results)]
 
 
 def verdict(results, pages):
@@ -42,7 +47,7 @@ def tables(results, pages):
 
 def pictures(results, pages):
     """Plots of the run that no chart replaces, as data."""
-    replaced = tuple(name for page in pages for name in page.REPLACED)
+    replaced = tuple(name for page in pages for name in getattr(page, "REPLACED", ()))
     return [{"id": "plot-" + path.stem, "title": path.stem.replace("_", " ").capitalize(),
              "picture": "data:image/svg+xml;base64," + base64.b64encode(path.read_bytes()).decode()}
             for path in sorted((results.folder / "plots").glob("*.svg")) if not path.stem.startswith(replaced)]
@@ -52,7 +57,7 @@ def checks(results, pages):
     """What was checked, and how accurate it is: pairs of what and how much."""
     record = results.record
     counts, quantities = record.get("counts", {}), record.get("quantities", {})
-    found = [check for page in pages for check in page.checks(results)]
+    found = parts(pages, "checks", results)
     for step in record.get("steps", []):
         if step["name"] in ("Mode count", "Real modes"):
             found.append((step["name"].lower(), step["result"]))
@@ -77,9 +82,9 @@ def repeat(results):
 
 
 def content(results):
-    pages = [page for page in PAGES if page.is_of(results)]
+    pages = [page for page in PAGES if all(map(results.has, page.TABLES))]
     level, sentence = verdict(results, pages)
     shown, too_long = tables(results, pages)
     return {"title": results.folder.resolve().name, "study": results.parameter("Study"), "level": level, "verdict": sentence,
-            "sections": [section for page in pages for section in page.sections(results)] + pictures(results, pages), "tables": shown,
+            "sections": parts(pages, "sections", results) + pictures(results, pages), "tables": shown,
             "too long": too_long, "checks": checks(results, pages), "repeat": repeat(results)}

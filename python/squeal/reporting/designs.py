@@ -2,15 +2,12 @@
 
 """The page of a study of designs: where squeal begins, how fast it grows, and which values make a design quiet."""
 
-from squeal.reporting.charts import WEAK, digits, layout, number, plain, short
+from squeal.reporting.charts import WEAK, digits, layout, number, plain, points, short
 
+TABLES = ("designs",)
 TITLES = {"designs": "Designs", "design_thresholds": "Where modes of designs begin and cease to grow", "design_modes": "Modes of designs"}
 REPLACED = ("designs",)
 ONSET, LARGEST = "mu of 0.01 % [-]", "largest divergence rate [%]"
-
-
-def is_of(results):
-    return results.has("designs")
 
 
 def variables_of(table):
@@ -41,7 +38,7 @@ def design_text(row, variables):
 
 
 def end_of_sweep(results):
-    return float(results.parameter("Sweep/Last friction coefficient"))
+    return results.number("Sweep/Last friction coefficient")
 
 
 def verdict(results):
@@ -92,9 +89,8 @@ def onset_section(results):
     traces = []
     for label in sorted({row["label of largest"] or "none" for row in rows}):
         own = [row for row in rows if (row["label of largest"] or "none") == label]
-        traces.append({"type": "scatter", "mode": "markers", "name": label, "x": [short(row[ONSET] or end) for row in own],
-                       "y": [short(row[LARGEST] or "0") for row in own], "marker": {"size": 10},
-                       "customdata": [about(row, variables, end) for row in own], "hovertemplate": "%{customdata}<extra></extra>"})
+        traces.append(points(label, [short(row[ONSET] or end) for row in own], [short(row[LARGEST] or "0") for row in own],
+                             [about(row, variables, end) for row in own], marker={"size": 10}))
     return {"id": "designs_chart", "title": "Designs: where squeal begins, and how fast it grows",
             "caption": "Each point is a design, named by the mode that grows fastest, over the μ from which on a divergence rate exceeds 0.01 %; what "
                        f"lies to the right and low is quiet. At μ = {end:g} the study ends.",

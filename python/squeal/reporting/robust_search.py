@@ -2,15 +2,11 @@
 
 """The page of a search with uncertain parameters: the best design, by its samples and by others."""
 
-from squeal.reporting.charts import STABLE, UNSTABLE, digits, layout, number, plain, short
+from squeal.reporting.charts import STABLE, UNSTABLE, best_so_far, confidence, digits, layout, number, plain, points, short
 
+TABLES = ("best_design",)
 TITLES = {"best_design": "The best design by its samples and by others", "search": "Designs in the order of their evaluation",
           "full_order": "The worst of the other samples at full order"}
-REPLACED = ()
-
-
-def is_of(results):
-    return results.has("best_design")
 
 
 def goal_of(results):
@@ -29,18 +25,16 @@ def verdict(results):
     level = "unstable" if number(other["probability of squeal [%]"]) > 0. else "stable"
     return level, (f"Of {len(rows)} designs number {best['design [-]']} is the best ({values}): {name} {digits(number(best[goal]), 3)} %, with other "
                    f"samples {digits(number(other[goal]), 3)} %; squeal in {digits(number(other['probability of squeal [%]']), 3)} % of these "
-                   f"(95 % confidence interval {digits(number(other['lower confidence limit [%]']), 3)} to "
-                   f"{digits(number(other['upper confidence limit [%]']), 3)} %).")
+                   f"({confidence(other)}).")
 
 
 def sections(results):
     goal, rows = goal_of(results), results.table("search").rows
-    traces = [{"type": "scatter", "mode": "lines", "name": "best so far", "x": [int(row["design [-]"]) for row in rows],
-               "y": [short(row["best " + goal]) for row in rows], "line": {"color": "#222", "width": 1.6, "shape": "hv"}}]
+    traces = [best_so_far(rows, goal)]
     for phase, colour, symbol in (("sample", STABLE, "circle"), ("search", UNSTABLE, "diamond")):
         chosen = [row for row in rows if row["phase"] == phase]
-        traces.append({"type": "scatter", "mode": "markers", "name": phase, "x": [int(row["design [-]"]) for row in chosen],
-                       "y": [short(row[goal]) for row in chosen], "marker": {"color": colour, "size": 8, "symbol": symbol}})
+        traces.append(points(phase, [int(row["design [-]"]) for row in chosen], [short(row[goal]) for row in chosen],
+                             marker={"color": colour, "size": 8, "symbol": symbol}))
     return [{"id": "history", "title": "History of the search", "data": traces, "layout": layout("evaluation", goal),
              "caption": "Each mark is a design, the line is the best so far."}]
 

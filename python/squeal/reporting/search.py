@@ -6,11 +6,11 @@ import re
 import shlex
 import textwrap
 
-from squeal.reporting.charts import FREQUENCY, RATE, STABLE, UNSTABLE, WEAK, digits, layout, number, plain, short
+from squeal.reporting.charts import FREQUENCY, RATE, STABLE, UNSTABLE, WEAK, best_so_far, digits, layout, number, plain, points, short
 from squeal.reporting.designs import LARGEST, ONSET, about, design_text, end_of_sweep, name_of
 
+TABLES = ("search", "designs")
 TITLES = {"search": "Designs in the order of their evaluation", "full_order": "The best design at full order"}
-REPLACED = ()
 GOALS = {LARGEST: "largest divergence rate [%]", ONSET: "μ of 0.01 %"}
 
 
@@ -35,10 +35,6 @@ class Search:
     def text(self, row):
         """The goal that a design reaches."""
         return f"{digits(self.value(row))} %" if self.goal == LARGEST else f"μ = {digits(self.value(row))}"
-
-
-def is_of(results):
-    return results.has("search") and results.has("designs")
 
 
 def verdict(results):
@@ -78,35 +74,27 @@ def checks(results):
 def history_section(search):
     """The goal over the number of the evaluation, and the best so far."""
     first = search.table.rows.index(search.solved[0]) if search.solved else len(search.table)
-    best = search.table.rows[first:]
-    traces = [{"type": "scatter", "mode": "lines", "name": "best so far", "x": [int(row["design [-]"]) for row in best],
-               "y": [short(row["best " + search.goal]) for row in best], "line": {"color": "#222", "width": 1.6, "shape": "hv"},
-               "hovertemplate": "best of %{x} designs: %{y:.4g}<extra></extra>"}]
-    for phase, title, colour, symbol in (("sample", "samples", STABLE, "circle"), ("search", "search", UNSTABLE, "diamond")):
-        traces.append(designs_trace(search, [row for row in search.solved if row["phase"] == phase], title, colour, symbol,
-                                    lambda row: int(row["design [-]"])))
+    best = best_so_far(search.table.rows[first:], search.goal, hovertemplate="best of %{x} designs: %{y:.4g}<extra></extra>")
+    traces = [best, *designs_traces(search, lambda row: int(row["design [-]"]))]
     left = [row for row in search.table.rows if not row[search.goal]]
     if left:
         worst = (min if search.goal == ONSET else max)(map(search.value, search.solved), default=0)
-        traces.append({"type": "scatter", "mode": "markers", "name": "refused or failed", "x": [int(row["design [-]"]) for row in left],
-                       "y": [worst] * len(left), "marker": {"symbol": "x", "color": "#8a939c", "size": 9},
-                       "customdata": [f"<b>design {row['design [-]']}</b><br>{lines(search.designs[row['design [-]']]['reason'])}" for row in left],
-                       "hovertemplate": "%{customdata}<extra></extra>"})
+        reasons = [search.designs[row["design [-]"]]["reason"] for row in left]
+        traces.append(points("refused or failed", [int(row["design [-]"]) for row in left], [worst] * len(left),
+                             [f"<b>design {row['design [-]']}</b><br>{'<br>'.join(textwrap.wrap(reason, 44))}" for row, reason in zip(left, reasons)],
+                             marker={"symbol": "x", "color": "#8a939c", "size": 9}))
     caption = ("Each mark is a design, the line is the best so far: first samples of the ranges, then searches that go on from the best two of them."
                + (" Crosses have no value: a search turns back from them." if left else ""))
-    axes = layout("evaluation", GOALS[search.goal])
-    return {"id": "history", "title": "History of the search", "caption": caption, "data": traces, "layout": axes}
+    return {"id": "history", "title": "History of the search", "caption": caption, "data": traces, "layout": layout("evaluation", GOALS[search.goal])}
 
 
-def lines(text):
-    return "<br>".join(textwrap.wrap(text, 44))
-
-
-def designs_trace(search, rows, title, colour, symbol, place):
-    return {"type": "scatter", "mode": "markers", "name": title, "x": [place(row) for row in rows], "y": [short(row[search.goal]) for row in rows],
-            "marker": {"color": colour, "size": 8, "symbol": symbol},
-            "customdata": [about(search.designs[row["design [-]"]], search.variables, search.end) for row in rows],
-            "hovertemplate": "%{customdata}<extra></extra>"}
+def designs_traces(search, place):
+    """Samples, and designs of searches."""
+    for phase, title, colour, symbol in (("sample", "samples", STABLE, "circle"), ("search", "search", UNSTABLE, "diamond")):
+        rows = [row for row in search.solved if row["phase"] == phase]
+        yield points(title, list(map(place, rows)), [short(row[search.goal]) for row in rows],
+                     [about(search.designs[row["design [-]"]], search.variables, search.end) for row in rows],
+                     marker={"color": colour, "size": 8, "symbol": symbol})
 
 
 def best_section(results, search):
@@ -148,12 +136,9 @@ def variables_section(results, search):
     """The goal over each variable."""
     choices = []
     for name in search.variables:
-        traces = [designs_trace(search, [row for row in search.solved if row["phase"] == phase], title, colour, symbol,
-                                lambda row: number(row[name]))
-                  for phase, title, colour, symbol in (("sample", "samples", STABLE, "circle"), ("search", "search", UNSTABLE, "diamond"))]
-        traces.append({"type": "scatter", "mode": "markers", "name": "the best", "x": [number(search.best[name])],
-                       "y": [short(search.best[search.goal])], "marker": {"symbol": "circle-open", "size": 17, "color": "#222", "line": {"width": 2}},
-                       "hoverinfo": "skip"})
+        ring = points("the best", [number(search.best[name])], [short(search.best[search.goal])], hoverinfo="skip",
+                      marker={"symbol": "circle-open", "size": 17, "color": "#222", "line": {"width": 2}})
+        traces = [*designs_traces(search, lambda row: number(row[name])), ring]
         choices.append({"key": name, "name": name_of(name), "data": traces, "layout": layout(name, GOALS[search.goal])})
     return {"id": "over_variables", "title": "Designs over their variables", "choices": choices, "chosen": search.variables[0],
             "caption": "Each mark is a design that was solved; a ring is around the best one. Variable:"}

@@ -2,8 +2,9 @@
 
 """What one per cent of each parameter changes: of modes, of thresholds; pairs of modes that coalesce, and how accurate derivatives are."""
 
-from squeal.reporting.charts import FREQUENCY, RATE, STABLE, UNSTABLE, digits, layout, number, short
+from squeal.reporting.charts import FREQUENCY, RATE, STABLE, UNSTABLE, digits, layout, name_of_mode, number, short
 
+TABLES = ("sensitivities",)
 TITLES = {"sensitivity_ranking": "What one per cent changes of the mode that grows fastest", "sensitivities": "What one per cent changes of each mode",
           "sensitivities_thresholds": "How far one per cent moves thresholds"}
 REPLACED = ("sensitivity",)
@@ -13,10 +14,6 @@ ROUNDING = 1e-8  # of R/ω, as include/squeal/modes/verdict.h has it
 LEAST_CHANGE = 1e-4  # [percentage points]
 ROUGH = 0.01  # of the largest derivative of a threshold, from which its estimated error is worth a note
 BAR, AXES = 30, 130  # heights [pixels]
-
-
-def is_of(results):
-    return results.has("sensitivities")
 
 
 def verdict(results):
@@ -115,8 +112,7 @@ def modes_section(modes):
     choices = []
     for rows in modes:
         data, axes = bars(rows, CHANGE, "change [% points]", about_mode, squeals=1)
-        choices.append({"key": rows[0]["mode [-]"], "data": data, "layout": axes,
-                        "name": f"{rows[0]['label']}, {number(rows[0][FREQUENCY]):.0f} Hz, ξ = {digits(number(rows[0][RATE]), 3)} %"})
+        choices.append({"key": rows[0]["mode [-]"], "data": data, "layout": axes, "name": name_of_mode(rows[0])})
     return {"id": "sensitivity", "title": "What one per cent of each parameter changes of growth", "choices": choices, "chosen": choices[0]["key"],
             "height": height_of(modes, CHANGE),
             "caption": "How much one per cent more of each parameter changes the divergence rate: red bars let the mode grow more, blue ones less. "

@@ -3,16 +3,13 @@
 """The page of a run at one friction coefficient: effective damping ratios, modes that grow, and where their energy enters."""
 
 from squeal.reporting import shapes
-from squeal.reporting.charts import DAMPING, FREQUENCY, RATE, STABLE, UNSTABLE, digits, end_of_band, layout, names_apart, number
+from squeal.reporting.charts import DAMPING, FREQUENCY, RATE, STABLE, UNSTABLE, digits, end_of_band, layout, name_of_mode, names_apart, number, points
 
+TABLES = ("complex_modes",)
 TITLES = {"complex_modes": "Modes with friction", "real_modes": "Modes without friction", "component_modes": "Modes of disc and pins alone",
           "energy": "Where the energy of growing modes enters", "real_eigenvalues": "Eigenvalues that do not oscillate",
           "sliding_pins": "Pins in steady sliding"}
 REPLACED = ("complex_plane",)
-
-
-def is_of(results):
-    return results.has("complex_modes")
 
 
 def verdict(results):
@@ -49,12 +46,10 @@ def damping_section(rows):
     for title, colour, flag in (("does not grow", STABLE, "0"), ("grows", UNSTABLE, "1")):
         own = [row for row in rows if row["unstable [-]"] == flag]
         names = names_apart({i: -number(row[DAMPING]) for i, row in enumerate(own)}, max(ratios) - min(ratios)) if flag == "1" else []
-        traces.append({
-            "type": "scatter", "mode": "markers+text" if flag == "1" else "markers", "name": title, "x": [number(row[FREQUENCY]) for row in own],
-            "y": [number(row[DAMPING]) for row in own], "textposition": "bottom center",
-            "text": [row["label"] if i in names else "" for i, row in enumerate(own)], "customdata": [about(row) for row in own],
-            "hovertemplate": "%{customdata}<extra></extra>",
-            "marker": {"color": colour, "size": 9 if flag == "1" else 7, "symbol": "diamond" if flag == "1" else "circle"}})
+        traces.append(points(title, [number(row[FREQUENCY]) for row in own], [number(row[DAMPING]) for row in own], list(map(about, own)),
+                             mode="markers+text" if flag == "1" else "markers", textposition="bottom center",
+                             text=[row["label"] if i in names else "" for i, row in enumerate(own)],
+                             marker={"color": colour, "size": 9 if flag == "1" else 7, "symbol": "diamond" if flag == "1" else "circle"}))
     line = {"type": "line", "xref": "paper", "x0": 0, "x1": 1, "y0": 0, "y1": 0, "line": {"color": "#444", "width": 1}}
     return {"id": "damping", "title": "Effective damping ratio over frequency", "caption": "Effective damping ratio −2R/ω of every mode; below zero it grows.",
             "data": traces, "layout": layout("frequency [Hz]", "effective damping ratio [%]", shapes=[line])}
@@ -88,8 +83,7 @@ def energy_sections(results):
         data = [{"type": "bar", "name": title, "x": [row["body"] for row in rows], "y": [number(row[column] or "0") for row in rows],
                  "marker": {"color": colour}, "hovertemplate": "%{x}<br>" + title + " %{y:.4g} %<extra></extra>"}
                 for column, title, colour in parts if any(number(row[column] or "0") != 0 for row in rows)]
-        choices.append({"key": mode, "name": f"{rows[0]['label']}, {number(rows[0][FREQUENCY]):.0f} Hz, ξ = {digits(number(rows[0][RATE]), 3)} %",
-                        "data": data, "layout": layout("", "part of the divergence rate [%]", barmode="relative")})
+        choices.append({"key": mode, "name": name_of_mode(rows[0]), "data": data, "layout": layout("", "part of the divergence rate [%]", barmode="relative")})
     return [{"id": "energy", "title": "Where their energy enters", "choices": choices,
              "chosen": max(bodies, key=lambda mode: number(bodies[mode][0][RATE])),
              "caption": "Contributions of friction and damping of each body; they sum to the divergence rate. Mode:"}]

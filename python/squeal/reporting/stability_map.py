@@ -5,16 +5,13 @@
 import math
 
 from squeal.plotting import stability_cells as cells
-from squeal.reporting.charts import FREQUENCY, RATE, digits, layout, number
+from squeal.reporting.charts import FREQUENCY, RATE, digits, layout, number, points
 from squeal.results import axis_title, symbol
 
+TABLES = ("map",)
 TITLES = {"map": "Stability map"}
 REPLACED = ("map",)
 STABLE, UNDECIDED = "#dce9f2", "#b4b4b4"
-
-
-def is_of(results):
-    return results.has("map") and len(results.table("map")) > 0
 
 
 def verdict(results):
@@ -119,8 +116,8 @@ def limit(stability):
     is_unstable = stability.is_unstable
     edges = cells.limits(stability, lambda a, b: is_unstable[a] != is_unstable[b])
     line = [tuple(None if math.isnan(value) else float(value) for value in edge) for edge in edges]
-    return {"type": "scatter", "mode": "lines", "name": "limit of stability", "showlegend": False, "hoverinfo": "skip", "connectgaps": False,
-            "x": [x for x, _ in line], "y": [y for _, y in line], "line": {"color": "#000", "width": 2.6}}
+    return points("limit of stability", [x for x, _ in line], [y for _, y in line], mode="lines", showlegend=False, hoverinfo="skip",
+                  connectgaps=False, line={"color": "#000", "width": 2.6})
 
 
 def names(stability):

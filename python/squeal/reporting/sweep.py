@@ -2,16 +2,13 @@
 
 """The page of a sweep: growth over the friction coefficient, and which modes meet."""
 
-from squeal.reporting.charts import FREQUENCY, PALE, RATE, UNSTABLE, WEAK, digits, end_of_band, layout, names_apart, number, short
+from squeal.reporting.charts import FREQUENCY, PALE, RATE, UNSTABLE, WEAK, digits, end_of_band, layout, names_apart, number, points, short
 from squeal.results import MU, axis_title, symbol
 
+TABLES = ("branches",)
 TITLES = {"onsets": "Where squeal begins", "thresholds": "Where modes begin and cease to grow"}
 REPLACED = ("complex_plane", "overview")
 COLOURS = ("#b2182b", "#2166ac", "#1b7837", "#762a83", "#bf812d", "#01665e", "#c51b7d", "#4d4d4d")
-
-
-def is_of(results):
-    return results.has("branches")
 
 
 def verdict(results):
@@ -63,22 +60,22 @@ def branch_section(results, name, title):
     for branch, rows in branches.items():
         is_named = branch in named
         peak = max(range(len(rows)), key=lambda i: number(rows[i][RATE]))
-        traces.append({
-            "type": "scatter", "mode": "lines+text" if is_named else "lines", "showlegend": False, "name": f"{rows[0]['label']} ({branch})",
-            "x": [short(row[parameter]) for row in rows], "y": [short(row[RATE]) for row in rows],
-            "text": [rows[0]["label"] if is_named and i == peak else "" for i in range(len(rows))], "textposition": "top left",
-            "customdata": [[short(row[FREQUENCY]), row["verdict"], short(row["estimated error of lambda [-]"], 2)] for row in rows],
-            "hovertemplate": f"<b>{rows[0]['label']}</b>" + "<br>" + symbol(parameter) + " = %{x:.4g}<br>%{customdata[0]:.2f} Hz<br>divergence rate %{y:.4g} %<br>"
-                             "%{customdata[1]}, estimated error of λ %{customdata[2]}<extra></extra>",
-            "line": {"color": UNSTABLE if peaks[branch] > WEAK else PALE, "width": 1.8 if peaks[branch] > WEAK else 1}})
+        color, width = (UNSTABLE, 1.8) if peaks[branch] > WEAK else (PALE, 1)
+        traces.append(points(
+            f"{rows[0]['label']} ({branch})", [short(row[parameter]) for row in rows], [short(row[RATE]) for row in rows],
+            [[short(row[FREQUENCY]), row["verdict"], short(row["estimated error of lambda [-]"], 2)] for row in rows],
+            mode="lines+text" if is_named else "lines", showlegend=False, line={"color": color, "width": width}, textposition="top left",
+            text=[rows[0]["label"] if is_named and i == peak else "" for i in range(len(rows))],
+            hovertemplate=f"<b>{rows[0]['label']}</b><br>{symbol(parameter)} = %{{x:.4g}}<br>%{{customdata[0]:.2f}} Hz<br>divergence rate %{{y:.4g}} %"
+                          "<br>%{customdata[1]}, estimated error of λ %{customdata[2]}<extra></extra>"))
     events = results.table(name.replace("branches", "thresholds")).rows if results.has(name.replace("branches", "thresholds")) else []
     for event, marker in (("onset", "triangle-up"), ("restabilisation", "triangle-down")):
         own = [row for row in events if row["event"] == event]
-        traces.append({"type": "scatter", "mode": "markers", "name": event, "x": [number(row[parameter]) for row in own], "y": [0] * len(own),
-                       "customdata": [[row["label"], row["mechanism"], number(row[FREQUENCY]), row["uncertainty [-]"]] for row in own],
-                       "hovertemplate": "<b>%{customdata[0]}</b> " + event + "<br>" + symbol(parameter) + " = %{x:.6g} ± %{customdata[3]}<br>%{customdata[2]:.2f} Hz"
-                                        "<br>%{customdata[1]}<extra></extra>",
-                       "marker": {"symbol": marker, "size": 9, "color": "white", "line": {"color": "#222", "width": 1.3}}})
+        traces.append(points(event, [number(row[parameter]) for row in own], [0] * len(own),
+                             [[row["label"], row["mechanism"], number(row[FREQUENCY]), row["uncertainty [-]"]] for row in own],
+                             hovertemplate=f"<b>%{{customdata[0]}}</b> {event}<br>{symbol(parameter)} = %{{x:.6g}} ± %{{customdata[3]}}<br>"
+                                           "%{customdata[2]:.2f} Hz<br>%{customdata[1]}<extra></extra>",
+                             marker={"symbol": marker, "size": 9, "color": "white", "line": {"color": "#222", "width": 1.3}}))
     return {"id": name, "title": title, "caption": f"Every mode is a curve; red ones reach more than {WEAK} %. Triangles are thresholds.",
             "data": traces, "layout": layout(axis_title(parameter), "divergence rate [%]")}
 
@@ -98,11 +95,11 @@ def bifurcation_sections(results):
         title = f"{event['label']} and {event['partner label']}, {meeting:.1f} Hz"
         for branch in (event["branch [-]"], event["partner [-]"]):
             rows, is_first = branches[branch], branch == event["branch [-]"]
-            traces.append({"type": "scatter", "mode": "lines", "name": title, "legendgroup": group, "showlegend": is_first,
-                           "x": [short(row[parameter]) for row in rows], "y": [short(number(row[FREQUENCY]) - meeting) for row in rows],
-                           "customdata": [[short(row[FREQUENCY]), short(row[RATE], 4)] for row in rows], "line": {"color": colour, "width": 1.6},
-                           "hovertemplate": f"<b>{rows[0]['label']}</b>" + "<br>" + symbol(parameter) + " = %{x:.4g}<br>%{customdata[0]:.2f} Hz"
-                                            "<br>divergence rate %{customdata[1]:.4g} %<extra></extra>"})
+            traces.append(points(title, [short(row[parameter]) for row in rows], [short(number(row[FREQUENCY]) - meeting) for row in rows],
+                                 [[short(row[FREQUENCY]), short(row[RATE], 4)] for row in rows], mode="lines", legendgroup=group,
+                                 showlegend=is_first, line={"color": colour, "width": 1.6},
+                                 hovertemplate=f"<b>{rows[0]['label']}</b><br>{symbol(parameter)} = %{{x:.4g}}<br>%{{customdata[0]:.2f}} Hz"
+                                               "<br>divergence rate %{customdata[1]:.4g} %<extra></extra>"))
     caption = ("Frequencies of two modes less that at which they meet; from there on both have one frequency, and one of them grows. "
                f"The {len(events)} pairs that grow most" + (", without radial dissipation." if "without" in name else "."))
     return [{"id": "bifurcations", "title": "Which modes meet", "caption": caption, "data": traces,

@@ -4,13 +4,9 @@
 
 from squeal.reporting.charts import digits, number
 
+TABLES = ("updated_parameters",)
 TITLES = {"updated_parameters": "Fitted parameters", "fit": "Measured numbers before and after the fit",
           "parameter_correlations": "Correlations of fitted parameters"}
-REPLACED = ()
-
-
-def is_of(results):
-    return results.has("updated_parameters")
 
 
 def verdict(results):
@@ -21,10 +17,6 @@ def verdict(results):
     remark = f" Not determined or at a limit: {', '.join(open_ones)}." if open_ones else ""
     return "none", (f"{counts['fitted parameters']} parameters fitted to {counts['measured numbers']} measured numbers: frequencies differ by "
                     f"{after} % rms ({before} % before).{remark}")
-
-
-def sections(_results):
-    return []
 
 
 def checks(results):
