@@ -44,7 +44,7 @@ def main():
     parser.add_argument("--keep", type=pathlib.Path, metavar="DIR", help="keeps the runs there")
     parser.add_argument("--write", action="store_true", help="writes the rows measured into the table of doc/extremes.md, beside the others that it has")
     arguments = parser.parse_args()
-    known = page.names() if arguments.missing else ()
+    known = page.known_lines() if arguments.missing else ()
     chosen = [case for case in CASES if arguments.only in case.name and (case.quick or not arguments.quick)
               and (case.group, case.value) not in known]
     rows = []

@@ -4,7 +4,7 @@
 
 import dataclasses
 
-from extremes.scaling import scaled
+from extremes.scaling import LENGTHS, scaled
 
 # A pin on each side of a disc of one layer: 780 dofs, 32 modes, one of them unstable
 BASE = """
@@ -72,13 +72,9 @@ NO_MOUNT = "Mounts/Elastic mounts="
 CONSISTENT = "Operation/Radial dissipation=consistent"
 UNRESOLVED = "the mesh does not resolve"
 
-# ------------------------------------------------------------------ friction
-
 for mu in (0, 1e-6, 0.1, 0.4, 1, 2, 3, 5, 10):
     add("friction coefficient", f"{mu:g}", f"Operation/Friction coefficient={mu}", quick=mu == 10)
 add("friction coefficient", "10.1", "Operation/Friction coefficient=10.1", expected="Friction coefficient", quick=True)
-
-# ------------------------------------------------------------------ Poisson's ratio
 
 for element, setting in (("trilinear", ()), ("incompatible modes", ("Discretization/Element=incompatible modes",)), ("quadratic", ("Discretization/Element=quadratic",))):
     for ratio in (-0.9, 0, 0.45, 0.49, 0.499, 0.4999):
@@ -88,8 +84,6 @@ for element, setting in (("trilinear", ()), ("incompatible modes", ("Discretizat
     add(f"Poisson's ratio of disc and pins, {element}", "0.4999", "Pin material/Poisson ratio=0.4999", "Disc material/Poisson ratio=0.4999",
         *setting, argument_count=False)
 add("Poisson's ratio of the pins, trilinear", "0.5", "Pin material/Poisson ratio=0.5", expected="Poisson ratio")
-
-# ------------------------------------------------------------------ materials
 
 for exponent in range(-6, 7):
     ratio = 10.0**exponent
@@ -105,8 +99,6 @@ for exponent in range(-6, 7):
         argument_count=exponent in (-6, 6))
 add("density pin to disc", "1e6, 5 kHz", f"Pin material/Density={1e6 * DISC_DENSITY!r}", expected=UNRESOLVED)
 
-# ------------------------------------------------------------------ shapes
-
 for ratio in (1e-3, 3e-3, 1e-2, 0.03, 0.1, 0.3, 1):
     end = 5000 if ratio > 0.01 else 2000
     add("thickness / radius of the disc", f"{ratio:g}", f"Geometry/Disc thickness={ratio * OUTER_RADIUS!r}", band(end), quick=ratio == 1e-3)
@@ -115,15 +107,11 @@ for ratio in (0.02, 0.05, 0.1, 0.5, 1, 2, 5, 10, 20):
     add("height / diameter of the pins", f"{ratio:g}", f"Geometry/Pin height={ratio * PIN_DIAMETER!r}",
         f"Geometry/Pin layers={max(2, round(2 * ratio))}", band(end), quick=ratio == 20)
 
-# ------------------------------------------------------------------ units of length
-
 for what, options in (("", {}), (", damped", {"damped": True}), (", free disc", {"held": False})):
     for unit, scale in (("micrometres", 1e-6), ("millimetres", 1e-3), ("kilometres", 1e3)):
         add(f"metres taken as{what}", unit, *scaled(scale, **options), scale=scale, unit=scaled(1.0, **options),
             argument_count=False,
             quick=unit != "millimetres" and what == ", damped")
-
-# ------------------------------------------------------------------ mounts and rotation
 
 add("mounts", "none", NO_MOUNT)
 for exponent in (0, 3, 6, 8, 9, 10, 12, 15, 18, 20):
@@ -145,8 +133,6 @@ for load in (0, 1e-6, 1e9):
     add("load, steady sliding [N]", f"{load:g}", CONSISTENT, "Steady sliding/Contact state=steady sliding", f"Operation/Load per side={load!r}",
         expected="the load is zero" if load == 0 else RIGHT)
 
-# ------------------------------------------------------------------ bands
-
 add("end of the band [Hz]", "1", band(1.0), expected="no mode of the coupled system lies in the band", quick=True)
 add("end of the band [Hz]", "400: no mode", band(400.0), expected="no mode of the coupled system lies in the band")
 add("end of the band [Hz]", "440: one mode", band(440.0))
@@ -157,11 +143,7 @@ add("end of the band [Hz]", "12000", band(12000.0))
 add("end of the band [Hz]", "100000", band(1e5), expected=UNRESOLVED)
 add("end of the band [Hz]", "0", band(0.0), expected="Maximum frequency")
 add("end of the band [Hz]", "100000, mesh 20 times smaller",
-    *(f"Geometry/{name}={value / 20!r}" for name, value in (
-        ("Disc inner radius", 0.2), ("Disc outer radius", 0.3155), ("Disc thickness", 0.0463), ("Pin diameter", 0.052),
-        ("Pin height", 0.0318), ("Element size", 0.0577), ("Top pin radii", 0.257), ("Bottom pin radii", 0.257))), band(1e5))
-
-# ------------------------------------------------------------------ layouts and meshes
+    *(f"Geometry/{name}={value / 20!r}" for name, value in LENGTHS.items() if name != "Pairing tolerance"), band(1e5))
 
 add("layout", "one pin", *pins([0.257], [0], sides=("Top",)))
 add("layout", "three pins, one side only", *pins([0.257] * 3, [-20, 0, 20], sides=("Top",)))
@@ -174,8 +156,6 @@ add("mesh", "too coarse: 0.058 m", "Geometry/Element size=0.058", expected="Elem
 add("mesh", "fine: 61 nodes per pin, 0.02 m", "Geometry/Nodes per pin face=61", "Geometry/Element size=0.02", "Geometry/Disc layers=2",
     "Geometry/Pin layers=6")
 
-# ------------------------------------------------------------------ damping
-
 for beta in (1e-9, 1e-6, 2.6e-5):
     add("Rayleigh beta [s]", f"{beta:g}", f"Disc material/Rayleigh beta={beta!r}", f"Pin material/Rayleigh beta={beta!r}", quick=beta == 2.6e-5)
 for beta in (1e-4, 1e9):
@@ -186,8 +166,6 @@ for alpha in (1, 1e3, 1e4, 3e4, 1e5, 1e9):
 for slope in (-10, 10):
     add("friction slope [s/m]", f"{slope:g}", f"Operation/Friction slope={slope}")
 
-# ------------------------------------------------------------------ contact nodes that nearly coincide
-
 for diameter in (1e-3, 1e-4, 1e-5, 1e-6, 1e-8):
     add("pins of diameter [m]", f"{diameter:g}", f"Geometry/Pin diameter={diameter!r}", f"Geometry/Pin height={diameter!r}")
 for tolerance in (0.1, 0.0):
@@ -196,8 +174,6 @@ for tolerance in (0.1, 0.0):
 for angle, gap in ((11.7, "4e-4"), (11.615, "1e-5")):
     add("gap of two pins [m]", gap, *pins([0.257] * 2, [0, angle]))
 add("gap of two pins [m]", "overlap", *pins([0.257] * 2, [0, 11.5]), expected="pins")
-
-# ------------------------------------------------------------------ a free body
 
 add("free disc", "friction", NO_MOUNT)
 add("free disc", "soft pins", NO_MOUNT, "Pin material/Young modulus=1.9e7", band(500.0))

@@ -2,44 +2,29 @@
 
 """The table of doc/extremes.md."""
 
+import dataclasses
 import pathlib
+import re
 
 PAGE = pathlib.Path(__file__).resolve().parents[2] / "doc" / "extremes.md"
 BEGIN, END = "<!-- cases -->", "<!-- end of cases -->"
-COLUMNS = ("case", "value", "outcome", "modes", "residual", "count", "oracle", "deviation", "digits", "remark")
+COLUMNS = ("case", "value", "outcome", "modes", "residual", "count", "oracle", "deviation", "digits", "remark")  # of judge.Row
 HEAD = "| " + " | ".join(COLUMNS) + " |\n" + "|---" * len(COLUMNS) + "|"
 
 
 def line(row):
-    cells = (row.group, row.value, row.outcome, row.modes, row.residual, row.count, row.oracle, row.deviation, row.digits, row.remark)
-    return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
+    return "| " + " | ".join(cell.replace("|", "\\|") for cell in dataclasses.astuple(row)) + " |"
+
+
+def known_lines():
+    """Lines of the table by group and value of their cases."""
+    table = PAGE.read_text(encoding="utf-8").split(BEGIN)[1].split(END)[0]
+    return {tuple(cell.strip() for cell in text.strip("| ").split(" | ")[:2]): text for text in table.strip().splitlines()[2:]}
 
 
 def write(rows, order):
     """Rows that were measured replace those of their cases; the other rows stay. Cases that `order` does not name are left out."""
-    text = PAGE.read_text(encoding="utf-8")
-    before, rest = text.split(BEGIN)
-    table, after = rest.split(END)
-    lines = {name_of(text): text for text in table.strip().splitlines()[2:]}
-    lines.update({(row.group, row.value): line(row) for row in rows})
+    lines = {**known_lines(), **{(row.group, row.value): line(row) for row in rows}}
+    before, after = re.split(f"{BEGIN}.*{END}", PAGE.read_text(encoding="utf-8"), flags=re.DOTALL)
     table = "\n".join([HEAD, *(lines[name] for name in order if name in lines)])
     PAGE.write_text(f"{before}{BEGIN}\n{table}\n{END}{after}", encoding="utf-8")
-
-
-def cases_of_page():
-    """Cells of each row of the table as a list."""
-    table = PAGE.read_text(encoding="utf-8").split(BEGIN)[1].split(END)[0]
-    return [cells_of(text) for text in table.strip().splitlines()[2:]]
-
-
-def names():
-    """Group and value of the cases in the table."""
-    return {tuple(cells[:2]) for cells in cases_of_page()}
-
-
-def cells_of(text):
-    return [cell.strip() for cell in text.strip("| ").split(" | ")]
-
-
-def name_of(text):
-    return tuple(cells_of(text)[:2])
