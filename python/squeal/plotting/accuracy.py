@@ -3,7 +3,7 @@
 """What accuracy costs: errors of meshes, elements and bases over time."""
 
 from squeal.plotting import style
-from squeal.plotting.reduction import in_order, pareto_front
+from squeal.plotting.reduction import pareto_front
 
 FULL_ORDER = "full order"
 KINDS = ("discretisation", "reduction", "algebraic")
@@ -24,16 +24,10 @@ class Solution:
         self.errors = {column: max(float(row[column]), FLOOR) for column in row if column.endswith((FREQUENCY, DIVERGENCE))}
 
 
-def draw_front(panel, solutions, column):
-    front = pareto_front((solution.seconds, solution.errors[column]) for solution in solutions if solution.is_complete)
-    if front:
-        panel.plot(*zip(*front), color=style.GREY, linewidth=1.6, label="Pareto front of those with all modes", zorder=1)
-
-
 def cost_figure(solutions):
     """A panel for frequencies and one for divergence rates; a line from mesh to mesh for each family at full order."""
     picture = style.Picture("What accuracy costs", 2, 2, (5.6, 4.4))
-    families = in_order(solution.family for solution in solutions)
+    families = dict.fromkeys(solution.family for solution in solutions)
     for panel, column in zip(picture.panels, (FREQUENCY, DIVERGENCE)):
         style.prepare(panel, "", TIME, TITLES[column])
         if all(solution.errors[column] <= FLOOR for solution in solutions):
@@ -41,24 +35,21 @@ def cost_figure(solutions):
             panel.set_xticks([])
             panel.set_yticks([])
             continue
-        draw_front(panel, solutions, column)
+        front = pareto_front((solution.seconds, solution.errors[column]) for solution in solutions if solution.is_complete)
+        style.draw_points(panel, front, linestyle="-", color=style.GREY, linewidth=1.6, label="Pareto front of those with all modes", zorder=1)
         for number, family in enumerate(families):
             look = style.mark_of(number)
             own = sorted((s for s in solutions if s.family == family), key=lambda solution: solution.seconds)
-            full = [(s.seconds, s.errors[column]) for s in own if s.method == FULL_ORDER]
-            reduced = [(s.seconds, s.errors[column]) for s in own if s.method != FULL_ORDER]
-            if full:
-                panel.plot(*zip(*full), linestyle=":", linewidth=1, label=f"{family}, {FULL_ORDER}", markersize=6, **look)
-            if reduced:
-                panel.plot(*zip(*reduced), linestyle="none", label=f"{family}, reduced", markersize=6,
-                           **{**look, "markerfacecolor": "white"})
+            full, reduced = ([(s.seconds, s.errors[column]) for s in own if (s.method == FULL_ORDER) == is_full] for is_full in (True, False))
+            style.draw_points(panel, full, linestyle=":", linewidth=1, label=f"{family}, {FULL_ORDER}", markersize=6, **look)
+            style.draw_points(panel, reduced, label=f"{family}, reduced", markersize=6, **{**look, "markerfacecolor": "white"})
         style.cost_axes(panel, [solution.seconds for solution in solutions])
     return picture.add_key()
 
 
 def kind_figure(solutions):
     """A panel for each method and quantity, one mark for each kind of error of every mesh; rounding errors are left out."""
-    methods = in_order(solution.method for solution in solutions)
+    methods = list(dict.fromkeys(solution.method for solution in solutions))
     picture = style.Picture("Errors by their kinds", 2 * len(methods), len(methods), (4.4, 3.6))
     panels = iter(picture.panels)
     for column in (FREQUENCY, DIVERGENCE):
@@ -68,16 +59,12 @@ def kind_figure(solutions):
             own = [solution for solution in solutions if solution.method == method]
             for number, kind in enumerate(KINDS):
                 points = [(solution.seconds, solution.errors[f"{kind} {column}"]) for solution in own]
-                points = [(seconds, error) for seconds, error in points if error > FLOOR]
-                if points:
-                    panel.plot(*zip(*points), linestyle="none", label=kind, markersize=6, **style.mark_of(number))
+                style.draw_points(panel, [point for point in points if point[1] > FLOOR], label=kind, markersize=6, **style.mark_of(number))
             style.cost_axes(panel, [solution.seconds for solution in own])
     return picture.add_key()
 
 
 def figures(results):
     """Of a study of accuracy."""
-    if not results.has("accuracy"):
-        return {}
     solutions = [Solution(row) for row in results.table("accuracy").rows]
     return {"accuracy": cost_figure(solutions), "accuracy_kinds": kind_figure(solutions)}

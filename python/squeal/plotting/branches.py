@@ -18,63 +18,44 @@ WIDTHS, GROWING_WIDTHS = (0.9, 1.5), (2.4, 4.2)  # [points]
 EVENTS = {"onset": "^", "restabilisation": "v"}
 
 
-class Curves:
-    """Branches of a chart with what grows of them, as lines of one quantity broken by NaN."""
-
-    def __init__(self, chart, branches, quantity):
-        self.all, self.growing = [], []
-        for branch in branches:
-            points = chart.curve(branch)
-            for k, point in enumerate(points):
-                if not point.is_shown:
-                    self.end(self.all)
-                    self.end(self.growing)
-                    continue
-                place = point.mu, getattr(point, quantity)
-                self.all.append(place)
-                # From the threshold to the threshold, which are neutral points beside growing ones
-                reaches_here = point.grows or (k > 0 and points[k - 1].grows)
-                leaves_here = k + 1 < len(points) and points[k + 1].grows
-                if reaches_here or leaves_here:
-                    self.growing.append(place)
-                if not point.grows and not leaves_here:
-                    self.end(self.growing)
-            self.end(self.all)
-            self.end(self.growing)
-
-    @staticmethod
-    def end(line):
-        if line and not math.isnan(line[-1][0]):
-            line.append((math.nan, math.nan))
+BREAK = (math.nan, math.nan)
 
 
-def titles_of(all_charts):
-    return list(dict.fromkeys(chart.title for chart in all_charts))
+def lines_of(chart, branches, quantity):
+    """All points of branches, and those that grow with the thresholds beside them, as lines broken by NaN; none without points."""
+    everything, growing = [], []
+    for branch in branches:
+        points = chart.curve(branch)
+        for before, point, after in zip([None, *points], points, [*points[1:], None]):
+            place = (point.mu, getattr(point, quantity)) if point.is_shown else BREAK
+            everything.append(place)
+            is_near = any(one and one.grows for one in (before, point, after))
+            growing.append(place if is_near else BREAK)
+            if not point.grows and not (after and after.grows):
+                growing.append(BREAK)
+        everything.append(BREAK)
+        growing.append(BREAK)
+    return [[place for before, place in zip([BREAK, *line], line) if not before is place is BREAK] for line in (everything, growing)]
 
 
 def draw_curves(panel, all_charts, chosen, quantity, width):
     """Chosen branches of each chart, their growing parts and their thresholds."""
-    titles = titles_of(all_charts)
+    titles = list(dict.fromkeys(chart.title for chart in all_charts))
     for chart, branches in zip(all_charts, chosen):
         number = titles.index(chart.title)
-        curves = Curves(chart, branches, quantity)
         # A line needs two points
         marks = {"marker": "o", "markersize": 4} if len(chart.mus) == 1 else {}
-        layer = 4 - number
-        if curves.all:
-            panel.plot(*zip(*curves.all), label=chart.title, linewidth=WIDTHS[number] * width, zorder=layer, **LOOKS[number], **marks)
-        if curves.growing:
-            panel.plot(*zip(*curves.growing), label="growing, " + chart.title, linewidth=GROWING_WIDTHS[number] * width,
-                       zorder=layer + 0.5, **GROWING_LOOKS[number], **marks)
+        everything, growing = lines_of(chart, branches, quantity)
+        style.draw_points(panel, everything, label=chart.title, linewidth=WIDTHS[number] * width, zorder=4 - number, **LOOKS[number], **marks)
+        style.draw_points(panel, growing, label="growing, " + chart.title, linewidth=GROWING_WIDTHS[number] * width, zorder=4.5 - number,
+                          **GROWING_LOOKS[number], **marks)
     for chart, branches in zip(all_charts, chosen):
         number = titles.index(chart.title)
         for event, marker in EVENTS.items():
             places = [(threshold.mu, threshold.frequency if quantity == "frequency" else 0.0)
                       for threshold in chart.thresholds if threshold.event == event and threshold.branch in branches]
-            if places:
-                panel.plot(*zip(*places), linestyle="none", marker=marker, markersize=5.5 * width, color=LOOKS[number]["color"],
-                           markerfacecolor="white", zorder=7 - number,
-                           label=event + (", " + chart.title if len(titles) > 1 else ""))
+            style.draw_points(panel, places, marker=marker, markersize=5.5 * width, color=LOOKS[number]["color"], markerfacecolor="white",
+                              zorder=7 - number, label=event + (", " + chart.title if len(titles) > 1 else ""))
 
 
 def add_names(panel, chart, branches):
@@ -184,8 +165,6 @@ def overview_figure(all_charts, band_end):
 def figures(results):
     """Of a sweep."""
     all_charts = charts.read_charts(results)
-    if not all_charts:
-        return {}
     band_end = results.number("Band/Maximum frequency")
     return {**family_figures(all_charts), "complex_plane": complex_plane.sweep_figure(results, all_charts, band_end),
             "overview": overview_figure(all_charts, band_end)}

@@ -91,20 +91,17 @@ class Plane:
         for number, (one, look) in enumerate(zip(self.series, looks)):
             inside = [self.place(mode) for mode in one.modes if mode.divergence >= self.edge]
             faster = [self.place(mode) for mode in one.modes if mode.divergence < self.edge]
-            if inside:
-                self.panel.plot(*zip(*inside), linestyle="none", label=one.title, zorder=4 - number, **look)
-            if faster:
-                self.panel.plot(*zip(*faster), linestyle="none", label="faster decay, " + one.title, zorder=4 - number, color=look["color"],
-                                marker="v", markersize=6, clip_on=False)
+            style.draw_points(self.panel, inside, label=one.title, zorder=4 - number, **look)
+            style.draw_points(self.panel, faster, label="faster decay, " + one.title, zorder=4 - number, color=look["color"], marker="v",
+                              markersize=6, clip_on=False)
 
     def draw_marks(self):
         """Rings about growing modes, squares about undecided ones."""
         growing = [self.place(mode) for one in self.series for mode in one.modes if mode.grows and not mode.is_undecided]
         undecided = [self.place(mode) for one in self.series for mode in one.modes if mode.is_undecided]
         for places, label, marker, colour in ((growing, "growing", "o", style.VERMILLION), (undecided, "undecided", "s", style.BLUE)):
-            if places:
-                self.panel.plot(*zip(*places), linestyle="none", label=label, marker=marker, markersize=9, markerfacecolor="none",
-                                color=colour, markeredgewidth=1.3, zorder=5)
+            style.draw_points(self.panel, places, label=label, marker=marker, markersize=9, markerfacecolor="none", color=colour,
+                              markeredgewidth=1.3, zorder=5)
 
     def draw_names(self):
         """Names of growing modes, where there is room, those that grow most first."""
@@ -198,6 +195,4 @@ def run_figure(results):
 
 def figures(results):
     """Of a run at one friction coefficient."""
-    if not results.has("complex_modes"):
-        return {}
     return {"complex_plane": run_figure(results)}

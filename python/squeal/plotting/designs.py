@@ -12,8 +12,6 @@ MOST_VARIABLES, MOST_LABELS = 8, 10
 
 def figures(results):
     """Of a study of designs."""
-    if not results.has("designs"):
-        return {}
     table = results.table("designs")
     variables = variables_of(table)[:MOST_VARIABLES]
     solved = [outcome == "solved" for outcome in table.texts("outcome")]

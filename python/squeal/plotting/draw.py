@@ -2,6 +2,7 @@
 
 """Draws all plots of a run."""
 
+import importlib
 import io
 
 from squeal.errors import Error
@@ -11,13 +12,18 @@ DOTS_PER_INCH = 150
 UNDATED = {"svg": {"Date": None}, "png": {}, "pdf": {"CreationDate": None}}
 
 
+# Files that draw plots, and the table that a run needs for them
+PLOTS = {"complex_plane": "complex_modes", "branches": "branches", "stability_map": "map", "reduction": "reduction_errors",
+         "ingredients": "ingredients", "sensitivity": "sensitivities", "accuracy": "accuracy", "designs": "designs",
+         "robustness": "sample_modes", "robust_search": "best_design", "updating": "fit"}
+
+
 def figures(results):
     """All figures of a run by their names. Throws Error if its tables give none."""
-    from squeal.plotting import accuracy, branches, complex_plane, designs, ingredients, reduction, robust_search, robustness, sensitivity, stability_map, updating
-
     found = {}
-    for plots in (complex_plane, branches, stability_map, reduction, ingredients, sensitivity, accuracy, designs, robustness, robust_search, updating):
-        found.update(plots.figures(results))
+    for name, table in PLOTS.items():
+        if results.has(table):
+            found.update(importlib.import_module(f"squeal.plotting.{name}").figures(results))
     if not found:
         raise Error("no table is there of which a plot is known", f"folder {results.folder}", "run squeal again")
     return found

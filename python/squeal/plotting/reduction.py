@@ -36,11 +36,6 @@ def read_candidates(results):
     return list(candidates.values())
 
 
-def in_order(values):
-    """Every value once, in the order in which they come."""
-    return list(dict.fromkeys(values))
-
-
 def draw_floor(panel, values):
     """A line at the floor if something lies on it."""
     if any(value <= FLOOR for value in values):
@@ -69,9 +64,9 @@ def draw_errors(panel, candidates, names, group, criteria):
 
 def error_figure(candidates):
     """A panel for each group of modes and each truncation of the component modes."""
-    truncations = in_order(candidate.truncation for candidate in candidates if candidate.truncation) or [""]
-    groups = in_order(group for candidate in candidates for group in candidate.errors)
-    names = in_order(candidate.name for candidate in candidates)
+    truncations = list(dict.fromkeys(candidate.truncation for candidate in candidates if candidate.truncation)) or [""]
+    groups = list(dict.fromkeys(group for candidate in candidates for group in candidate.errors))
+    names = list(dict.fromkeys(candidate.name for candidate in candidates))
     # Where nothing grows there is no error of growth
     criteria = [column for column in CRITERIA if any(candidate.largest(column) > 0 for candidate in candidates)]
     title = "Errors of reduced bases: largest of each group of modes"
@@ -122,8 +117,6 @@ def cost_figure(candidates, with_friction):
 
 def figures(results):
     """Of a study of reduced bases."""
-    if not results.has("reduction_errors"):
-        return {}
     candidates = read_candidates(results)
     return {"reduction_errors": error_figure(candidates),
             "reduction_cost": cost_figure(candidates, results.parameter("Reduction/Problem") == "friction")}

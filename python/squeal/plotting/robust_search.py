@@ -8,8 +8,6 @@ MOST_VARIABLES = 5
 
 
 def figures(results):
-    if not results.has("best_design"):
-        return {}
     table = results.table("search")
     goal = table.columns[-2]
     variables = table.columns[2:table.columns.index("probability of squeal [%]")][:MOST_VARIABLES]

@@ -13,8 +13,6 @@ N_BINS, MOST_SCATTERS = 30, 4
 
 def figures(results):
     """Of a study of uncertain parameters."""
-    if not results.has("sample_modes"):
-        return {}
     modes, samples = results.table("sample_modes"), results.table("samples")
     indices = results.table("sobol_indices").rows if results.has("sobol_indices") else []
     indices = [row for row in indices if row["quantity"] == "largest divergence rate"]

@@ -12,8 +12,6 @@ CHANGE = "divergence rate per 1 % [percentage points]"
 
 def figures(results):
     """Of a study of sensitivities."""
-    if not results.has("sensitivities"):
-        return {}
     table = results.table("sensitivities")
     columns = [table.texts(name) for name in ("mode [-]", "label", "parameter", "body")]
     rows = [row for row in zip(*columns, table.numbers("frequency [Hz]"), table.numbers("divergence rate [%]"), table.numbers(CHANGE))

@@ -39,8 +39,7 @@ def draw_limits(panel, stability, with_leaders):
         lines.insert(0, ("change of the most unstable mode", {"linewidth": 0.9},
                          lambda a, b: is_unstable[a] and is_unstable[b] and leader[a] != leader[b]))
     for label, look, differ in lines:
-        if edges := limits(stability, differ):
-            panel.plot(*zip(*edges), color=style.BLACK, label=label, **look)
+        style.draw_points(panel, limits(stability, differ), color=style.BLACK, label=label, **{"linestyle": "-", **look})
 
 
 def draw_leaders(panel, stability):
@@ -104,4 +103,4 @@ def map_figure(table):
 
 def figures(results):
     """Of a sweep with a map."""
-    return {"map": map_figure(results.table("map"))} if results.has("map") and len(results.table("map")) > 0 else {}
+    return {"map": map_figure(results.table("map"))}

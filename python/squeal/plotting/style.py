@@ -83,6 +83,12 @@ def prepare(panel, title, x_label, y_label):
         panel.spines[side].set_visible(False)
 
 
+def draw_points(panel, points, **look):
+    """Marks at points, or a line through them, if there are any."""
+    if points:
+        panel.plot(*zip(*points), **{"linestyle": "none", **look})
+
+
 def zero_line(panel):
     panel.axhline(0, color="#555555", linewidth=0.9, zorder=1, gid="zero")
 
