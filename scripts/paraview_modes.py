@@ -92,27 +92,20 @@ def parsed():
     return arguments
 
 
-def write_energy_pictures(simple, numbers, rows, files, titles, arguments):
-    """Of the modes chosen, or of all that grow and have shapes."""
-    growing = [number for number in numbers or sorted(files) if rows[number - 1]["unstable [-]"] == "1"]
-    if not growing or set(numbers) - set(growing):
+def write_pictures(simple, results, numbers, rows, files, titles, arguments):
+    """Of the modes chosen, or of all that have shapes; with the view `energy` only of growing ones."""
+    shows_energy = arguments.view == "energy"
+    shown = [number for number in numbers or sorted(files) if not shows_energy or rows[number - 1]["unstable [-]"] == "1"]
+    if shows_energy and (not shown or set(numbers) - set(shown)):
         raise Error("--view energy is of growing modes" + ("" if numbers else ", and none grows"), "--mode", "name one that grows")
     arguments.pictures.mkdir(parents=True, exist_ok=True)
-    for number in growing:
-        path = arguments.pictures / f"{files[number].stem}_energy.png"
-        scene_of_energy(simple, files[number], titles[number], arguments).save(path)
+    scene, times = (None, {}) if shows_energy else scene_of_all(simple, results, titles, files, arguments)
+    for number in shown:
+        path = arguments.pictures / f"{files[number].stem}{'_energy' if shows_energy else ''}.png"
+        (scene or scene_of_energy(simple, files[number], titles[number], arguments)).save(path, times.get(number))
         print(path)
-        simple.ResetSession()
-
-
-def write_pictures(simple, results, numbers, files, titles, arguments):
-    """Of the modes chosen, or of all that have shapes."""
-    scene, times = scene_of_all(simple, results, titles, files, arguments)
-    arguments.pictures.mkdir(parents=True, exist_ok=True)
-    for number in numbers or sorted(files):
-        path = arguments.pictures / f"{files[number].stem}.png"
-        scene.save(path, times[number])
-        print(path)
+        if shows_energy:
+            simple.ResetSession()
 
 
 def write_session_and_film(simple, results, numbers, rows, files, titles, arguments):
@@ -145,10 +138,7 @@ def main():
     if arguments.state or arguments.film:
         write_session_and_film(simple, results, numbers, rows, files, titles, arguments)
     if arguments.pictures:
-        if arguments.view == "energy":
-            write_energy_pictures(simple, numbers, rows, files, titles, arguments)
-        else:
-            write_pictures(simple, results, numbers, files, titles, arguments)
+        write_pictures(simple, results, numbers, rows, files, titles, arguments)
 
 
 if __name__ == "__main__":

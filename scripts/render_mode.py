@@ -88,14 +88,35 @@ def common_limits(colours):
     return nice_range(np.append(values, -values) if any(one.map is TWO_SIGNS for one in colours) else values)
 
 
-def polygons_of(points, corners):
-    """VTK's lines or faces between points, by the numbers of their corners."""
-    cells, vertices, result = vtk.vtkCellArray(), vtk.vtkPoints(), vtk.vtkPolyData()
-    cells.SetData(corners.shape[1], numpy_to_vtkIdTypeArray(np.ascontiguousarray(corners, dtype=np.int64).ravel(), deep=True))
+def polygons_of(points, corners=None):
+    """VTK's lines or faces between points, by the numbers of their corners; the points alone without corners."""
+    vertices, result = vtk.vtkPoints(), vtk.vtkPolyData()
     vertices.SetData(numpy_to_vtk(np.ascontiguousarray(points), deep=True))
     result.SetPoints(vertices)
-    (result.SetLines if corners.shape[1] == 2 else result.SetPolys)(cells)
+    if corners is not None:
+        cells = vtk.vtkCellArray()
+        cells.SetData(corners.shape[1], numpy_to_vtkIdTypeArray(np.ascontiguousarray(corners, dtype=np.int64).ravel(), deep=True))
+        (result.SetLines if corners.shape[1] == 2 else result.SetPolys)(cells)
     return result
+
+
+def set_scalars(data, values):
+    data.GetPointData().SetScalars(numpy_to_vtk(np.ascontiguousarray(values, dtype=float), deep=True))
+
+
+def actor_of(mapper, colour, **properties):
+    """Coloured as given, or by a table; properties as VTK names them."""
+    actor = vtk.vtkActor()
+    actor.SetMapper(mapper)
+    if isinstance(colour, vtk.vtkLookupTable):
+        mapper.SetLookupTable(colour)
+        mapper.UseLookupTableScalarRangeOn()
+    else:
+        mapper.ScalarVisibilityOff()
+        actor.GetProperty().SetColor(*colour)
+    for name, value in properties.items():
+        getattr(actor.GetProperty(), f"Set{name}")(value)
+    return actor
 
 
 def line_actor(points, ends, colour, width, opacity):
@@ -103,13 +124,7 @@ def line_actor(points, ends, colour, width, opacity):
     mapper.SetInputData(polygons_of(points, ends))
     mapper.SetResolveCoincidentTopologyToPolygonOffset()
     mapper.SetRelativeCoincidentTopologyLineOffsetParameters(-2, -2)
-    actor = vtk.vtkActor()
-    actor.SetMapper(mapper)
-    actor.GetProperty().SetColor(*colour)
-    actor.GetProperty().SetLineWidth(width * OVERSAMPLING)
-    actor.GetProperty().SetOpacity(opacity)
-    actor.GetProperty().LightingOff()
-    return actor
+    return actor_of(mapper, colour, LineWidth=width * OVERSAMPLING, Opacity=opacity, Lighting=False)
 
 
 def colour_table(scale):
@@ -122,19 +137,16 @@ def colour_table(scale):
     return table
 
 
-def sphere_actor(points, radius):
-    """Spheres of a radius at points, and their data, to be coloured."""
-    vertices, data, sphere, mapper, actor = vtk.vtkPoints(), vtk.vtkPolyData(), vtk.vtkSphereSource(), vtk.vtkGlyph3DMapper(), vtk.vtkActor()
-    vertices.SetData(numpy_to_vtk(np.ascontiguousarray(points), deep=True))
-    data.SetPoints(vertices)
+def sphere_actor(data, radius, colour):
+    """Spheres at points."""
+    sphere, mapper = vtk.vtkSphereSource(), vtk.vtkGlyph3DMapper()
     sphere.SetRadius(radius)
     sphere.SetThetaResolution(12)
     sphere.SetPhiResolution(8)
     mapper.SetInputData(data)
     mapper.SetSourceConnection(sphere.GetOutputPort())
     mapper.ScalingOff()
-    actor.SetMapper(mapper)
-    return actor, data
+    return actor_of(mapper, colour)
 
 
 class Mode:
@@ -180,26 +192,19 @@ class Mode:
         if len(self.faces) == 0:
             return self.point_actors(table)
         deformed, sharp = self.points + self.scale * self.displacement, sharp_edges(self.points, self.faces)
-        polygons, colours = polygons_of(deformed, self.faces), numpy_to_vtk(np.ascontiguousarray(self.colours.values, dtype=float), deep=True)
-        polygons.GetPointData().SetScalars(colours)
+        polygons = polygons_of(deformed, self.faces)
+        set_scalars(polygons, self.colours.values)
         normals = vtk.vtkPolyDataNormals()
         normals.SetInputData(polygons)
         normals.SetFeatureAngle(50)
         normals.SplittingOn()
         mapper = vtk.vtkPolyDataMapper()
         mapper.SetInputConnection(normals.GetOutputPort())
-        mapper.SetLookupTable(table)
-        mapper.UseLookupTableScalarRangeOn()
         # A phase jumps from 180 to -180 degrees, between which its colours do not jump.
         mapper.SetInterpolateScalarsBeforeMapping(self.colours.map is not PHASE)
         mapper.SetResolveCoincidentTopologyToPolygonOffset()
-        surface = vtk.vtkActor()
-        surface.SetMapper(mapper)
-        surface.GetProperty().SetAmbient(0.42)
-        surface.GetProperty().SetDiffuse(0.62)
-        surface.GetProperty().SetSpecular(0.08)
-        surface.GetProperty().SetSpecularPower(20)
-        return [surface, line_actor(deformed, self.edges, INK, 0.6, FAINT if len(self.edges) > MANY_EDGES else CLEAR),
+        return [actor_of(mapper, table, Ambient=0.42, Diffuse=0.62, Specular=0.08, SpecularPower=20),
+                line_actor(deformed, self.edges, INK, 0.6, FAINT if len(self.edges) > MANY_EDGES else CLEAR),
                 line_actor(deformed, sharp, INK, 1.3, 0.9), line_actor(self.points, sharp, GREY, 1.0, 0.55)]
 
     def point_actors(self, table):
@@ -207,14 +212,10 @@ class Mode:
         distances, _ = cKDTree(self.points[self.used]).query(self.points[self.used], k=2)
         spacing = np.median(distances[np.isfinite(distances).all(axis=1), 1]) if len(self.used) > 1 else 0.0
         spacing = spacing or 0.02 * (np.ptp(self.points[self.used], axis=0).max() or 1.0)
-        moved, data = sphere_actor((self.points + self.scale * self.displacement)[self.used], POINT_RADIUS * spacing)
-        data.GetPointData().SetScalars(numpy_to_vtk(np.ascontiguousarray(self.colours.values[self.used], dtype=float), deep=True))
-        moved.GetMapper().SetLookupTable(table)
-        moved.GetMapper().UseLookupTableScalarRangeOn()
-        still, _ = sphere_actor(self.points[self.used], 0.4 * POINT_RADIUS * spacing)
-        still.GetMapper().ScalarVisibilityOff()
-        still.GetProperty().SetColor(*GREY)
-        return [moved, still]
+        moved = polygons_of((self.points + self.scale * self.displacement)[self.used])
+        set_scalars(moved, self.colours.values[self.used])
+        return [sphere_actor(moved, POINT_RADIUS * spacing, table),
+                sphere_actor(polygons_of(self.points[self.used]), 0.4 * POINT_RADIUS * spacing, GREY)]
 
     def draw(self, page, place, view):
         """Draws the mode into a place of a page: left, bottom, right and top."""
