@@ -7,7 +7,7 @@
 
 The verdict comes first, then charts, growing modes that move and turn, where their energy enters, tables that sort, what was checked, and how to
 repeat the run. The file is RESULTS/report.html, which goes into the list of files in RESULTS/run.json, so that a rerun replaces it; one
-that -o names goes into no list. Needs Debian's python3-plotly, libjs-three, libjs-jquery, libjs-jquery-datatables and python3-numpy
+that -o names goes into no list. Needs Debian's python3-plotly, libjs-three, libjs-jquery, libjs-jquery-datatables and python3-scipy
 (scripts/setup.sh).
 """
 

@@ -135,10 +135,9 @@ def family_picture(all_charts, names):
 
 
 def set_friction_range(panels, all_charts):
-    first, last = charts.friction_range(all_charts)
-    for panel in panels:
-        if first < last:
-            panel.set_xlim(first, last)
+    mus = [mu for chart in all_charts for mu in chart.mus]
+    for panel in panels if min(mus) < max(mus) else ():
+        panel.set_xlim(min(mus), max(mus))
 
 
 def family_figures(all_charts):

@@ -101,9 +101,3 @@ def read_charts(results):
             tables = [results.table(table + suffix) for table in ("branches", "thresholds", "counts")]
             charts.append(((not is_bare, stretch), Chart(WITHOUT if is_bare else WITH, *tables, band_end)))
     return [chart for _, chart in sorted(charts, key=lambda entry: entry[0])]
-
-
-def friction_range(charts):
-    """The first and the last friction coefficient of all charts."""
-    mus = [mu for chart in charts for mu in chart.mus]
-    return min(mus), max(mus)

@@ -160,15 +160,11 @@ def sweep_figure(results, all_charts, band_end):
     return picture.add_key()
 
 
-def modes_of_run(table):
-    columns = (table.texts("label"), table.numbers("frequency [Hz]"), table.numbers("divergence rate [%]"), table.flags("unstable [-]"))
-    return [charts.Mode(*row, False) for row in zip(*columns)]
-
-
 def series_of_run(results):
     """Modes of a run at one friction coefficient."""
-    title = charts.WITHOUT if results.parameter("Operation/Radial dissipation") == "none" else charts.WITH
-    return Series(title, modes_of_run(results.table("complex_modes")))
+    title, table = charts.WITHOUT if results.parameter("Operation/Radial dissipation") == "none" else charts.WITH, results.table("complex_modes")
+    columns = (table.texts("label"), table.numbers("frequency [Hz]"), table.numbers("divergence rate [%]"), table.flags("unstable [-]"))
+    return Series(title, [charts.Mode(*row, False) for row in zip(*columns)])
 
 
 def paper_figure(without, damped):

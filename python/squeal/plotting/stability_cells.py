@@ -2,10 +2,10 @@
 
 """The cells of a stability map: their edges, limits between them, regions of one leading mode and places for its name."""
 
-import collections
 import math
 
 import numpy as np
+import scipy.ndimage
 
 ISOLATED = 0.05  # half-width of the cell of a value without neighbours
 WIDE = 1e4  # ratio of the ends of a logarithmic axis from which on only powers of ten are named
@@ -95,19 +95,10 @@ def limits(stability, differ):
 
 def regions(stability):
     """Connected unstable cells with the same most unstable mode."""
-    left = {cell for cell in stability.cells() if stability.is_unstable[cell] and stability.leader[cell]}
-    while left:
-        queue = collections.deque([min(left)])
-        left.remove(queue[0])
-        region = []
-        while queue:
-            row, column = queue.popleft()
-            region.append((row, column))
-            for other in ((row - 1, column), (row + 1, column), (row, column - 1), (row, column + 1)):
-                if other in left and stability.leader[other] == stability.leader[row, column]:
-                    left.remove(other)
-                    queue.append(other)
-        yield region
+    for name in sorted(set(stability.leader[stability.is_unstable]) - {""}):
+        numbers, n_regions = scipy.ndimage.label(stability.is_unstable & (stability.leader == name))
+        for number in range(1, n_regions + 1):
+            yield [(int(row), int(column)) for row, column in np.argwhere(numbers == number)]
 
 
 def place_of_name(region, shape, length):
