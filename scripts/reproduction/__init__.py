@@ -3,7 +3,8 @@
 """The numbers that the pages quote: for each sentence the runs it needs, and what is to be read from them.
 
 A page has a module of its name here. An entry of it is a function with the decorator `entry(sentence)` that is given the runs
-(runs.Runs) and yields a Number for each number of the sentence. A new number in a page is a new entry.
+(runs.Runs) and yields a Number for each number of the sentence, or of a table of the page, which table() reads. A new number in a page is a
+new entry.
 """
 
 import pathlib

@@ -25,6 +25,11 @@ class Results(squeal.results.Results):
         """The mode of that label that grows most."""
         return max(self.complex_modes(label), key=lambda mode: mode["divergence rate [%]"])
 
+    def sliding_pin(self, label):
+        """The lowest frequency [Hz] of modes of that label of the pins alone, sliding on the disc."""
+        return min(mode["frequency [Hz]"] for mode in self.rows("component_modes")
+                   if mode["component"] == "pins" and mode["contact"] == "sliding" and mode["label"].startswith(label))
+
     def n_unstable(self):
         return sum(mode["unstable [-]"] == 1 for mode in self.complex_modes())
 
@@ -44,6 +49,10 @@ class Runs:
             run(SOURCE / "prm" / parameter_file, dict(setting.split("=", 1) for setting in settings), folder)
             marker.write_text(command, encoding="utf-8")
         return Results(folder)
+
+    def default(self, name="default", *settings):
+        """The default scene without mode shapes."""
+        return self(name, "disc_pins.prm", "Output/Mode shapes=none", *settings)
 
 
 def value_of(cell):

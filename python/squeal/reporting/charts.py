@@ -48,7 +48,7 @@ def name_of_mode(row):
 
 def confidence(row):
     """The interval of a probability of squeal."""
-    lower, upper = (digits(number(row[f"{end} end of confidence [%]"]), 3) for end in ("lower", "upper"))
+    lower, upper = (digits(number(row[f"{end} confidence limit [%]"]), 3) for end in ("lower", "upper"))
     return f"95 % confidence interval {lower} to {upper} %"
 
 

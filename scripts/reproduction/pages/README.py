@@ -7,7 +7,7 @@ from reproduction.numbers import Number, entry, of_mode
 
 @entry("README", "The last lines of the default run")
 def default_run(runs):
-    results = runs("default", "disc_pins.prm", "Output/Mode shapes=none")
+    results = runs.default()
     yield Number("modes", "66", len(results.complex_modes()))
     yield Number("unstable modes", "9", results.n_unstable())
     yield Number("  below 0.01 %", "4", sum(mode["unstable [-]"] == 1 and mode["divergence rate [%]"] < 0.01 for mode in results.complex_modes()))

@@ -15,8 +15,7 @@ def pin_frequency(runs, label, element, outlines, nodes, layers, *, rings=0, gra
                    f"Discretization/Element={element}", f"Geometry/Outlines={outlines}", f"Geometry/Nodes per pin face={nodes}",
                    f"Geometry/Pin layers={layers}", f"Geometry/Pin rings={rings}", f"Geometry/Pin grading={grading}",
                    f"Pin material/Poisson ratio={ratio}")
-    return min(mode["frequency [Hz]"] for mode in results.rows("component_modes")
-               if mode["component"] == "pins" and mode["contact"] == "sliding" and mode["label"].startswith(label))
+    return results.sliding_pin(label)
 
 
 @entry("elements", "F1 and T1 of a sliding pin by element, outlines, nodes per face and layers")
@@ -49,10 +48,11 @@ def locking(runs):
 @entry("elements", "A0-4, A0-5 and F1 of the default scene by element and outlines")
 def disc(runs):
     for name, layers, _, *quoted in table("elements", "disc layers"):
-        element = element if name.startswith("the same") else name
+        if not name.startswith("the same"):
+            element = name
         outlines = "true area" if name.endswith("true area") else "inscribed"
-        results = runs(f"elements_{element}_{outlines}".replace(" ", "_"), "disc_pins.prm", NO_SHAPES, f"Discretization/Element={element}",
-                       f"Geometry/Outlines={outlines}", f"Geometry/Disc layers={layers}")
+        results = runs.default(f"elements_{element}_{outlines}".replace(" ", "_"), f"Discretization/Element={element}",
+                               f"Geometry/Outlines={outlines}", f"Geometry/Disc layers={layers}")
         for label, frequency, rate in zip(("A0-4", "A0-5", "F1"), quoted[::2], quoted[1::2]):
             yield from of_mode(f"{element}, {outlines}, {label}", results.leading(label), frequency, rate)
 
@@ -61,8 +61,8 @@ def disc(runs):
 def tetrahedra(runs):
     for name, _, _, disc, _, leading_mode, *_ in table("elements", "contact nodes | A0-4")[:3]:
         refinement, = numbers_in(name)
-        results = runs(f"tetrahedra_{refinement}", "disc_pins.prm", NO_SHAPES, "Geometry/File=disc_pins_tetrahedra.geo",
-                       f"Geometry/refinement={refinement}", "Discretization/Element=quadratic")
+        results = runs.default(f"tetrahedra_{refinement}", "Geometry/File=disc_pins_tetrahedra.geo",
+                               f"Geometry/refinement={refinement}", "Discretization/Element=quadratic")
         free = [mode["frequency [Hz]"] for mode in results.rows("component_modes") if mode["label"].startswith("A0-4")]
         yield Number(f"refinement {refinement}, A0-4 [Hz]", disc, sum(free) / len(free))
         leading = max(results.rows("complex_modes"), key=lambda mode: mode["divergence rate [%]"])

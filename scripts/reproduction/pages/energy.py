@@ -9,7 +9,7 @@ MODES = (17, 21, 37, 44)  # rows of complex_modes.csv
 
 @entry("energy", "The table of the default scene")
 def default_scene(runs):
-    rows = runs("default", "disc_pins.prm", "Output/Mode shapes=none").rows("energy")
+    rows = runs.default().rows("energy")
     for mode, (_, *cells) in zip(MODES, table("energy", "share done on the disc"), strict=True):
         rate, into_disc, *shares = numbers_in(*cells)
         own = {row["body"]: row for row in rows if row["mode [-]"] == mode}
@@ -23,7 +23,7 @@ def default_scene(runs):
 
 @entry("energy", "Powers add up; outer pins take energy from R0-2")
 def sums(runs):
-    results = runs("default", "disc_pins.prm", "Output/Mode shapes=none")
+    results = runs.default()
     difference = results.record["quantities"]["largest difference of a divergence rate from the sum of its contributions [-]"]
     yield Number("largest difference [-]", "1e-14", difference, bound=True)
     own = {row["body"]: row for row in results.rows("energy") if row["mode [-]"] == 13}

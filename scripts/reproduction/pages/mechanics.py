@@ -9,9 +9,7 @@ QUADRATIC = ("Discretization/Element=quadratic", "Geometry/Nodes per pin face=19
 
 def bending(runs, ratio, *settings, suffix=""):
     """The lowest F1 frequency [Hz] of a sliding pin."""
-    results = runs(f"poisson_{ratio}{suffix}", "disc_pins.prm", "Output/Mode shapes=none", f"Pin material/Poisson ratio={ratio}", *settings)
-    return min(mode["frequency [Hz]"] for mode in results.rows("component_modes")
-               if mode["component"] == "pins" and mode["contact"] == "sliding" and mode["label"] == "F1")
+    return runs.default(f"poisson_{ratio}{suffix}", f"Pin material/Poisson ratio={ratio}", *settings).sliding_pin("F1")
 
 
 @entry("mechanics", "Volumetric locking: F1 of a sliding pin beside quadratic elements, more than at Poisson's ratio 0.25")

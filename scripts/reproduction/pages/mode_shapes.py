@@ -4,12 +4,10 @@
 
 from reproduction.numbers import Number, entry
 
-NO_SHAPES = "Output/Mode shapes=none"
-
 
 @entry("mode_shapes", "Component modes and real modes; the pins split the doublet A0-4")
 def modes(runs):
-    results = runs("default", "disc_pins.prm", NO_SHAPES)
+    results = runs.default()
     real = {mode["label"]: mode["frequency [Hz]"] for mode in results.rows("real_modes")}
     yield Number("component modes", "102", len(results.rows("component_modes")))
     yield Number("real modes", "66", len(results.rows("real_modes")))

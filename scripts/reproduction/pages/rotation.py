@@ -4,13 +4,11 @@
 
 from reproduction.numbers import Number, entry, of_mode, table
 
-NO_SHAPES = "Output/Mode shapes=none"
-
 
 @entry("rotation", "What it does to the default scene: frequencies and divergence rates without and with gyroscopic forces")
 def default_scene(runs):
-    still = runs("default", "disc_pins.prm", NO_SHAPES)
-    turning = runs("rotating", "disc_pins.prm", NO_SHAPES, "Operation/Gyroscopic forces=true")
+    still = runs.default()
+    turning = runs.default("rotating", "Operation/Gyroscopic forces=true")
     for label, *quoted in table("rotation", "frequency without [Hz]"):
         for name, results, frequency, rate in (("without", still, quoted[0], quoted[2]), ("with", turning, quoted[1], quoted[3])):
             yield from of_mode(f"{label}, {name}", results.leading(label), frequency, rate)

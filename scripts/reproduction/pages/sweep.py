@@ -30,7 +30,7 @@ def sweep(runs, name, *settings, suffix=""):
 def full_order(runs, name, mu):
     """Modes at one friction coefficient by the Krylov solver."""
     settings = SWEEPS[name][2]
-    return runs(f"full_{name}_{mu:.8f}", "disc_pins.prm", NO_SHAPES, f"Operation/Friction coefficient={mu!r}", *settings)
+    return runs.default(f"full_{name}_{mu:.8f}", f"Operation/Friction coefficient={mu!r}", *settings)
 
 
 def at_value(results, mu):

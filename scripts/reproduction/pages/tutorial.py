@@ -11,7 +11,7 @@ RATE = "divergence rate [%]"
 
 @entry("tutorial", "Does it squeal?")
 def first_run(runs):
-    results = runs("default", "disc_pins.prm", "Output/Mode shapes=none")
+    results = runs.default()
     yield Number("modes", "66", len(results.complex_modes()))
     yield Number("that grow", "9", results.n_unstable())
     for label, rate, frequency in (("F1", "1.068", "3569"), ("A0-5", "0.856", None), ("A0-4", "0.680", "2353")):
