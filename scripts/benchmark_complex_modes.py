@@ -35,33 +35,6 @@ def squeal_times(core, directory):
     return alone, alone + benchmarking.cpu_seconds(record, {"Mode count", "Real modes"})
 
 
-def describe(record, n_modes):
-    """Time of a solution, and whether it is the right one."""
-    found = (f"all {n_modes} modes, largest difference {record['largest difference']:.1e}" if record["modes"] == n_modes
-             else f"{record['modes']} of {n_modes} modes")
-    return f"{record['CPU time [s]']:.1f} s, {found}"
-
-
-def compare(rounds, n_modes):
-    """Prints medians; each round holds squeal's times and the records of SLEPc by formulation."""
-    alone, with_real = [[times[i] for times, _ in rounds] for i in range(2)]
-    print(f"\nmedian CPU [s]: squeal {benchmarking.spread(alone)}, with its real modes {benchmarking.spread(with_real)}")
-    complete = {}
-    for formulation in rounds[0][1]:
-        records = [peers[formulation] for _, peers in rounds]
-        seconds = [record["CPU time [s]"] for record in records]
-        n_complete = sum(record["modes"] == n_modes for record in records)
-        print(f"  SLEPc {formulation:<11} {benchmarking.spread(seconds)}; all modes in {n_complete} of {len(records)} runs")
-        if n_complete == len(records):
-            complete[formulation] = statistics.median(seconds)
-    if not complete:
-        raise Error("no formulation found all modes in every run", "SLEPc", "give other --formulations, or more --runs")
-    fastest = min(complete, key=complete.get)
-    ratios = [[times[i] / peers[fastest]["CPU time [s]"] for times, peers in rounds] for i in range(2)]
-    print(f"fastest peer: {fastest}; squeal takes {benchmarking.spread(ratios[0], 2)} of its time, "
-          f"with the real modes {benchmarking.spread(ratios[1], 2)}")
-
-
 @exit_on_error()
 def main():
     parser = benchmarking.parser_of(__doc__)
@@ -76,18 +49,27 @@ def main():
     formulations = arguments.formulations.split(",") if arguments.formulations else slepc_modes.applicable(problem)
     n_modes = benchmarking.n_rows(arguments.directory / "complex_modes.csv")
 
-    print(benchmarking.describe_machine(arguments.core))
-    print(f"{problem.size} dofs, {n_modes} modes, {'no damping' if slepc_modes.is_undamped(problem) else 'damped'}")
-    rounds = []
-    for run in range(1, arguments.runs + 1):
-        times = squeal_times(arguments.core, arguments.directory)
-        print(f"run {run}: squeal {times[0]:.1f} s, with its real modes {times[1]:.1f} s", flush=True)
-        peers = {}
+    print(benchmarking.describe_machine(arguments.core), flush=True)
+    rounds = benchmarking.Rounds(f"{problem.size} dofs, {n_modes} modes, {'no damping' if slepc_modes.is_undamped(problem) else 'damped'}")
+    complete = set(formulations)
+    for _ in range(arguments.runs):
+        alone, with_real = squeal_times(arguments.core, arguments.directory)
+        rounds.add("squeal, CPU [s]", alone)
+        rounds.add("squeal with its real modes, CPU [s]", with_real)
         for formulation in formulations:
-            peers[formulation] = benchmarking.run_peer(arguments.core, arguments.directory, n_modes, formulation)
-            print(f"  SLEPc {formulation:<11} {describe(peers[formulation], n_modes)}", flush=True)
-        rounds.append((times, peers))
-    compare(rounds, n_modes)
+            peer = benchmarking.run_peer(arguments.core, arguments.directory, n_modes, formulation)
+            rounds.add(f"SLEPc {formulation}, CPU [s]", peer["CPU time [s]"])
+            rounds.add(f"  squeal / SLEPc {formulation} [-]", alone / peer["CPU time [s]"])
+            rounds.add(f"  with its real modes / SLEPc {formulation} [-]", with_real / peer["CPU time [s]"])
+            if peer["modes"] != n_modes:
+                print(f"  note: SLEPc {formulation} found {peer['modes']} of {n_modes} modes", flush=True)
+                complete.discard(formulation)
+            else:
+                print(f"  SLEPc {formulation}: all modes, largest difference {peer['largest difference']:.1e}", flush=True)
+    rounds.print()
+    if not complete:
+        raise Error("no formulation found all modes in every run", "SLEPc", "give other --formulations, or more --runs")
+    print(f"fastest that found all modes in every run: {min(complete, key=lambda one: statistics.median(rounds.values[f'SLEPc {one}, CPU [s]']))}")
 
 
 if __name__ == "__main__":

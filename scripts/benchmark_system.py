@@ -74,11 +74,11 @@ def main():
     os.sched_setaffinity(0, {arguments.core})
     print(benchmarking.describe_machine(arguments.core), flush=True)
 
-    sweeps, sums, solutions, ratios = [], [], [], []
+    rounds = benchmarking.Rounds(arguments.parameter_file.name)
     with tempfile.TemporaryDirectory() as directory:
         problems, number = [], arguments.eigenvalues
         for run in range(1, arguments.runs + 1):
-            sweeps.append(benchmarking.cpu_seconds(benchmarking.run_squeal(arguments.core, arguments.parameter_file, directory, arguments.settings)))
+            seconds = benchmarking.cpu_seconds(benchmarking.run_squeal(arguments.core, arguments.parameter_file, directory, arguments.settings))
             if not problems:
                 name, values = swept(directory)
                 end = 2 * np.pi * float(benchmarking.parameter(directory, "Band/Maximum frequency"))
@@ -89,18 +89,18 @@ def main():
                 print(f"{system.size} dofs, {len(values)} values of {name}; SLEPc is asked for {number} eigenvalues", flush=True)
             found = [slepc_modes.Solution(problem, number, "toar", tolerance=arguments.tolerance, basis=arguments.basis, seed=run)
                      for problem in problems]
-            solutions += [solution.cpu for solution in found]
-            sums.append(sum(solution.cpu for solution in found))
-            ratios.append(sums[-1] / sweeps[-1])
+            of_slepc = sum(solution.cpu for solution in found)
+            rounds.add("squeal, the whole run, CPU [s]", seconds)
+            rounds.add(f"{len(values)} solutions by SLEPc, CPU [s]", of_slepc)
+            rounds.add("  one of them, mean", of_slepc / len(values))
+            rounds.add(f"{len(values)} solutions by SLEPc / the run [-]", of_slepc / seconds)
             eigenvalues = [listed(solution.eigenvalues, end) for solution in found]
             uncovered = sum(not solution.covers(end / (2 * np.pi)) for solution in found)
-            unequal = sum(len(of_slepc) != len(of_sweep) for of_slepc, of_sweep in zip(eigenvalues, expected))
+            unequal = sum(len(one) != len(other) for one, other in zip(eigenvalues, expected))
             distance = max(quadratic.match(*pair)[2].max(initial=0.0) for pair in zip(eigenvalues, expected))
-            print(f"run {run}: squeal {sweeps[-1]:.2f} s, SLEPc {sums[-1]:.2f} s; {min(map(len, expected))} to {max(map(len, expected))} modes, "
+            print(f"run {run}: {min(map(len, expected))} to {max(map(len, expected))} modes, "
                   f"other numbers of them at {unequal} values, band not covered at {uncovered}, largest relative difference {distance:.1e}", flush=True)
-    print(f"\nmedian CPU [s]: sweep {benchmarking.spread(sweeps, 2)}; {len(values)} solutions by SLEPc {benchmarking.spread(sums, 2)}, "
-          f"one of them {benchmarking.spread(solutions, 2)}")
-    print(f"{len(values)} solutions take {benchmarking.spread(ratios, 2)} times as long as the sweep")
+    rounds.print()
 
 
 if __name__ == "__main__":
