@@ -10,6 +10,7 @@
 #   scripts/setup.sh paraview     also ParaView for scripts/paraview_modes.py
 #   scripts/setup.sh import       also what scripts/import_mesh.py and the fields of the Python module need
 #   scripts/setup.sh peers        also SLEPc for scripts/check_eigenvalues.py
+#   scripts/setup.sh package      also what cpack needs
 #
 # When nothing is missing, nothing is downloaded and no privilege is needed.
 
@@ -30,6 +31,7 @@ packages_pictures=(python3-vtk9 libgl1-mesa-dri xvfb xauth)
 packages_paraview=(paraview python3-paraview libgl1-mesa-dri xvfb xauth)
 packages_import=(python3-meshio python3-h5py python3-netcdf4)
 packages_peers=(python3-petsc4py python3-slepc4py)
+packages_package=(dpkg-dev file)
 
 complain() { printf '%s\n' "$*" >&2; }
 
@@ -201,7 +203,8 @@ if [[ ${BASH_SOURCE[0]} == "$0" ]]; then
       paraview) additional+=("${packages_paraview[@]}") ;;
       import) additional+=("${packages_import[@]}") ;;
       peers) additional+=("${packages_peers[@]}") ;;
-      *) complain "usage: scripts/setup.sh [browser] [pictures] [paraview] [import] [peers]"; exit 2 ;;
+      package) additional+=("${packages_package[@]}") ;;
+      *) complain "usage: scripts/setup.sh [browser] [pictures] [paraview] [import] [peers] [package]"; exit 2 ;;
     esac
   done
   install_packages "${packages[@]}" "${additional[@]}"
