@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <csignal>
+#include <cstdint>
 #include <cstring>
 #include <memory>
 #include <stdexcept>
