@@ -79,11 +79,12 @@ class System:
     Wherever `p` is an argument, it is a dictionary of values that differ from those of the file.
     """
 
-    def __init__(self, parameters, terms, groups=None, positions=None, displacements=None, reduction=None, description="", where=FILE):
+    def __init__(self, parameters, terms, groups=None, positions=None, displacements=None, reduction=None, description="", measured_modes=None, where=FILE):
         """Throws Error where something is wrong; `where` names the file for it."""
         self.parameters = {name: parameter if isinstance(parameter, Parameter) else Parameter(parameter) for name, parameter in parameters.items()}
         self.terms, self.groups, self.reduction = list(terms), dict(groups or {}), reduction
         self.positions, self.displacements = positions, displacements
+        self.measured_modes = measured_modes
         self.description, self.where = description, where
         self._check_parameters()
         if not self.terms:
@@ -178,7 +179,7 @@ class System:
         data = read_json(path)
         if not isinstance(data, dict) or data.get("format") != FORMAT or data.get("version") != VERSION:
             raise Error(f"the file is not a `{FORMAT}` of version {VERSION}", path, f'write "format": "{FORMAT}", "version": {VERSION}')
-        known = ("format", "version", "description", "parameters", "terms", "groups", "positions", "displacements", "reduction")
+        known = ("format", "version", "description", "parameters", "terms", "groups", "positions", "displacements", "measured modes", "reduction")
         check_keys(data, known, path)
         parameters = {}
         for name, entry in as_kind(data.get("parameters", {}), dict, f"{path}, parameters").items():
@@ -201,11 +202,12 @@ class System:
                 reduction["basis"] = read_matrix(path.parent, reduction["basis"], f"{path}, reduction, basis").toarray()
             if "points" in reduction:
                 reduction["points"] = read_rows(path.parent, reduction["points"], f"{path}, reduction, points")
+        measured = path.parent.resolve() / data["measured modes"] if "measured modes" in data else None
         points = {key: read_matrix(path.parent, data[key], f"{path}, {key}") for key in ("positions", "displacements") if key in data}
         if "positions" in points:
             points["positions"] = points["positions"].toarray()
         return cls(parameters, terms, as_kind(data.get("groups", {}), dict, f"{path}, groups"), reduction=reduction,
-                   description=data.get("description", ""), where=path, **points)
+                   description=data.get("description", ""), measured_modes=measured, where=path, **points)
 
     def write(self, folder):
         """Writes the folder, which is made if it is not there."""
@@ -231,6 +233,8 @@ class System:
         if self.positions is not None:
             data["positions"] = "positions.mtx"
             write_array(folder / "positions.mtx", self.positions)
+        if self.measured_modes is not None:
+            data["measured modes"] = str(self.measured_modes)
         if self.displacements is not None:
             data["displacements"] = "displacements.mtx"
             write_matrix(folder / "displacements.mtx", self.displacements)

@@ -182,7 +182,7 @@ TEST(ContourCount, BetweenARealModeAndWhatFrictionMakesOfIt)
   for (const ContourMethod method : methods(s.coupled))
     {
       const std::string message = refusal(s.coupled, 0.4, contour(omega * (1. + 1e-13), 0., method));
-      EXPECT_NE(message.find("refused"), std::string::npos) << message;
+      EXPECT_NE(message.find("rejected"), std::string::npos) << message;
       EXPECT_NE(message.find("change Band/Maximum frequency"), std::string::npos) << message;
     }
   EXPECT_NE(refusal(s.coupled, 0.4, contour(omega_real)).find("a real mode lies on the contour"), std::string::npos);

@@ -96,7 +96,7 @@ TEST_F(ParameterFile, SectionsThatAreNeverClosedEndSoon)
   std::string text;
   for (int i = 0; i < 100000; ++i)
     text += "subsection A\n";
-  expect_refusal(write("a.prm", text), {"more than 100 sections are open", "line 101"});
+  expect_refusal(write("a.prm", text), {"more than 100 sections", "line 101"});
 }
 
 TEST_F(ParameterFile, WhatIsNoParameterFileIsRefused)

@@ -193,33 +193,67 @@ namespace Squeal
     return result;
   }
 
-  /// The mode of the state whose shape at the sensors is most similar to that of a measured mode.
-  static std::pair<const ComputedMode *, double> most_similar(const MeasuredMode              &mode,
-                                                              const MeasuredModes             &measured,
-                                                              const std::vector<ComputedMode> &modes)
+  namespace
   {
-    std::pair<const ComputedMode *, double> result{nullptr, 0.};
-    const Eigen::VectorXcd                 &shape = measured.sensors.shapes.at(mode.label);
-    for (const ComputedMode &candidate : modes)
-      if (candidate.state == mode.state && candidate.at_sensors.size() > 0)
-        if (const double mac = modal_assurance_criterion(shape, candidate.at_sensors); mac > result.second)
-          result = {&candidate, mac};
-    if (!(result.second >= measured.least_mac))
-      throw SolverError(text("no computed mode is similar to the shape ", in_quotes(mode.label), ": the largest MAC is ", result.second,
-                             result.first != nullptr ? " (" + result.first->label + ")" : ""),
-                        mode.where, "check positions and directions of the sensors, remove the mode, or lower Updating/Least MAC");
-    return result;
-  }
+    /// Modes whose weighted mean is the counterpart of a measured mode.
+    struct WeightedModes
+    {
+      std::vector<const ComputedMode *> modes;
+      std::vector<double>               weights; ///< sum 1
+      double                            mac;     ///< of the measured shape and its projection on theirs [-]
+    };
+
+    /// Relative difference of frequencies up to which friction and other parameters mix the shapes of two modes, such as a doublet.
+    constexpr double mixing_difference = 0.02;
+
+    /// The mode of the state whose shape is most similar to a measured one, together with the mode with which it may mix: x ≈ c_1 y_1 + c_2 y_2
+    /// by least squares, weights |c_j|² ‖y_j‖². The shape of a single mode gives that mode the weight 1.
+    WeightedModes most_similar(const MeasuredMode &mode, const MeasuredModes &measured, const std::vector<ComputedMode> &modes)
+    {
+      const Eigen::VectorXcd &shape = measured.sensors.shapes.at(mode.label);
+      const auto              best  = [&](const ComputedMode *beside) {
+        std::pair<const ComputedMode *, double> found{nullptr, 0.};
+        for (const ComputedMode &candidate : modes)
+          if (candidate.state == mode.state && &candidate != beside &&
+              (beside == nullptr || std::abs(candidate.lambda.imag() - beside->lambda.imag()) <= mixing_difference * beside->lambda.imag()))
+            if (const double mac = modal_assurance_criterion(shape, candidate.at_sensors); mac > found.second)
+              found = {&candidate, mac};
+        return found.first;
+      };
+      WeightedModes result{{}, {}, 0.};
+      if (const ComputedMode *first = best(nullptr))
+        {
+          result.modes = {first};
+          if (const ComputedMode *second = best(first))
+            result.modes.push_back(second);
+          const auto         n = static_cast<Eigen::Index>(result.modes.size());
+          ComplexDenseMatrix Y(shape.size(), n);
+          for (Eigen::Index j = 0; j < n; ++j)
+            Y.col(j) = result.modes[j]->at_sensors.normalized();
+          const Eigen::VectorXcd c     = Y.colPivHouseholderQr().solve(shape);
+          const Eigen::VectorXd  parts = c.cwiseAbs2() / c.squaredNorm();
+          result.weights.assign(parts.begin(), parts.end());
+          result.mac = modal_assurance_criterion(shape, Y * c);
+        }
+      if (!(result.mac >= measured.least_mac))
+        throw SolverError(text("no computed mode is similar to the shape ", in_quotes(mode.label), ": the largest MAC is ", result.mac,
+                               result.modes.empty() ? "" : " (" + result.modes.front()->label + ")"),
+                          mode.where, "check positions and directions of the sensors, remove the mode, or lower Updating/Least MAC");
+      return result;
+    }
+  } // namespace
 
   Counterpart counterpart_of(const MeasuredMode &measured, const MeasuredModes &all, const std::vector<ComputedMode> &modes)
   {
     Counterpart                       result{};
     std::vector<const ComputedMode *> found;
+    std::vector<double>               weights;
     if (all.sensors.has(measured.label))
       {
-        const auto [mode, mac] = most_similar(measured, all, modes);
-        found                  = {mode};
-        result.mac             = mac;
+        const WeightedModes similar = most_similar(measured, all, modes);
+        found                       = similar.modes;
+        weights                     = similar.weights;
+        result.mac                  = similar.mac;
       }
     else
       found = modes_of_label(measured, modes);
@@ -237,14 +271,16 @@ namespace Squeal
           refuse(text("member ", place + 1, " of ", in_quotes(measured.label), " does not exist: there are ", found.size()));
         found = {found[place]};
       }
-    result.label        = found.front()->label;
-    const auto   n      = found.front()->derivatives.size();
-    const double weight = 1. / static_cast<double>(found.size());
+    if (weights.empty())
+      weights.assign(found.size(), 1. / static_cast<double>(found.size()));
+    result.label = found.front()->label;
+    const auto n = found.front()->derivatives.size();
     result.frequency_rates.assign(n, 0.);
     result.damping_ratio_rates.assign(n, 0.);
-    for (const ComputedMode *mode : found)
+    for (std::size_t i = 0; i < found.size(); ++i)
       {
-        const double re = mode->lambda.real(), im = mode->lambda.imag(), size = std::abs(mode->lambda);
+        const ComputedMode *mode   = found[i];
+        const double        weight = weights[i], re = mode->lambda.real(), im = mode->lambda.imag(), size = std::abs(mode->lambda);
         result.frequency += weight * hertz(im);
         result.damping_ratio -= weight * re / size;
         for (std::size_t p = 0; p < n; ++p)

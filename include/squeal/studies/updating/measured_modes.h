@@ -31,8 +31,8 @@ namespace Squeal
     double value, deviation;
   };
 
-  /// A measured mode. Its computed counterpart is the mode most similar to the shape with this label at the sensors; without such a shape,
-  /// one mode with this label, or the mean of all of them.
+  /// A measured mode. Its computed counterpart is the mode most similar to the shape with this label at the sensors, or a mean of two similar
+  /// ones; without such a shape, one mode with this label, or the mean of all of them.
   struct MeasuredMode
   {
     MeasuredState           state;

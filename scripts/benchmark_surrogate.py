@@ -1,0 +1,142 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Compares one reduced model for all samples with surrogates that are trained on full-order solutions: polynomial chaos and Kriging.
+
+    scripts/benchmark_surrogate.py [prm/robustness.prm] [--set "Section/Name=value"]... [--train 50,200] [--fresh 500]
+
+A robustness study without Sobol' indices computes all modes of the samples to a tolerance of 1e-6, which are taken for exact: the first ones
+train, the last ones are fresh. The surrogates are those of OpenTURNS, of Re lambda and Im lambda of every mode that has its name to itself in
+all training samples: sparse polynomial chaos (least angle regression, hyperbolic truncation, degree 6) and Kriging (linear trend, Matern 5/2).
+Errors of lambda are those of fresh samples in which the mode has its name to itself, too. A sample squeals if a divergence rate exceeds 0.01 %.
+
+Processor seconds on one core: a full-order solution is that of a stability run with the Krylov solver, from count to complex modes, assembly
+left out. Needs Debian's python3-openturns.
+"""
+
+import os
+import pathlib
+import tempfile
+import time
+
+import benchmarking
+
+os.environ.update(benchmarking.environment())  # before NumPy loads OpenBLAS
+
+import numpy as np
+
+from squeal.command_line import exit_on_error
+from squeal.errors import Error
+from squeal.program import SOURCE
+from squeal.results import Table
+
+LEAST_RATE = 1e-4  # divergence rate of a sample that squeals
+
+
+def read_samples(directory):
+    """Values of the uncertain numbers, n x d, and for each sample the eigenvalues by name: lists of those that share it."""
+    samples, modes = Table(directory / "samples.csv"), Table(directory / "sample_modes.csv")
+    first = samples.columns.index("unstable modes [-]")
+    numbers = np.array([samples.numbers(name) for name in samples.columns[1:first]]).T
+    by_sample = [{} for _ in numbers]
+    frequencies, rates = modes.numbers("frequency [Hz]"), modes.numbers("growth rate [1/s]")
+    for sample, label, frequency, rate in zip(modes.numbers("sample [-]"), modes.texts("label"), frequencies, rates):
+        by_sample[int(sample) - 1].setdefault(label, []).append(complex(rate, 2 * np.pi * frequency))
+    return numbers, by_sample
+
+
+def chaos(ot, inputs, outputs, distribution):
+    """Sparse polynomial chaos with the degree that the corrected leave-one-out error prefers."""
+    dimension = inputs.getDimension()
+    enumeration = ot.HyperbolicAnisotropicEnumerateFunction(dimension, 0.6)
+    basis = ot.OrthogonalProductPolynomialFactory([distribution.getMarginal(i) for i in range(dimension)], enumeration)
+    n_terms = enumeration.getStrataCumulatedCardinal(6)
+    selection = ot.LeastSquaresMetaModelSelectionFactory(ot.LARS(), ot.CorrectedLeaveOneOut())
+    algorithm = ot.FunctionalChaosAlgorithm(inputs, outputs, distribution, ot.FixedStrategy(basis, n_terms), ot.LeastSquaresStrategy(selection))
+    algorithm.run()
+    return algorithm.getResult().getMetaModel()
+
+
+def kriging(ot, inputs, outputs, _distribution):
+    """A Gaussian process of each output."""
+    models = []
+    for j in range(outputs.getDimension()):
+        covariance = ot.MaternModel([1.0] * inputs.getDimension(), 2.5)
+        algorithm = ot.KrigingAlgorithm(inputs, outputs.getMarginal(j), covariance, ot.LinearBasisFactory(inputs.getDimension()).build())
+        algorithm.run()
+        models.append(algorithm.getResult().getMetaModel())
+    return lambda x: np.hstack([np.array(model(x)) for model in models])
+
+
+def trained(ot, make, numbers, by_sample, n_train):
+    """Eigenvalues of the fresh samples by name, from surrogates of every mode; seconds that training takes."""
+    lower, upper = numbers.min(axis=0), numbers.max(axis=0)
+    scaled = 2 * (numbers - lower) / (upper - lower) - 1
+    distribution = ot.ComposedDistribution([ot.Uniform(-1, 1)] * numbers.shape[1])
+    labels = [label for label in by_sample[0] if all(len(modes.get(label, [])) == 1 for modes in by_sample[:n_train])]
+    start, result = time.process_time(), {}
+    for label in labels:
+        values = np.array([modes[label][0] for modes in by_sample[:n_train]])
+        scale = np.array([max(np.abs(values.real).max(), 1e-9), values.imag.std() or 1.0])
+        middle = values.imag.mean()
+        outputs = np.column_stack([values.real / scale[0], (values.imag - middle) / scale[1]])
+        found = np.tile(outputs.mean(axis=0), (len(scaled), 1))
+        varied = np.flatnonzero(outputs.std(axis=0) > 0.)  # growth rates of neutral modes are all zero
+        if varied.size:
+            model = make(ot, ot.Sample(scaled[:n_train]), ot.Sample(outputs[:, varied]), distribution)
+            found[:, varied] = np.array(model(ot.Sample(scaled)))
+        result[label] = found[:, 0] * scale[0] + 1j * (found[:, 1] * scale[1] + middle)
+    return result, time.process_time() - start
+
+
+def squeals(eigenvalues):
+    """Whether the divergence rate of one of them exceeds the least one."""
+    return any(value.real / abs(value.imag) > LEAST_RATE for value in eigenvalues)
+
+
+@exit_on_error()
+def main():
+    parser = benchmarking.parser_of(__doc__)
+    parser.add_argument("parameter_file", nargs="?", type=pathlib.Path, default=SOURCE / "prm" / "robustness.prm")
+    parser.add_argument("--set", action="append", default=[], dest="settings", metavar="Section/Name=value")
+    parser.add_argument("--train", default="50,200", help="numbers of full-order solutions (default: %(default)s)")
+    parser.add_argument("--fresh", type=int, default=500, help="samples on which the surrogates are tried (default: %(default)s)")
+    arguments = parser.parse_args()
+    try:
+        import openturns as ot
+    except ImportError:
+        raise Error("there is no OpenTURNS", "Python", "install Debian's python3-openturns")
+    ot.Log.Show(ot.Log.NONE)
+    sizes = [int(n) for n in arguments.train.split(",")]
+    print(benchmarking.describe_machine(arguments.core), flush=True)
+
+    with tempfile.TemporaryDirectory() as directory:
+        directory = pathlib.Path(directory)
+        full = benchmarking.run_squeal(arguments.core, arguments.parameter_file, directory / "full",
+                                       ["Study=stability", "Complex modes/Solver=Krylov", "Output/Mode shapes=none", *arguments.settings])
+        solution = benchmarking.cpu_seconds(full, ["Mode count", "Factorisation", "Real modes", "Complex modes"])
+        print(f"steps of a full-order run: {', '.join(step['name'] for step in full['steps'])}; {solution:.1f} s are its solution")
+        record = benchmarking.run_squeal(arguments.core, arguments.parameter_file, directory / "samples",
+                                         ["Robustness/Tolerance=1e-6", f"Robustness/Number of samples={max(sizes) + arguments.fresh}",
+                                          "Robustness/Sobol indices=false", "Robustness/Worst samples=0", *arguments.settings])
+        numbers, by_sample = read_samples(directory / "samples")
+    print(f"one reduced model: {benchmarking.cpu_seconds(record):.0f} s for {len(numbers)} samples to 1e-6, "
+          f"{record['counts']['basis vectors']} vectors; full-order solutions of these: {solution * len(numbers):.0f} s\n")
+
+    fresh = slice(max(sizes), None)
+    n_names = len({label for modes in by_sample for label in modes})
+    print("| surrogate | full-order solutions | training [s] | modes of | relative error of lambda: median | 95 % | largest | wrong verdicts [%] |")
+    print("|---|---|---|---|---|---|---|---|")
+    for name, make in (("polynomial chaos", chaos), ("Kriging", kriging)):
+        for n_train in sizes:
+            found, seconds = trained(ot, make, numbers, by_sample, n_train)
+            errors = np.array([abs(found[label][i] - modes[label][0]) / abs(modes[label][0])
+                               for i, modes in list(enumerate(by_sample))[fresh] for label in found if len(modes.get(label, [])) == 1])
+            wrong = [squeals(values[i] for values in found.values()) != squeals(value for modes in by_sample[i].values() for value in modes)
+                     for i in range(max(sizes), len(numbers))]
+            print(f"| {name} | {n_train}: {solution * n_train:.0f} s | {seconds:.0f} | {len(found)} of {n_names} names "
+                  f"| {np.median(errors):.1e} | {np.quantile(errors, 0.95):.1e} | {errors.max():.1e} | {100 * np.mean(wrong):.1f} |", flush=True)
+
+
+if __name__ == "__main__":
+    main()
