@@ -89,9 +89,21 @@ def trained(ot, make, numbers, by_sample, n_train):
     return result, time.process_time() - start
 
 
-def squeals(eigenvalues):
-    """Whether the divergence rate of one of them exceeds the least one."""
-    return any(value.real / abs(value.imag) > LEAST_RATE for value in eigenvalues)
+def squeals(modes):
+    """Whether the divergence rate of one of the modes, in lists by name, exceeds the least one."""
+    return any(value.real / abs(value.imag) > LEAST_RATE for values in modes for value in values)
+
+
+def wrong_verdicts(exact, found):
+    """Percentage of the samples in which only one of both squeals."""
+    return 100 * np.mean([squeals(modes.values()) != squeals(others) for modes, others in zip(exact, found)])
+
+
+def row_of(pairs):
+    """Median, 95 % and largest relative error of pairs of exact and approximate eigenvalues."""
+    exact, found = np.array(pairs).T
+    errors = abs(found - exact) / abs(exact)
+    return f"{np.median(errors):.1e} | {np.quantile(errors, 0.95):.1e} | {errors.max():.1e}"
 
 
 @exit_on_error()
@@ -116,26 +128,31 @@ def main():
                                        ["Study=stability", "Complex modes/Solver=Krylov", "Output/Mode shapes=none", *arguments.settings])
         solution = benchmarking.cpu_seconds(full, ["Mode count", "Factorisation", "Real modes", "Complex modes"])
         print(f"steps of a full-order run: {', '.join(step['name'] for step in full['steps'])}; {solution:.1f} s are its solution")
-        record = benchmarking.run_squeal(arguments.core, arguments.parameter_file, directory / "samples",
-                                         ["Robustness/Tolerance=1e-6", f"Robustness/Number of samples={max(sizes) + arguments.fresh}",
-                                          "Robustness/Sobol indices=false", "Robustness/Worst samples=0", *arguments.settings])
-        numbers, by_sample = read_samples(directory / "samples")
-    print(f"one reduced model: {benchmarking.cpu_seconds(record):.0f} s for {len(numbers)} samples to 1e-6, "
-          f"{record['counts']['basis vectors']} vectors; full-order solutions of these: {solution * len(numbers):.0f} s\n")
+        sampling = [f"Robustness/Number of samples={max(sizes) + arguments.fresh}", "Robustness/Sobol indices=false", "Robustness/Worst samples=0",
+                    *arguments.settings]
+        benchmarking.run_squeal(arguments.core, arguments.parameter_file, directory / "exact", ["Robustness/Tolerance=1e-6", *sampling])
+        numbers, by_sample = read_samples(directory / "exact")
+        record = benchmarking.run_squeal(arguments.core, arguments.parameter_file, directory / "reduced", sampling)
+        _, reduced = read_samples(directory / "reduced")
+    seconds = benchmarking.cpu_seconds(record)
+    print(f"full-order solutions of all {len(numbers)} samples: {solution * len(numbers):.0f} s\n")
 
     fresh = slice(max(sizes), None)
     n_names = len({label for modes in by_sample for label in modes})
     print("| surrogate | full-order solutions | training [s] | modes of | relative error of lambda: median | 95 % | largest | wrong verdicts [%] |")
     print("|---|---|---|---|---|---|---|---|")
+    pairs = [pair for exact, found in list(zip(by_sample, reduced))[fresh] for label, values in exact.items()
+             for pair in zip(values, found.get(label, []))]
+    print(f"| one reduced model, {record['counts']['basis vectors']} vectors | 0; all samples: {seconds:.0f} s | 0 | {n_names} of {n_names} names "
+          f"| {row_of(pairs)} | {wrong_verdicts(by_sample[fresh], (modes.values() for modes in reduced[fresh])):.1f} |", flush=True)
     for name, make in (("polynomial chaos", chaos), ("Kriging", kriging)):
         for n_train in sizes:
             found, seconds = trained(ot, make, numbers, by_sample, n_train)
-            errors = np.array([abs(found[label][i] - modes[label][0]) / abs(modes[label][0])
-                               for i, modes in list(enumerate(by_sample))[fresh] for label in found if len(modes.get(label, [])) == 1])
-            wrong = [squeals(values[i] for values in found.values()) != squeals(value for modes in by_sample[i].values() for value in modes)
-                     for i in range(max(sizes), len(numbers))]
+            pairs = [(modes[label][0], found[label][i]) for i, modes in list(enumerate(by_sample))[fresh] for label in found
+                     if len(modes.get(label, [])) == 1]
+            wrong = wrong_verdicts(by_sample[fresh], ([[values[i]] for values in found.values()] for i in range(max(sizes), len(numbers))))
             print(f"| {name} | {n_train}: {solution * n_train:.0f} s | {seconds:.0f} | {len(found)} of {n_names} names "
-                  f"| {np.median(errors):.1e} | {np.quantile(errors, 0.95):.1e} | {errors.max():.1e} | {100 * np.mean(wrong):.1f} |", flush=True)
+                  f"| {row_of(pairs)} | {wrong:.1f} |", flush=True)
 
 
 if __name__ == "__main__":
