@@ -9,7 +9,7 @@ import signal
 import subprocess
 import time
 
-from program import EXECUTABLE, ProgramTest, design_tables, read_table, settings
+from program import COARSE, EXECUTABLE, ProgramTest, design_tables, read_table, settings
 
 STUDY = ["Study=geometry", "Sweep/Number of friction coefficients=8"]
 # Where the results of a design are not looked at
@@ -18,6 +18,8 @@ VARIABLES = "Designs/Variables=Geometry/Pin height = 0.030, 0.034; Pin material/
 
 
 class DesignsTest(ProgramTest):
+    scene = COARSE
+
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
