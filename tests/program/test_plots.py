@@ -11,7 +11,7 @@ import subprocess
 import sys
 import unittest
 
-from program import EXECUTABLE, SOURCE, ProgramTest, read_table
+from program import COARSE, EXECUTABLE, SOURCE, ProgramTest, read_table
 
 SCRIPTS = SOURCE / "scripts"
 
@@ -35,6 +35,8 @@ def draw(folder, *options, environment=None):
 @unittest.skipIf(figures is None, "python3-matplotlib is not installed")
 class Studies(ProgramTest):
     """The pictures of every study; what they show of tables is asserted of small ones by tests/scripts/test_plot_results.py."""
+
+    scene = COARSE
 
     # Overrides and pictures; those of families are as many as there are pages of them
     STUDIES = {"stability": ([], {"complex_plane"}),
@@ -111,6 +113,8 @@ class Studies(ProgramTest):
 class Pictures(ProgramTest):
     """What becomes of pictures when they are drawn again and when the run is repeated."""
 
+    scene = COARSE
+
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
@@ -159,6 +163,8 @@ class Pictures(ProgramTest):
 
 @unittest.skipIf(figures is None, "python3-matplotlib is not installed")
 class Refusals(ProgramTest):
+    scene = COARSE
+
     def refused(self, folder, *words):
         process = draw(folder)
         self.assertEqual((process.returncode, len(process.stderr.splitlines())), (1, 3), process.stderr)
@@ -180,6 +186,8 @@ class Refusals(ProgramTest):
 
 class WithoutMatplotlib(ProgramTest):
     """scripts/run.sh in a checkout of which everything is built."""
+
+    scene = COARSE
 
     @classmethod
     def setUpClass(cls):
