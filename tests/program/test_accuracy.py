@@ -5,19 +5,21 @@
 import math
 import unittest
 
-from program import ProgramTest, numbers, read_table
+from program import COARSE, ProgramTest, numbers, read_table
 
 BAND = 2500
 STUDY = ["Study=accuracy", f"Band/Maximum frequency={BAND}", "Accuracy study/Mesh factors=1, 2, 5", "Accuracy study/Outlines=true area",
          "Accuracy study/Largest number of dofs=20000",
          "Accuracy study/Elements=trilinear, incompatible modes", "Accuracy study/Bases=real + 1st-ord. two-sided"]
 # What `Mesh factors = 2` makes of the scene
-TWICE = ["Geometry/Nodes per pin face=19", "Geometry/Element size=0.02", "Geometry/Pin layers=4", "Geometry/Disc layers=2",
+TWICE = ["Geometry/Nodes per pin face=19", "Geometry/Element size=0.04", "Geometry/Pin layers=4", "Geometry/Disc layers=2",
          "Geometry/Outlines=true area"]
 METHODS = ["full order", "real + 1st-ord. two-sided"]
 
 
 class Accuracy(ProgramTest):
+    scene = COARSE
+
     @classmethod
     def setUpClass(cls):
         super().setUpClass()

@@ -9,7 +9,7 @@ import subprocess
 import sys
 import unittest
 
-from program import SOURCE, ProgramTest
+from program import COARSE, SOURCE, ProgramTest
 
 MATRICES = ["M", "C", "K", "C_b", "P_n", "P_t", "P_b", "K_n", "T_c"]
 DISSIPATION = "Operation/Radial dissipation=consistent"
@@ -20,6 +20,8 @@ DAMPED = ["Steady sliding/Contact state=steady sliding", "Steady sliding/Gaps=pi
 
 
 class Matrices(ProgramTest):
+    scene = COARSE
+
     def matrices(self, *overrides, n_processes=1):
         return self.run_scene("results", "Output/Write matrices=true", *overrides, n_processes=n_processes) / "matrices"
 

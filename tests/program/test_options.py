@@ -19,7 +19,7 @@ class Options(ProgramTest):
         self.assertIn("28 contact nodes", text)
         self.assertRegex(text, r"\d+ hexahedra, 4 pins")
         self.assertIn("dry run", text)
-        self.assertRegex(self.printed("--version"), r"^squeal \d+\.\d+\.\d+ \(\S+\)\n$")
+        self.assertRegex(self.printed("--version"), r"^squeal \d+\.\d+\.\d+ \(\S+\)")
         for option in ("--set", "--output", "--dry-run", "--print-parameters", "--version", "--help"):
             self.assertIn(option, self.printed("-h"))
 

@@ -8,7 +8,7 @@ programs wait for each other.
 
 import json
 
-from program import ProgramTest, eigenvalues, read_table, real_frequencies
+from program import COARSE, ProgramTest, eigenvalues, read_table, real_frequencies
 from test_sliding import LOAD, SINGLE, STEADY, ContactFaces, SlidingTest, pins
 from test_solvers import DISSIPATION, RESIDUAL_ITERATION
 from test_sweep import DEFAULT_ACCURACY, MAP, SweepTest, by_mu, eigenvalue, grid_of, modes_by_mu, thresholds
@@ -25,6 +25,8 @@ def cells_of(file):
 
 
 class Solvers(ProgramTest):
+    scene = COARSE
+
     def test_modes(self):
         for name, overrides in {"Krylov": [], "quadratic": ["Discretization/Element=quadratic"], "residual iteration": RESIDUAL_ITERATION,
                                 "residual iteration, dissipation": [DISSIPATION, *RESIDUAL_ITERATION]}.items():
@@ -63,6 +65,8 @@ class Sliding(SlidingTest):
 
 
 class Sweep(SweepTest):
+    scene = COARSE
+
     def test_branches_and_thresholds(self):
         overrides = [DISSIPATION, "Sweep/Number of friction coefficients=4", "Sweep/Count modes at=0.2, 0.33",
                      "Sweep/Mode shapes at=0, 0.4", UNSTABLE_SHAPES, "Sweep/Complex plane at=0.33", "Sweep/Map parameter=load",

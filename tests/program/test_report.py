@@ -20,6 +20,7 @@ SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "scripts" / "report.py"
 
 from squeal.reporting.page import missing_packages  # noqa: E402
 
+WIDE, NARROW = 1200, 390  # [pixel] of a screen
 LARGEST_FILE = 15e6  # [byte]
 RATE, LARGEST, ONSET, CHANGE = "divergence rate [%]", "largest divergence rate [%]", "mu of 0.01 % [-]", "divergence rate per 1 % [percentage points]"
 QUICK = ("Sweep/Tolerance=1e-3", "Sweep/Threshold tolerance=1e-3", "Sweep/Number of friction coefficients=3")
@@ -257,7 +258,7 @@ class Reports(ProgramTest):
         self.assertTrue(process.stderr.startswith("error: there is no folder"), process.stderr)
 
     def test_in_a_browser(self):
-        for width in (1200, 390):
+        for width in (WIDE, NARROW):
             driver = browser(width)
             if driver is None:
                 self.skipTest("chromium, chromium-driver or python3-selenium is missing (scripts/setup.sh browser)")
@@ -265,6 +266,8 @@ class Reports(ProgramTest):
                 for name in SCENES:
                     with self.subTest(name, width=width):
                         self.look(driver, name, width)
+                        if width == WIDE:
+                            self.use(driver, name)
             finally:
                 driver.quit()
 
@@ -287,6 +290,9 @@ class Reports(ProgramTest):
             shown = driver.execute_script("return document.getElementById(arguments[0]).data.length", "chart-" + chart["id"])
             traces = chart["data"] if "data" in chart else next(one["data"] for one in chart["choices"] if one["key"] == chart["chosen"])
             self.assertEqual(shown, len(traces))
+
+    def use(self, driver, name):
+        """What does not depend on the width."""
         self.assert_tables(driver, name)
         self.assert_sorts(driver, self.folder / name / f"{SORTED[name][0]}.csv", SORTED[name][1])
         if name == "stability":

@@ -158,9 +158,8 @@ class Repetition(ProgramTest):
             self.assertEqual((self.folder / folder / name).read_bytes(), (self.results / name).read_bytes(), name)
 
     def complete(self, *arguments):
-        # As bytes: what is printed has the names, which need not be UTF-8
-        process = subprocess.run([EXECUTABLE, *self.BAND, *arguments], cwd=self.folder, capture_output=True, check=False, timeout=300)
-        self.assertEqual((process.returncode, process.stderr), (0, b""), arguments)
+        process = self.call(*self.BAND, *arguments)
+        self.assertEqual((process.returncode, process.stderr), (0, ""), arguments)
 
     def test_any_name_repeats_the_run(self):
         scene = (self.folder / "scene.prm").read_bytes()

@@ -5,7 +5,7 @@
 import math
 
 from mesh_file import MeshFile
-from program import ProgramTest, read_table
+from program import COARSE, ProgramTest, read_table
 
 STUDY = "Study=sensitivity"
 NO_THRESHOLDS, NO_GEOMETRY = "Sensitivity/Thresholds=false", "Sensitivity/Geometry=none"
@@ -28,6 +28,9 @@ PRINTED = 5e-12
 
 # Of a parameter, relative [-]
 STEP = 3e-5
+
+# Of a parameter on which thresholds depend, relative [-]
+THRESHOLD_STEP = 2e-5
 
 # What the uncertainty of thresholds leaves open of their differences, with respect to ln p [-]
 RESOLUTION = 2e-6
@@ -117,59 +120,81 @@ def motion(path, pin):
             "Pin diameter": widened, "Top pin radii": outwards, "Bottom pin angles": turned}[path]
 
 
-def move_nodes(still, path, velocity, change):
-    """Writes the mesh of a run with its nodes moved."""
+def move_nodes(still, path, motions):
+    """Writes the mesh of a run with its nodes moved: (velocity, change) of each motion."""
     mesh = MeshFile(still / "mesh.msh")
     for component in ("disc", *PINS):
         for node in mesh.nodes_of(component):
             place = mesh.nodes[node][1]
-            mesh.move(node, [x + change * v for x, v in zip(place, velocity(*place, component))])
+            moves = [[change * x for x in velocity(*place, component)] for velocity, change in motions]
+            mesh.move(node, [sum(parts) for parts in zip(place, *moves)])
     mesh.write(path)
 
 
+def steps_of(slopes, step, most):
+    """Relative changes of parameters, all of which count in their sum, up to `most` steps; the largest slope alone would have one."""
+    largest = {key: max(map(abs, of_key.values())) for key, of_key in slopes.items()}
+    share = max(largest.values()) / len(largest)
+    return {key: step * min(most, share / size) for key, size in largest.items()}
+
+
 class Sensitivity(ProgramTest):
+    # The band ends above the first bending of the pins
+    scene = COARSE + "subsection Band\n  set Maximum frequency = 4200\nend\n"
+
+    @classmethod
+    def mesh_of_scene(cls, *overrides):
+        """Results with the mesh; no mode of them is looked at."""
+        return cls.shared("Band/Maximum frequency=1000", "Operation/Friction coefficient=0", *overrides)
+
     def eigenvalues_at(self, *overrides):
         return [eigenvalue(row) for row in read_table(self.run_scene("single", *ITERATED, *overrides) / "complex_modes.csv")]
 
-    def compare(self, row, around, step):
-        """A derivative, and that of the growth rate by itself, beside the central difference of the nearest eigenvalues."""
-        here = eigenvalue(row)
-        at = {side: min(values, key=lambda other: abs(other - here)) for side, values in around.items()}
-        difference = (at[1] - at[-1]) / (2 * step)
-        with self.subTest(parameter=row["parameter"], pin=row["body"], mode=row["mode [-]"]):
-            error, resolution = derivative(row) - difference, PRINTED * abs(here / step)
-            self.assertLessEqual(abs(error), 1e-5 * abs(difference) + resolution)
-            self.assertLessEqual(abs(error.real), 1e-5 * abs(difference.real) + resolution)
+    def check_modes(self, rows, keys, eigenvalues_at, most=100):
+        """Derivatives with respect to the parameters (path, pin), and those of the growth rate by themselves, beside central differences along
+        one direction: an error of any of them shows. `eigenvalues_at` takes changes of the parameters."""
+        slopes, here, values = {}, {}, {}
+        for key in keys:
+            of_key = [row for row in rows if (row["parameter"], row["body"]) == key]
+            self.assertGreaterEqual(len(of_key), 2, key)
+            slopes[key] = {row["mode [-]"]: float(row["value"]) * derivative(row) for row in of_key}
+            values[key] = float(of_key[0]["value"])
+            here.update({row["mode [-]"]: eigenvalue(row) for row in of_key})
+        self.assertNotIn(0, values.values())
+        steps = steps_of(slopes, STEP, most)
+        at = [eigenvalues_at({key: side * step * values[key] for key, step in steps.items()}) for side in (-1, 1)]
+        for mode, value in here.items():
+            before, after = (min(others, key=lambda other, value=value: abs(other - value)) for others in at)
+            parts = [step * slopes[key][mode] for key, step in steps.items()]
+            error, resolution = sum(parts) - (after - before) / 2, PRINTED * abs(value)
+            with self.subTest(mode=mode):
+                self.assertLessEqual(abs(error), 1e-5 * sum(map(abs, parts)) + resolution)
+                self.assertLessEqual(abs(error.real), 1e-5 * sum(abs(part.real) for part in parts) + resolution)
 
-    def check_modes(self, scene, paths):
+    def check_parameters(self, scene, paths):
         """Beside complete runs; returns the names of all parameters."""
         folder = self.run_scene("rich", STUDY, NO_THRESHOLDS, NO_GEOMETRY, "Sensitivity/Tolerance=1e-7",
                                 "Sensitivity/Largest number of modes=4", *scene)
-        rows = [row for row in read_table(folder / "sensitivities.csv") if not row["body"]]
-        self.assertGreaterEqual(len({row["mode [-]"] for row in rows}), 2)
+        rows = read_table(folder / "sensitivities.csv")
         self.assertEqual({row["derivative of"] for row in rows}, {"lambda"})
-        for path in paths:
-            of_path = [row for row in rows if row["parameter"] == path]
-            value = float(of_path[0]["value"])
-            self.assertNotEqual(value, 0, path)
-            around = {side: self.eigenvalues_at(*scene, override(path, value * (1 + side * STEP))) for side in (-1, 1)}
-            for row in of_path:
-                self.compare(row, around, value * STEP)
-        return {row["parameter"] for row in rows}
+        values = {row["parameter"]: float(row["value"]) for row in rows if not row["body"]}
+        self.check_modes(rows, [(path, "") for path in paths], lambda changes: self.eigenvalues_at(
+            *scene, *(override(path, values[path] + change) for (path, _), change in changes.items())))
+        return set(values)
 
     def test_differences(self):
         """With every kind of damping, a turning disc, and the reactions of steady sliding; tests/sensitivity has all of materials."""
         paths = [*(f"Operation/{name}" for name in ("Friction coefficient", "Friction slope", "Load per side", "Rotation speed")),
                  "Disc material/Young modulus", "Disc material/Rayleigh beta", "Pin material/Poisson ratio", "Pin material/Rayleigh alpha",
                  "Mounts/Elastic mounts: disc_bore axial"]
-        self.assertEqual(len(self.check_modes([*RICH, STEADY, GAPS], paths)), 17)
+        self.assertEqual(len(self.check_parameters([*RICH, STEADY, GAPS], paths)), 17)
 
     def test_modal_damping(self):
         """The modes to which the damping belongs change with the bodies, the ratios with their frequencies."""
         ratios = [f"Damping/Modal damping ratio: {frequency} Hz" for frequency in RATIOS]
         paths = ["Disc material/Density", "Operation/Friction coefficient", "Operation/Load per side",
                  "Mounts/Elastic mounts: disc_bore tangential", ratios[1]]
-        names = self.check_modes([*RICH, modal(RATIOS)], paths)
+        names = self.check_parameters([*RICH, modal(RATIOS)], paths)
         self.assertEqual({name for name in names if "ratio: " in name}, set(ratios))
 
     def test_orthotropic_pin(self):
@@ -192,13 +217,19 @@ class Sensitivity(ProgramTest):
                                 "Sensitivity/Largest number of modes=3", *scene())
         rows = [row for row in read_table(folder / "sensitivities.csv") if row["parameter"].startswith("Materials/Orthotropic:/")]
         self.assertEqual({row["body"] for row in rows}, {volume})
-        for name in checked or numbers:
-            of_path = [row for row in rows if row["parameter"].rsplit("/", 1)[1].split()[0] == name]
-            self.assertGreaterEqual(len(of_path), 2)
-            scaled = [key for key in numbers if name == "E1" and not key.startswith("nu")] or [name]
-            around = {side: self.eigenvalues_at(*scene(**{key: numbers[key] * (1 + side * STEP) for key in scaled})) for side in (-1, 1)}
-            for row in of_path:
-                self.compare(row, around, numbers[name] * STEP)
+        names = {key: key[0].rsplit("/", 1)[1].split()[0] for key in ((row["parameter"], volume) for row in rows)}
+        names = {key: name for key, name in names.items() if name in (checked or numbers)}
+        self.assertEqual(set(names.values()), set(checked or numbers))
+
+        def eigenvalues_at(changes):
+            changed = dict(numbers)
+            for key, change in changes.items():
+                name = names[key]
+                for scaled in [each for each in numbers if name == "E1" and not each.startswith("nu")] or [name]:
+                    changed[scaled] *= 1 + change / numbers[name]
+            return self.eigenvalues_at(*scene(**changed))
+
+        self.check_modes(rows, names, eigenvalues_at)
 
     def test_identities(self):
         """The unit of force changes nothing, all pins together are the pins, and percentages are what they say."""
@@ -232,14 +263,13 @@ class Sensitivity(ProgramTest):
         folder = self.run_scene("thresholds", STUDY, *THRESHOLDS, "Sensitivity/Geometry=sizes and places")
         rows = [row for row in read_table(folder / "sensitivities_thresholds.csv") if row["derivative of"] != "none"]
         self.assertEqual({row["derivative of"] for row in rows}, {"squared difference of the pair"})
-        self.check_thresholds(rows, "Pin material/Poisson ratio", [])
-        still = self.run_scene("still", "Band/Maximum frequency=1000")
-        for path, pin in [("Disc thickness", ""), ("Bottom pin angles", "pin_bottom_1")]:
-            def on_moved_mesh(value, change, velocity=motion(path, pin)):
-                move_nodes(still, self.folder / "moved.msh", velocity, value * change)
-                return ["Geometry/File=moved.msh"]
-            # An error of 1e-4 of the largest one stands out from what the differences resolve
-            self.assertGreater(self.check_thresholds(rows, "Geometry/" + path, [], pin, on_moved_mesh), RESOLUTION / (1e-4 - 1e-5))
+        poisson, places = "Pin material/Poisson ratio", [("Geometry/Disc thickness", ""), ("Geometry/Bottom pin angles", "pin_bottom_1")]
+        value = float(next(row["value"] for row in rows if row["parameter"] == poisson))
+
+        def overrides(changes):
+            return [*self.moved({place: changes[place] for place in places}), override(poisson, value + changes[poisson, ""])]
+
+        self.check_thresholds(rows, [(poisson, ""), *places], overrides, most=10)
 
     def test_damped_thresholds(self):
         """The same where damping, also of modes that change with the bodies, makes modes cease to decay one by one in steady sliding."""
@@ -248,33 +278,37 @@ class Sensitivity(ProgramTest):
         folder = self.run_scene("damped", STUDY, NO_GEOMETRY, *THRESHOLDS, *scene)
         rows = [row for row in read_table(folder / "sensitivities_thresholds.csv") if not row["body"]]
         self.assertEqual({row["derivative of"] for row in rows}, {"growth rate"})
-        self.check_thresholds(rows, "Operation/Load per side", scene)
-        self.check_thresholds(rows, "Damping/Modal damping ratio: 2000 Hz", scene,
-                              overrides=lambda value, change: [modal({**light, "2000": value * (1 + change)})])
+        load, ratio = "Operation/Load per side", "Damping/Modal damping ratio: 2000 Hz"
+        values = {row["parameter"]: float(row["value"]) for row in rows}
 
-    def check_thresholds(self, rows, path, scene, pin="", overrides=None):
-        """Returns the largest difference. `overrides` are those with which the parameter has another value, by its value and the relative
-        change."""
-        overrides = overrides or (lambda value, change: [override(path, value * (1 + change))])
-        step = 2e-5
-        rows = [row for row in rows if row["parameter"] == path and row["body"] == pin]
-        self.assertGreaterEqual(len(rows), 3)
-        value = float(rows[0]["value"])
-        found, largest = {}, 0.0
+        def overrides(changes):
+            return [*scene, override(load, values[load] + changes[load, ""]), modal({**light, "2000": values[ratio] + changes[ratio, ""]})]
+
+        self.check_thresholds(rows, [(load, ""), (ratio, "")], overrides, most=100)
+
+    def check_thresholds(self, rows, keys, overrides, most):
+        """Along one direction, as check_modes(); `overrides` takes changes of the parameters."""
+        of_keys = {key: [row for row in rows if (row["parameter"], row["body"]) == key] for key in keys}
+        slopes = {key: {float(row["mu [-]"]): float(row["mu per unit [-]"]) * float(row["value"]) for row in of_key} for key, of_key in of_keys.items()}
+        steps = steps_of(slopes, THRESHOLD_STEP, most)
+        found = []
         for side in (-1, 1):
-            folder = self.run_scene("shifted", "Study=sweep", "Sweep/Compare dissipation=false", *THRESHOLDS, *scene,
-                                    *overrides(value, side * step))
-            found[side] = [(float(row["mu [-]"]), row["event"]) for row in read_table(folder / "thresholds.csv")]
-        for row in rows:
+            folder = self.run_scene("shifted", "Study=sweep", "Sweep/Compare dissipation=false", *THRESHOLDS,
+                                    *overrides({key: side * step * float(of_keys[key][0]["value"]) for key, step in steps.items()}))
+            found.append([(float(row["mu [-]"]), row["event"]) for row in read_table(folder / "thresholds.csv")])
+        self.assertGreaterEqual(len(of_keys[keys[0]]), 3)
+        for row in of_keys[keys[0]]:
             here = float(row["mu [-]"])
-            there = {side: min((mu for mu, event in others if event == row["event"]), key=lambda mu, here=here: abs(mu - here))
-                     for side, others in found.items()}
-            difference = (there[1] - there[-1]) / (2 * step)
-            with self.subTest(parameter=path, mu=here, label=row["label"]):
+            before, after = (min((mu for mu, event in others if event == row["event"]), key=lambda mu, here=here: abs(mu - here)) for others in found)
+            parts = {key: step * slopes[key][here] for key, step in steps.items()}
+            with self.subTest(mu=here, label=row["label"]):
                 # Thresholds are known to 1e-10, that of A0-0 with its small slope of the growth rate to 4e-8
-                self.assertLessEqual(abs(float(row["mu per unit [-]"]) * value - difference), 1e-5 * abs(difference) + RESOLUTION)
-            largest = max(largest, abs(difference))
-        return largest
+                tolerance = 1e-5 * sum(map(abs, parts.values())) + THRESHOLD_STEP * RESOLUTION
+                self.assertLessEqual(abs(sum(parts.values()) - (after - before) / 2), tolerance)
+        # An error of a thousandth of its largest slope stands out for each
+        for key in keys:
+            largest = max(map(abs, slopes[key].values())) * steps[key]
+            self.assertGreater(1e-3 * largest, 1e-5 * len(keys) * largest + THRESHOLD_STEP * RESOLUTION, key)
 
     def test_geometry(self):
         """Lengths and places beside runs on meshes whose nodes have been moved here; gaps go along with their pins."""
@@ -284,7 +318,7 @@ class Sensitivity(ProgramTest):
 
     def test_curved_elements(self):
         """The same of elements whose edges follow the circle that grows."""
-        self.check_geometry([*RICH, "Discretization/Element=quadratic", "Band/Maximum frequency=4000"], [("Pin diameter", "")])
+        self.check_geometry([*RICH, "Discretization/Element=quadratic"], [("Pin diameter", "")], "sizes")
 
     def test_geometry_of_orthotropic_volumes(self):
         """Cylindrical axes follow the nodes, fixed ones stay."""
@@ -295,18 +329,15 @@ class Sensitivity(ProgramTest):
         self.check_geometry([f"Materials/Orthotropic={materials}", axes, "Operation/Friction coefficient=0.7"],
                             [("Disc thickness", ""), ("Top pin radii", "pin_top_2"), ("Bottom pin angles", "pin_bottom_1")])
 
-    def check_geometry(self, scene, places):
-        folder = self.run_scene("moving", STUDY, NO_THRESHOLDS, "Sensitivity/Geometry=sizes and places", "Sensitivity/Tolerance=1e-8",
+    def check_geometry(self, scene, places, lengths="sizes and places"):
+        folder = self.run_scene("moving", STUDY, NO_THRESHOLDS, f"Sensitivity/Geometry={lengths}", "Sensitivity/Tolerance=1e-8",
                                 "Sensitivity/Largest number of modes=3", *scene)
-        rows = read_table(folder / "sensitivities.csv")
-        still = self.run_scene("still", "Band/Maximum frequency=1000", *scene)
-        for path, pin in places:
-            of_path = [row for row in rows if row["parameter"] == "Geometry/" + path and row["body"] == pin]
-            self.assertGreaterEqual(len(of_path), 2)
-            step = 1e-6 if "angles" not in path else 1e-4
-            around = {}
-            for side in (-1, 1):
-                move_nodes(still, self.folder / "moved.msh", motion(path, pin), side * step)
-                around[side] = self.eigenvalues_at(*scene, "Geometry/File=moved.msh")
-            for row in of_path:
-                self.compare(row, around, step)
+        element = [setting for setting in scene if setting.startswith("Discretization/Element")]
+        self.check_modes(read_table(folder / "sensitivities.csv"), [("Geometry/" + path, pin) for path, pin in places],
+                         lambda changes: self.eigenvalues_at(*scene, *self.moved(changes, *element)), most=10)
+
+    def moved(self, changes, *overrides):
+        """The setting that takes the mesh of the scene with its nodes moved."""
+        motions = [(motion(path.removeprefix("Geometry/"), pin), change) for (path, pin), change in changes.items()]
+        move_nodes(self.mesh_of_scene(*overrides), self.folder / "moved.msh", motions)
+        return ["Geometry/File=moved.msh"]

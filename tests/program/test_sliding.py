@@ -8,7 +8,7 @@ import math
 import unittest
 
 from hex_mesh import PARAMETERS, HexMesh, angles
-from program import ProgramTest, eigenvalues, numbers, read_table, real_frequencies
+from program import COARSE, ProgramTest, eigenvalues, numbers, read_table, real_frequencies
 from squeal.vtu_file import VtuFile
 
 STEADY = "Steady sliding/Contact state=steady sliding"
@@ -64,6 +64,8 @@ class ContactFaces:
 
 
 class SlidingTest(ProgramTest):
+    scene = COARSE
+
     def assert_close(self, actual, expected, tolerance):
         """Holds lists against each other, errors relative to the largest expected number."""
         self.assertEqual(len(actual), len(expected))

@@ -6,7 +6,7 @@ import json
 import math
 
 from mesh_file import MeshFile
-from program import ProgramTest, distance, eigenvalues, numbers, read_table, real_frequencies
+from program import COARSE, ProgramTest, distance, eigenvalues, numbers, read_table, real_frequencies
 
 # With its default tolerance of 1e-7 the residual iteration stops earlier than the comparison asks.
 RESIDUAL_ITERATION = ["Complex modes/Solver=residual iteration", "Complex modes/Iteration tolerance=1e-10"]
@@ -14,6 +14,8 @@ DISSIPATION = "Operation/Radial dissipation=consistent"
 
 
 class Solvers(ProgramTest):
+    scene = COARSE
+
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
@@ -61,6 +63,8 @@ class Solvers(ProgramTest):
 class Rotation(ProgramTest):
     """Turning the other way is the mirror image."""
 
+    scene = COARSE
+
     def values(self, rotation, geometry, *overrides):
         return eigenvalues(self.run_scene("results", f"Operation/Rotation={rotation}", f"Geometry/File={geometry}", *overrides))
 
@@ -75,6 +79,7 @@ class Rotation(ProgramTest):
 
 
 class GyroscopicForces(ProgramTest):
+    scene = COARSE
     ON = "Operation/Gyroscopic forces=true"
 
     def test_both_solvers_and_sweep(self):
@@ -95,6 +100,8 @@ class GyroscopicForces(ProgramTest):
 
 
 class Mounts(ProgramTest):
+    scene = COARSE
+
     def test_free_disc(self):
         # Pins hold the disc only along its axis: it may move in its plane and turn.
         for overrides in (["Mounts/Elastic mounts=", DISSIPATION], ["Mounts/Elastic mounts=disc_bore: 0, 0, 1.88e10"]):

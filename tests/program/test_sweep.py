@@ -6,7 +6,7 @@ import json
 import math
 import re
 
-from program import ProgramTest, distance, eigenvalues, numbers, read_table
+from program import COARSE, ProgramTest, distance, eigenvalues, numbers, read_table
 
 SWEEP = "Study=sweep"
 CONSISTENT = "Operation/Radial dissipation=consistent"
@@ -318,6 +318,8 @@ class Onsets(SweepTest):
 
 
 class OtherSweeps(SweepTest):
+    scene = COARSE
+
     def test_small_basis(self):
         screen = self.screen_of("small", CONSISTENT, "Sweep/Compare dissipation=false", "Sweep/Maximum basis=40", "Sweep/Tolerance=1e-9",
                                 "Sweep/Count modes at=0.4", "Sweep/Mode shapes at=0.4", "Output/Mode shapes=unstable")
