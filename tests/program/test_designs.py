@@ -88,7 +88,7 @@ class DesignsTest(ProgramTest):
         self.assertEqual(*((folder / "designs" / "2.prm").read_text(encoding="utf-8") for folder in (some, self.study)))
 
     def test_unknown_designs_are_refused(self):
-        for designs, what in (("7", "is not a number of designs"), (",", "the list is empty")):
+        for designs, what in (("7", "is not a number of designs"), (",", "--designs")):
             process = self.call("scene.prm", "--output", "none", "--designs", designs, *settings((*STUDY, VARIABLES)))
             self.assert_message(process, [what])
             self.assertFalse((self.folder / "none").exists())
@@ -166,7 +166,7 @@ class DesignsTest(ProgramTest):
     def test_what_lies_in_the_way_is_left_alone(self):
         for name, text, words in (("letter.txt", "keep me", "other than an unfinished study"),
                                   ("study.key", "squeal designs 1\n",
-                                   "another version of the program lies there: `squeal designs 1` there, `squeal designs 4` here")):
+                                   "`squeal designs 1` there, `squeal designs 4` here")):
             folder = self.folder / "mine.checkpoint"
             folder.mkdir()
             (folder / name).write_text(text, encoding="utf-8")

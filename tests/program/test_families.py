@@ -8,7 +8,7 @@ import signal
 from program import COARSE, ProgramTest, design_tables, read_table, settings
 
 STUDY = ["Study=geometry", "Sweep/Number of friction coefficients=4", "Band/Maximum frequency=4000", "Operation/Radial dissipation=none"]
-VARIABLES = ("Designs/Variables=Pin material/Young modulus = 1.7e9, 1.9e9; Pin material/Density = 2900, 3070; "
+VARIABLES = ("Designs/Variables=Pin material/Young modulus = 1.7e9, 1.9e9; Pin material/Density = 2900; "
              "Mounts/Elastic mounts[3] = 1.6e10, 1.88e10")
 
 
@@ -24,8 +24,8 @@ class FamiliesTest(ProgramTest):
         together = {row["design [-]"]: row for row in read_table(self.study / "designs.csv")}
         thresholds = read_table(self.study / "design_thresholds.csv")
         modes = read_table(self.study / "design_modes.csv")
-        self.assertEqual(len(together), 8)
-        number = "8"
+        self.assertEqual(len(together), 4)
+        number = "4"
         single = self.run_design("single", number)
         row, alone = together[number], read_table(single / "designs.csv")[0]
         for name in ("outcome", "modes [-]", "modes counted [-]", "complete [-]", "modes that grow [-]", "unstable modes [-]",
@@ -51,7 +51,7 @@ class FamiliesTest(ProgramTest):
             self.assertAlmostEqual(one, other, delta=2e-6 * other)
 
     def test_killed_and_resumed(self):
-        self.interrupt("killed", (*STUDY, VARIABLES), ((2, signal.SIGKILL), (4, signal.SIGTERM), (6, signal.SIGKILL)))
+        self.interrupt("killed", (*STUDY, VARIABLES), ((1, signal.SIGKILL), (2, signal.SIGTERM), (3, signal.SIGKILL)))
         again = self.run_scene("killed", *STUDY, VARIABLES)
         self.assertEqual(design_tables(again), design_tables(self.study))
         self.assertFalse((self.folder / "killed.checkpoint").exists())

@@ -124,7 +124,8 @@ class OfScene(ProgramTest):
         wrong = {**columns, "coupled 3": random.standard_normal(14)}
         for content, words in ((csv_text(zip(*wrong.values()), wrong), ["coupled 3", "MAC", "Updating/Least MAC"]),
                                (sensors.replace("z [m]", "z"), ["`z [m]`", "line 1"]),
-                               (csv_text([*zip(*columns.values()), [1.] * 3 + [0.] * 3 + [1.] * (len(columns) - 6)], columns), ["direction", "line 16"]),
+                               (csv_text([*zip(*columns.values()), [float("direction" not in name) for name in columns]], columns),
+                                ["direction", "line 16"]),
                                (sensors.replace("complex 2,", "complex 2 real,"), ["complex 2 imaginary"])):
             self.write("sensors.csv", content)
             self.assert_refused(words, *fit)
@@ -184,7 +185,7 @@ class OfScene(ProgramTest):
                                  ("Pin material/Density = 2500 to 3500 in 3", ["range"]),
                                  ("Mounts/Elastic mounts = 1 to 2", ["number"]),
                                  ("Discretization/Coarser mesh = 1 to 2", ["Coarser mesh"]),
-                                 ("Geometry/Element size = 0.06 to 0.1", ["Element size", "derivatives"])):
+                                 ("Geometry/Element size = 0.06 to 0.08", ["Element size", "derivatives"])):
             with self.subTest(variables):
                 self.assert_refused(words, "Study=updating", "Updating/Measured modes=modes.csv", f"Designs/Variables={variables}")
         self.write("modes.csv", csv_text([("coupled", "A9-9 -", 2200)]))

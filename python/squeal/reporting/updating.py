@@ -15,7 +15,8 @@ def verdict(results):
     rows = results.table("updated_parameters").rows
     open_ones = [row["parameter"] for row in rows if row["status"] != "determined"]
     remark = f" Not determined or at a limit: {', '.join(open_ones)}." if open_ones else ""
-    return "none", (f"{counts['fitted parameters']} parameters fitted to {counts['measured numbers']} measured numbers: frequencies differ by "
+    n = counts['fitted parameters']
+    return "none", (f"{n} parameter{'s' if n > 1 else ''} fitted to {counts['measured numbers']} measured numbers: frequencies differ by "
                     f"{after} % rms ({before} % before).{remark}")
 
 

@@ -80,13 +80,15 @@ namespace Squeal
         repeated.designs.file = "designs/given.csv";
         place->write(repeated.designs.file, [&](std::ostream &stream) { stream << std::ifstream(designs, std::ios::binary).rdbuf(); });
       }
-    if (const std::string &modes = parameters.updating.measured_modes; !modes.empty() && parameters.study->has("Updating/Measured modes"))
-      {
-        repeated.updating.measured_modes = "measured_modes.csv";
-        place->write(repeated.updating.measured_modes, [&](std::ostream &stream) {
-          stream << std::ifstream(input_path(modes, parameters.geometry.directory), std::ios::binary).rdbuf();
-        });
-      }
+    if (parameters.study->has("Updating/Measured modes"))
+      for (const auto &[file, copy] : {std::make_pair(&UpdatingParameters::measured_modes, "measured_modes.csv"),
+                                       std::make_pair(&UpdatingParameters::sensors, "sensors.csv")})
+        if (std::string &name = repeated.updating.*file; !name.empty())
+          {
+            const std::ifstream content(input_path(name, parameters.geometry.directory), std::ios::binary);
+            place->write(copy, [&](std::ostream &stream) { stream << content.rdbuf(); });
+            name = copy;
+          }
     place->write("parameters.prm", [&](std::ostream &stream) { repeated.print(stream, false); });
     record.files = place->files();
     place->write(ResultFolder::run_record, [&](std::ostream &stream) { write_run_record(stream, record, progress); });

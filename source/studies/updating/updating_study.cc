@@ -289,9 +289,9 @@ namespace Squeal
       run.measure("largest difference of frequencies after the fit [%]", std::abs(updated.largest));
       run.measure("sum of squared residuals at the start [-]", before.r.squaredNorm());
       run.measure("sum of squared residuals after the fit [-]", after.r.squaredNorm());
-      run.progress.note(text("  ", problem.parameters.size(), " parameters fitted to ", problem.numbers.size(),
-                             " measured numbers: frequency differences ", updated.rms, " % rms (", start.rms, " % before), at most ",
-                             updated.largest, " % (", to_string(updated.worst->state), " ", updated.worst->label,
+      run.progress.note(text("  ", problem.parameters.size(), problem.parameters.size() == 1 ? " parameter" : " parameters", " fitted to ",
+                             problem.numbers.size(), " measured numbers: frequency differences ", updated.rms, " % rms (", start.rms,
+                             " % before), at most ", updated.largest, " % (", to_string(updated.worst->state), " ", updated.worst->label,
                              "); agreement with fitted numbers does not validate the model"));
     }
 
