@@ -256,7 +256,7 @@ namespace Squeal
             {"Trilinos", TRILINOS_VERSION_STRING},
             {"MUMPS", MUMPS_VERSION},
             {"CHOLMOD", text(CHOLMOD_MAIN_VERSION, ".", CHOLMOD_SUB_VERSION, ".", CHOLMOD_SUBSUB_VERSION)},
-            {"UMFPACK", UMFPACK_VERSION},
+            {"UMFPACK", text(UMFPACK_MAIN_VERSION, ".", UMFPACK_SUB_VERSION, ".", UMFPACK_SUBSUB_VERSION)},
             {"Gmsh", GMSH_API_VERSION}};
   }
 
