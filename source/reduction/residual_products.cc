@@ -437,7 +437,7 @@ namespace Squeal
       {
         const DenseMatrix rows = C.middleRows(block.first, block.n);
         if (block.sparse >= 0)
-          WC += *sparse[block.sparse].term->matrix * model.basis() * rows;
+          WC += *sparse[block.sparse].term->matrix * (model.basis() * rows);
         else if (block.term != nullptr)
           WC += *factors[block.factor].factor * (motions.at(&block.term->source(!block.in_right)) * rows);
         else
