@@ -42,7 +42,7 @@ namespace Squeal
       if (parts.size() != 3)
         return nullptr;
       auto                              function = std::make_shared<dealii::FunctionParser<3>>(3);
-      static std::mutex                 one_stream; // of all threads
+      static std::mutex                 one_stream; // std::cerr belongs to all threads
       const std::lock_guard<std::mutex> lock(one_stream);
       std::ostringstream                unread; // deal.II prints the exceptions it throws
       std::streambuf                   *shown = std::cerr.rdbuf(unread.rdbuf());
