@@ -106,6 +106,28 @@ namespace Squeal
     }
   } // namespace
 
+  std::size_t CsvFile::column(const std::string &name) const
+  {
+    return std::find(names.begin(), names.end(), name) - names.begin();
+  }
+
+  double CsvFile::number(const std::size_t row, const std::size_t column) const
+  {
+    const std::string &cell  = rows[row][column];
+    const auto         value = parse_number(cell);
+    if (!value)
+      throw ParameterError(in_quotes(cell) + " in column " + in_quotes(names[column]) + " is not a finite number", where[row],
+                           "write a number with a decimal point" + decimal_point_hint(cell));
+    return *value;
+  }
+
+  void CsvFile::check_repeated_columns() const
+  {
+    for (std::size_t i = 0; i < names.size(); ++i)
+      if (column(names[i]) < i)
+        throw ParameterError("column " + in_quotes(names[i]) + " occurs twice", where_names, "remove one of them");
+  }
+
   std::string input_path(const std::string &name, const std::string &parameter_directory)
   {
     namespace fs          = std::filesystem;

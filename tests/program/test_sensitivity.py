@@ -16,7 +16,7 @@ RICH = ["Operation/Radial dissipation=consistent", "Operation/Friction slope=-0.
         "Pin material/Rayleigh alpha=3", "Pin material/Rayleigh beta=2e-8", "Mounts/Elastic mounts=disc_bore: 3e10, 7.8e10, 1.88e10"]
 RATIOS = {"500": 0.01, "2000": 0.02, "3500": 0.015}
 MOUNTS = {"radial": 3e10, "tangential": 7.8e10, "axial": 1.88e10}
-THRESHOLDS = ["Sweep/First friction coefficient=0.05", "Sweep/Last friction coefficient=0.45", "Sweep/Number of friction coefficients=12",
+THRESHOLDS = ["Sweep/First friction coefficient=0.05", "Sweep/Last friction coefficient=0.6", "Sweep/Number of friction coefficients=16",
               "Sweep/Tolerance=1e-8", "Sweep/Threshold tolerance=1e-10"]
 
 STEADY = "Steady sliding/Contact state=steady sliding"

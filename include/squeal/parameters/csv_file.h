@@ -14,6 +14,15 @@ namespace Squeal
     std::string                           where_names; ///< file and line, for messages
     std::vector<std::vector<std::string>> rows;        ///< one text for each column, without surrounding blanks
     std::vector<std::string>              where;       ///< file and line of each row, for messages
+
+    /// Index of a column; names.size() if it is missing.
+    std::size_t column(const std::string &name) const;
+
+    /// Number in a cell. Throws ParameterError with the line unless it is a finite number.
+    double number(std::size_t row, std::size_t column) const;
+
+    /// Throws ParameterError if two columns have the same name.
+    void check_repeated_columns() const;
   };
 
   /// Path of an input file: in the folder of the parameter file or, if it is not there, in the current directory.

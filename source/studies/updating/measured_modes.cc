@@ -30,27 +30,20 @@ namespace Squeal
       Row(const CsvFile &file, const std::size_t number)
         : where(file.where[number])
         , file(file)
-        , texts(file.rows[number])
+        , row(number)
       {}
 
       /// Text in a column; empty if the column is missing.
       std::string text(const char *column) const
       {
-        const auto place = std::find(file.names.begin(), file.names.end(), column);
-        return place == file.names.end() ? "" : texts[place - file.names.begin()];
+        const std::size_t place = file.column(column);
+        return place == file.names.size() ? "" : file.rows[row][place];
       }
 
       /// Number in a column; nothing if the cell is empty.
       std::optional<double> number(const char *column) const
       {
-        const std::string cell = text(column);
-        if (cell.empty())
-          return {};
-        const auto value = parse_number(cell);
-        if (!value)
-          refuse(in_quotes(cell) + " in column `" + column + "` is not a finite number",
-                 "write a number with a decimal point" + decimal_point_hint(cell));
-        return value;
+        return text(column).empty() ? std::nullopt : std::optional(file.number(row, file.column(column)));
       }
 
       std::optional<double> positive_number(const char *column) const
@@ -69,23 +62,19 @@ namespace Squeal
       const std::string &where;
 
     private:
-      const CsvFile                  &file;
-      const std::vector<std::string> &texts;
+      const CsvFile    &file;
+      const std::size_t row;
     };
 
     void check_columns(const CsvFile &file)
     {
       const std::string known = boost::algorithm::join(known_columns, ", ");
-      for (std::size_t i = 0; i < file.names.size(); ++i)
-        {
-          const std::string &name = file.names[i];
-          if (std::find(known_columns.begin(), known_columns.end(), name) == known_columns.end())
-            throw ParameterError("unknown column " + in_quotes(name), file.where_names, "the columns are " + known);
-          if (std::count(file.names.begin(), file.names.end(), name) > 1)
-            throw ParameterError("column " + in_quotes(name) + " occurs twice", file.where_names, "remove one of them");
-        }
+      for (const std::string &name : file.names)
+        if (std::find(known_columns.begin(), known_columns.end(), name) == known_columns.end())
+          throw ParameterError("unknown column " + in_quotes(name), file.where_names, "the columns are " + known);
+      file.check_repeated_columns();
       for (std::size_t i = 0; i < n_required; ++i)
-        if (std::find(file.names.begin(), file.names.end(), known_columns[i]) == file.names.end())
+        if (file.column(known_columns[i]) == file.names.size())
           throw ParameterError("missing column " + in_quotes(known_columns[i]), file.where_names, "the columns are " + known);
     }
 

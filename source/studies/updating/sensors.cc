@@ -4,7 +4,6 @@
 #include <squeal/base/text.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
 #include <squeal/parameters/csv_file.h>
-#include <squeal/parameters/number_list.h>
 #include <squeal/studies/updating/sensors.h>
 
 #include <boost/algorithm/string/join.hpp>
@@ -25,20 +24,13 @@ namespace Squeal
 
     Eigen::VectorXd column(const CsvFile &file, const std::string &name)
     {
-      const auto place = std::find(file.names.begin(), file.names.end(), name);
-      if (place == file.names.end())
+      const std::size_t place = file.column(name);
+      if (place == file.names.size())
         throw ParameterError("missing column " + in_quotes(name), file.where_names,
                              "the first columns are " + boost::algorithm::join(place_columns, ", "));
       Eigen::VectorXd result(static_cast<Eigen::Index>(file.rows.size()));
       for (std::size_t i = 0; i < file.rows.size(); ++i)
-        {
-          const std::string &cell  = file.rows[i][place - file.names.begin()];
-          const auto         value = parse_number(cell);
-          if (!value)
-            throw ParameterError(in_quotes(cell) + " in column " + in_quotes(name) + " is not a finite number", file.where[i],
-                                 "write a number with a decimal point");
-          result[static_cast<Eigen::Index>(i)] = *value;
-        }
+        result[static_cast<Eigen::Index>(i)] = file.number(i, place);
       return result;
     }
   } // namespace
@@ -46,8 +38,9 @@ namespace Squeal
   Sensors read_sensors(const std::string &path)
   {
     const CsvFile file = read_csv(path, parameter_of_sensors, "sensor");
-    const auto    n    = static_cast<Eigen::Index>(file.rows.size());
-    Sensors       result{DenseMatrix(n, 3), DenseMatrix(n, 3), {}};
+    file.check_repeated_columns();
+    const auto n = static_cast<Eigen::Index>(file.rows.size());
+    Sensors    result{DenseMatrix(n, 3), DenseMatrix(n, 3), {}};
     for (int d = 0; d < 3; ++d)
       {
         result.positions.col(d)  = column(file, place_columns[d]);
@@ -59,13 +52,11 @@ namespace Squeal
     result.directions.rowwise().normalize();
     for (const std::string &name : file.names)
       {
-        if (std::count(file.names.begin(), file.names.end(), name) > 1)
-          throw ParameterError("column " + in_quotes(name) + " occurs twice", file.where_names, "remove one of them");
         if (std::find(place_columns.begin(), place_columns.end(), name) != place_columns.end())
           continue;
         const bool        is_imaginary = boost::ends_with(name, imaginary);
         const std::string label        = is_imaginary ? name.substr(0, name.size() - std::string(imaginary).size()) : name;
-        if (is_imaginary && std::find(file.names.begin(), file.names.end(), label) == file.names.end())
+        if (is_imaginary && file.column(label) == file.names.size())
           throw ParameterError("column " + in_quotes(name) + " has no real part", file.where_names, "add the column " + in_quotes(label));
         const std::complex<double> unit = is_imaginary ? std::complex<double>(0., 1.) : 1.;
         Eigen::VectorXcd          &sum  = result.shapes.try_emplace(label, Eigen::VectorXcd::Zero(n)).first->second;
