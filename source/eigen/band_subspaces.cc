@@ -21,13 +21,13 @@ namespace Squeal
     /// Target for the residual after the last step, in the norm of unit modes, and limit accepted if rounding errors prevent more. Friction
     /// transfers residuals of high modes to low ones.
     constexpr double error_wanted = 1e-13, error_allowed = 1e-12;
-    constexpr int    most_steps = 24;
+    constexpr int    most_steps = 80;
     /// A step that is longer than this fraction of the previous one may consist of rounding errors [-].
     constexpr double contraction = 0.7;
     /// Length relative to the first step at which the iteration is abandoned [-].
-    constexpr double hopeless_growth = 10.;
+    constexpr double hopeless_growth = 1000.;
     /// Number of previous steps that are combined.
-    constexpr std::size_t most_remembered = 3;
+    constexpr std::size_t most_remembered = 8;
     /// Smallest eigenvalue of a matrix with unit diagonal that is positive beyond rounding errors [-].
     constexpr double least_definite = 1e-6;
     /// Bound on ‖Z^m‖, with a margin for rounding errors, and number of squarings.

@@ -63,21 +63,14 @@ namespace Squeal
 
       void apply(const MultiVector &X, MultiVector &Y) const override
       {
-        run_parts(X.n_columns(), columns_of_task(X.n_columns()), [&](const int first, const int n) {
-          cholmod_common own;
-          cholmod_start(&own);
-          cholmod_dense  right_sides = columns(X, first, n);
-          cholmod_dense *solutions = nullptr, *permuted = nullptr, *front = nullptr;
-          const int      success = cholmod_solve2(CHOLMOD_A, L, &right_sides, nullptr, &solutions, nullptr, &permuted, &front, &own);
-          for (int j = 0; success != 0 && j < n; ++j)
-            std::copy_n(static_cast<const double *>(solutions->x) + j * solutions->d, L->n, Y.col(first + j).data());
-          for (cholmod_dense **vectors : {&solutions, &permuted, &front})
-            cholmod_free_dense(vectors, &own);
-          const int status = own.status;
-          cholmod_finish(&own);
-          if (success == 0)
-            throw_library_failure("CHOLMOD", "status " + std::to_string(status) + " of the solution", what);
-        });
+        solve(CHOLMOD_A, X, Y);
+      }
+
+      bool half_solve(const MultiVector &X, MultiVector &Y) const override
+      {
+        solve(CHOLMOD_Lt, X, Y);
+        solve(CHOLMOD_Pt, MultiVector(Y), Y);
+        return true;
       }
 
       void apply_transpose(const MultiVector &X, MultiVector &Y) const override
@@ -96,6 +89,26 @@ namespace Squeal
       }
 
     private:
+      /// Y from X by a system of equations of the factors, such as CHOLMOD_A or CHOLMOD_Lt.
+      void solve(const int system, const MultiVector &X, MultiVector &Y) const
+      {
+        run_parts(X.n_columns(), columns_of_task(X.n_columns()), [&](const int first, const int n) {
+          cholmod_common own;
+          cholmod_start(&own);
+          cholmod_dense  right_sides = columns(X, first, n);
+          cholmod_dense *solutions = nullptr, *permuted = nullptr, *front = nullptr;
+          const int      success = cholmod_solve2(system, L, &right_sides, nullptr, &solutions, nullptr, &permuted, &front, &own);
+          for (int j = 0; success != 0 && j < n; ++j)
+            std::copy_n(static_cast<const double *>(solutions->x) + j * solutions->d, L->n, Y.col(first + j).data());
+          for (cholmod_dense **vectors : {&solutions, &permuted, &front})
+            cholmod_free_dense(vectors, &own);
+          const int status = own.status;
+          cholmod_finish(&own);
+          if (success == 0)
+            throw_library_failure("CHOLMOD", "status " + std::to_string(status) + " of the solution", what);
+        });
+      }
+
       /// CHOLMOD's view of some columns, which it only reads.
       static cholmod_dense columns(const MultiVector &X, const int first, const int n)
       {

@@ -6,12 +6,17 @@
 #include <squeal/reduction/residual_products.h>
 
 #include <algorithm>
+#include <cmath>
+#include <random>
 
 namespace Squeal
 {
   namespace
   {
     using Complex = std::complex<double>;
+
+    /// Number of random vectors.
+    constexpr int size_of_sketch = 128;
 
     /// Diagonal of Xᴴ Y for matrices of real and imaginary halves, at least zero despite rounding.
     std::vector<double> hermitian_products(const DenseMatrix &X, const DenseMatrix &Y)
@@ -74,6 +79,17 @@ namespace Squeal
     clear();
   }
 
+  void ProjectedResiduals::use_sketch()
+  {
+    MultiVector     white(inverse.map(), size_of_sketch, false), V(inverse.map(), size_of_sketch);
+    std::mt19937_64 random;
+    const double    size = 1. / std::sqrt(double(size_of_sketch));
+    for (double &entry : white.local().reshaped())
+      entry = random() % 2 == 0 ? size : -size;
+    if (inverse.frictionless().half_solve(white, V))
+      sketch = std::move(V);
+  }
+
   DenseMatrix ProjectedResiduals::factor_products(const MultiVector &X) const
   {
     DenseMatrix result(n_factor_columns, X.n_columns());
@@ -86,10 +102,11 @@ namespace Squeal
   {
     r = 0;
     motions.clear();
-    is_prepared = false;
+    is_prepared     = false;
+    sketched_pencil = {};
     for (Sparse &part : sparse)
       {
-        part.projected = part.factor_products = {};
+        part.projected = part.factor_products = part.sketched = {};
         part.products.assign(sparse.size(), {});
       }
   }
@@ -104,9 +121,22 @@ namespace Squeal
       motions[f.factor] = model.motions(*f.factor);
 
     // New columns of (A T)ᵀ S⁻¹ A' T; its new rows are those of the transposed problem
-    const MultiVector       &T     = model.basis();
-    const MultiVector        fresh = view(T, old, r - old);
-    const std::size_t        n     = sparse.size();
+    const MultiVector &T     = model.basis();
+    const MultiVector  fresh = view(T, old, r - old);
+    for (Sparse &part : sparse)
+      part.projected = model.projected(part.number);
+    pencil      = model.stiffness() + shift * shift * model.mass();
+    is_prepared = false;
+    if (sketch)
+      {
+        for (Sparse &part : sparse)
+          part.sketched = append_columns(part.sketched, gram(*sketch, *part.term->matrix * fresh));
+        const MultiVector ST = *system.stiffness * fresh + shift * shift * (*system.mass * fresh);
+        sketched_pencil      = append_columns(sketched_pencil, gram(*sketch, ST));
+        return;
+      }
+
+    const std::size_t        n = sparse.size();
     std::vector<DenseMatrix> columns(n * n, DenseMatrix(r, r - old));
     for (std::size_t k = 0; k < n; ++k)
       for_column_blocks(r - old, [&](const int first, const int width) {
@@ -123,10 +153,6 @@ namespace Squeal
             columns[l + n * k].bottomRows(r - old);
           sparse[k].products[l] = std::move(products);
         }
-    for (Sparse &part : sparse)
-      part.projected = model.projected(part.number);
-    pencil      = model.stiffness() + shift * shift * model.mass();
-    is_prepared = false;
   }
 
   int ProjectedResiduals::number_of(const LowRankFactor &factor) const
@@ -193,44 +219,51 @@ namespace Squeal
       return block.term != nullptr ? DenseMatrix(rows * motions.at(&block.term->source(!block.in_right))) : DenseMatrix(rows);
     };
 
-    // Wᵀ S⁻¹ W and Tᵀ W
-    DenseMatrix G(n_columns, n_columns), H(r, n_columns);
+    // Tᵀ W; scale every vector by its energy: motions of light bodies may exceed modes of the band by many orders of magnitude
+    DenseMatrix H(r, n_columns);
     for (const Block &b : blocks)
-      {
-        H.middleCols(b.first, b.n) =
-          b.sparse >= 0 ? sparse[b.sparse].projected : times_coefficients(b, motions.at(factors[b.factor].factor).transpose());
-        for (const Block &a : blocks)
-          {
-            if (a.first > b.first)
-              break;
-            const auto product = [&]() -> DenseMatrix {
-              if (a.sparse >= 0 && b.sparse >= 0)
-                return sparse[b.sparse].products[a.sparse];
-              if (a.sparse >= 0 || b.sparse >= 0)
-                {
-                  const Block      &of_factor = a.sparse >= 0 ? b : a;
-                  const Factor     &f         = factors[of_factor.factor];
-                  const auto        rows      = sparse[std::max(a.sparse, b.sparse)].factor_products.middleRows(f.first, f.factor->rank());
-                  const DenseMatrix columns   = times_coefficients(of_factor, rows.transpose());
-                  return a.sparse >= 0 ? columns : DenseMatrix(columns.transpose());
-                }
-              const DenseMatrix columns = times_coefficients(b, gram_of(factors[a.factor], factors[b.factor]));
-              return times_coefficients(a, columns.transpose()).transpose();
-            };
-            G.block(a.first, b.first, a.n, b.n) = product();
-            G.block(b.first, a.first, b.n, a.n) = G.block(a.first, b.first, a.n, b.n).transpose().eval();
-          }
-      }
-
-    // Scale every vector by its energy: motions of light bodies may exceed modes of the band by many orders of magnitude
+      H.middleCols(b.first, b.n) =
+        b.sparse >= 0 ? sparse[b.sparse].projected : times_coefficients(b, motions.at(factors[b.factor].factor).transpose());
     const Eigen::VectorXd scale = pencil.diagonal().cwiseSqrt().cwiseInverse();
     const RealLU          lu    = regular_lu(scale.asDiagonal() * pencil * scale.asDiagonal(), "stiffness of a reduced model");
     H                           = scale.asDiagonal() * H;
-    G -= H.transpose() * lu.solve(H);
-    bracket     = std::move(G);
-    is_prepared = true;
-    if (in_single_precision)
-      bracket_in_single_precision = bracket.cast<float>();
+    is_prepared                 = true;
+    if (sketch)
+      {
+        Z = DenseMatrix(size_of_sketch, n_columns);
+        for (const Block &b : blocks)
+          Z.middleCols(b.first, b.n) = b.sparse >= 0 ?
+                                         sparse[b.sparse].sketched :
+                                         times_coefficients(b, factors[b.factor].factor->transpose_times(*sketch).transpose());
+        Z -= sketched_pencil * scale.asDiagonal() * lu.solve(H);
+        return;
+      }
+
+    // Wᵀ S⁻¹ W
+    bracket = DenseMatrix(n_columns, n_columns);
+    for (const Block &b : blocks)
+      for (const Block &a : blocks)
+        {
+          if (a.first > b.first)
+            break;
+          const auto product = [&]() -> DenseMatrix {
+            if (a.sparse >= 0 && b.sparse >= 0)
+              return sparse[b.sparse].products[a.sparse];
+            if (a.sparse >= 0 || b.sparse >= 0)
+              {
+                const Block      &of_factor = a.sparse >= 0 ? b : a;
+                const Factor     &f         = factors[of_factor.factor];
+                const auto        rows      = sparse[std::max(a.sparse, b.sparse)].factor_products.middleRows(f.first, f.factor->rank());
+                const DenseMatrix columns   = times_coefficients(of_factor, rows.transpose());
+                return a.sparse >= 0 ? columns : DenseMatrix(columns.transpose());
+              }
+            const DenseMatrix columns = times_coefficients(b, gram_of(factors[a.factor], factors[b.factor]));
+            return times_coefficients(a, columns.transpose()).transpose();
+          };
+          bracket.block(a.first, b.first, a.n, b.n) = product();
+          bracket.block(b.first, a.first, b.n, a.n) = bracket.block(a.first, b.first, a.n, b.n).transpose().eval();
+        }
+    bracket -= H.transpose() * lu.solve(H);
   }
 
   std::vector<ProjectedResiduals::Group> ProjectedResiduals::groups(const ParameterValues &values, const bool transposed) const
@@ -317,14 +350,35 @@ namespace Squeal
     return halves(result);
   }
 
-  template <typename Number>
-  ResidualProducts ProjectedResiduals::products_by(const Matrix<Number>       &B,
-                                                   const ParameterValues      &values,
-                                                   const std::vector<Complex> &lambda,
-                                                   const ComplexDenseMatrix   &right,
-                                                   const ComplexDenseMatrix   &left) const
+  DenseMatrix ProjectedResiduals::sketches(const ParameterValues      &values,
+                                           const std::vector<Complex> &lambda,
+                                           const ComplexDenseMatrix   &vectors,
+                                           const bool                  transposed) const
   {
-    using Matrix = ProjectedResiduals::Matrix<Number>;
+    DenseMatrix                           result = DenseMatrix::Zero(size_of_sketch, 2 * vectors.cols());
+    const std::vector<Group>              found  = groups(values, transposed);
+    const std::vector<ComplexDenseMatrix> rows   = group_rows(found, values, lambda, vectors);
+    for (std::size_t g = 0; g < found.size(); ++g)
+      {
+        DenseMatrix sum = DenseMatrix::Zero(size_of_sketch, rows[g].rows());
+        for (const auto &[block, factor] : found[g].blocks)
+          sum += factor * Z.middleCols(block->first, block->n);
+        result += sparing_zeros(halves(rows[g]), [&sum](const DenseMatrix &X) -> DenseMatrix { return sum * X; });
+      }
+    return result;
+  }
+
+  ResidualProducts ProjectedResiduals::products(const ParameterValues      &values,
+                                                const std::vector<Complex> &lambda,
+                                                const ComplexDenseMatrix   &right,
+                                                const ComplexDenseMatrix   &left) const
+  {
+    prepare();
+    if (sketch)
+      {
+        const DenseMatrix R = sketches(values, lambda, right, false), L = sketches(values, lambda, left, true);
+        return {product_of_halves(L.transpose() * R), hermitian_products(R, R), hermitian_products(L, L)};
+      }
     // Left and right residuals share most groups
     const std::vector<Group> C = groups(values, false), D = groups(values, true);
     std::vector<Group>       all = C;
@@ -345,14 +399,14 @@ namespace Squeal
         rows_of_D.push_back(i);
 
     // The bracket is symmetric and too large for the processor's cache: half of it is read, once
-    Matrix small(first.back(), first.back());
+    DenseMatrix small(first.back(), first.back());
     for (std::size_t g = 0; g < all.size(); ++g)
       for (std::size_t h = 0; h <= g; ++h)
         {
           const auto &rows = all[g].blocks, &columns = all[h].blocks;
-          Matrix      sum = Matrix::Zero(first[g + 1] - first[g], first[h + 1] - first[h]);
+          DenseMatrix sum = DenseMatrix::Zero(first[g + 1] - first[g], first[h + 1] - first[h]);
           const auto  add = [&](const auto &x, const auto &y) {
-            sum += static_cast<Number>(x.second * y.second) * B.block(x.first->first, y.first->first, x.first->n, y.first->n);
+            sum += x.second * y.second * bracket.block(x.first->first, y.first->first, x.first->n, y.first->n);
           };
           for (std::size_t x = 0; x < rows.size(); ++x)
             for (std::size_t y = 0; y < (g == h ? x : columns.size()); ++y)
@@ -377,22 +431,12 @@ namespace Squeal
         }
       return result;
     };
-    const auto apply = [](const Matrix &A, const DenseMatrix &X) {
-      return sparing_zeros(X, [&A](const DenseMatrix &Y) -> DenseMatrix { return (A * Y.cast<Number>()).template cast<double>(); });
+    const auto apply = [](const DenseMatrix &A, const DenseMatrix &X) {
+      return sparing_zeros(X, [&A](const DenseMatrix &Y) -> DenseMatrix { return A * Y; });
     };
     const DenseMatrix c = stack(C, right), d = stack(D, left), products = apply(small.leftCols(c.rows()), c);
     return {product_of_halves(d.transpose() * products(rows_of_D, Eigen::placeholders::all)),
             hermitian_products(c, products.topRows(c.rows())), hermitian_products(d, apply(small(rows_of_D, rows_of_D), d))};
-  }
-
-  ResidualProducts ProjectedResiduals::products(const ParameterValues      &values,
-                                                const std::vector<Complex> &lambda,
-                                                const ComplexDenseMatrix   &right,
-                                                const ComplexDenseMatrix   &left) const
-  {
-    prepare();
-    return in_single_precision ? products_by(bracket_in_single_precision, values, lambda, right, left) :
-                                 products_by(bracket, values, lambda, right, left);
   }
 
   DenseMatrix ProjectedResiduals::coordinates(const ModesAt &modes) const
@@ -424,7 +468,7 @@ namespace Squeal
         Y = append_columns(Y, coordinates(some));
     if (Y.cols() == 0)
       return {};
-    const DenseMatrix energies = Y.transpose() * bracket * Y;
+    const DenseMatrix energies = sketch ? DenseMatrix((Z * Y).transpose() * (Z * Y)) : DenseMatrix(Y.transpose() * bracket * Y);
     const auto [squares, axes] =
       agreed(inverse.map().communicator(), symmetric_eigenpairs(0.5 * (energies + energies.transpose()))); // ascending
     if (!(squares.back() > 0.))

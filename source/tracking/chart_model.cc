@@ -84,14 +84,13 @@ namespace Squeal
     , largest_circular_frequency(largest_circular_frequency)
     , model(starting_model(system, inverse, real_modes, system.n_contact() > 0))
     , residuals(system, inverse, shift, system.values)
-  {
-    residuals.extend(model);
-  }
+  {}
 
   void ChartModel::prepare() const
   {
     if (model.size() == 0)
       return;
+    residuals.extend(model);
     run_tasks(2, [this](const int part) { part == 0 ? residuals.prepare() : static_cast<void>(model.modal()); });
   }
 
@@ -237,7 +236,6 @@ namespace Squeal
   void ChartModel::extend(MultiVector vectors)
   {
     model.extend(std::move(vectors));
-    residuals.extend(model);
   }
 
   DenseMatrix ChartModel::principal_parts(const DenseMatrix             &real_modes,

@@ -53,6 +53,24 @@ namespace
               EXPECT_LT(std::abs(products.coupling(i, j) - direct.coupling(i, j)), tolerance * std::sqrt(left[i] * right[j]));
           }
         EXPECT_TRUE(friction == 0. || largest_energy > 1e-9) << "residuals are more than rounding errors";
+
+        // A sketch knows them to the statistical error of 128 numbers, without rounding errors of its own
+        ProjectedResiduals sketched(system, inverse, shift, damping.values());
+        sketched.use_sketch();
+        sketched.extend(model);
+        const auto       sketches    = sketched.products(values, modes.lambda, modes.right, modes.left);
+        constexpr double five_sigmas = 0.63;
+        for (int j = 0; j < k; ++j)
+          {
+            EXPECT_LT(std::abs(sketches.right_energies[j] - direct.right_energies[j]),
+                      five_sigmas * direct.right_energies[j] + 1e-20 * right[j]);
+            EXPECT_LT(std::abs(sketches.left_energies[j] - direct.left_energies[j]),
+                      five_sigmas * direct.left_energies[j] + 1e-20 * left[j]);
+            for (int i = 0; i < k; ++i)
+              EXPECT_LT(std::abs(sketches.coupling(i, j) - direct.coupling(i, j)),
+                        five_sigmas * std::sqrt(direct.left_energies[i] * direct.right_energies[j]) +
+                          1e-20 * std::sqrt(left[i] * right[j]));
+          }
       }
   }
 

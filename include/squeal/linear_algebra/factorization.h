@@ -18,6 +18,13 @@ namespace Squeal
     /// Y = A⁻ᵀ X.
     virtual void apply_transpose(const MultiVector &X, MultiVector &Y) const = 0;
 
+    /// Y = Pᵀ L⁻ᵀ X from factors A = Pᵀ L Lᵀ P: with independent random entries of X, columns of Y have the covariance A⁻¹. False if the
+    /// library cannot.
+    virtual bool half_solve(const MultiVector &, MultiVector &) const
+    {
+      return false;
+    }
+
     /// Number of entries of the factors; 0 if the library does not report it.
     virtual double n_factor_entries() const = 0;
   };

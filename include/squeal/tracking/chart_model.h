@@ -15,9 +15,6 @@ namespace Squeal
   /// Modes are followed up to (1 + this) times the end of the band, so that modes that enter or leave it are not lost.
   inline constexpr double band_margin = 0.05;
 
-  /// Tolerance of λ above which single precision suffices for error estimates [-].
-  inline constexpr double single_precision_tolerance = 1e-6;
-
   /// A point at which a chart is evaluated.
   struct OperatingPoint
   {
@@ -56,17 +53,12 @@ namespace Squeal
     /**
      * For systems that differ from S in more than friction and damping, where parts of the estimate for a mode in a dense cluster may
      * cancel. Errors are then at least κ/2 √(ε_R ε_L), from the energies of the right and left residuals, which is the estimate without
-     * cancellation.
+     * cancellation; norms of a sketch suffice for it, see ProjectedResiduals::use_sketch().
      */
     void estimate_without_cancellation()
     {
       allows_cancellation = false;
-    }
-
-    /// For estimates that need not be accurate below single_precision_tolerance.
-    void estimate_in_single_precision()
-    {
-      residuals.use_single_precision();
+      residuals.use_sketch();
     }
 
     /// Number of vectors in the basis.
@@ -127,12 +119,12 @@ namespace Squeal
     void restart(MultiVector vectors);
 
   private:
-    const CoupledSystem  &system;
-    const UpdatedInverse &inverse;
-    const MultiVector    *real_modes;
-    double                shift, largest_circular_frequency, largest_decay = std::numeric_limits<double>::infinity();
-    bool                  allows_cancellation = true;
-    ReducedModel          model;
-    ProjectedResiduals    residuals;
+    const CoupledSystem       &system;
+    const UpdatedInverse      &inverse;
+    const MultiVector         *real_modes;
+    double                     shift, largest_circular_frequency, largest_decay = std::numeric_limits<double>::infinity();
+    bool                       allows_cancellation = true;
+    ReducedModel               model;
+    mutable ProjectedResiduals residuals; ///< extended by prepare()
   };
 } // namespace Squeal

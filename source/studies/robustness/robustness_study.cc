@@ -90,14 +90,11 @@ namespace Squeal
     }
   } // namespace
 
-  std::unique_ptr<SweepModel> sample_model(const SampledSystems &systems, const std::size_t contact_set, const double tolerance, Run &run)
+  std::unique_ptr<SweepModel> sample_model(const SampledSystems &systems, const std::size_t contact_set, Run &run)
   {
     auto result = std::make_unique<SweepModel>(systems.plan, systems.plan.regimes[contact_set], run, systems.middles[contact_set]);
-    if (!result->reduced)
-      return result;
-    result->reduced->estimate_without_cancellation();
-    if (tolerance >= single_precision_tolerance)
-      result->reduced->estimate_in_single_precision();
+    if (result->reduced)
+      result->reduced->estimate_without_cancellation();
     return result;
   }
 
@@ -166,12 +163,11 @@ namespace Squeal
   SolvedSamples solve_samples(const SampledSystems &systems, const int n_samples, const double tolerance, Run &run)
   {
     SolvedSamples result{std::vector<std::optional<Sample>>(n_samples), std::vector<FollowedSample>(systems.plan.lines.size())};
-    const double  smallest  = result.followed.empty() ? tolerance : std::min(tolerance, run.parameters.sweep.tolerance);
     double        worst     = 0.;
     int           n_vectors = 0;
     for (std::size_t i = 0; i < systems.plan.regimes.size(); ++i)
       {
-        const auto model = sample_model(systems, i, smallest, run);
+        const auto model = sample_model(systems, i, run);
         worst            = std::max(worst, solve_contact_set(*model, systems.n_samples[i], tolerance, result.samples));
         follow_samples(*model, systems.n_samples[i], result.followed);
         n_vectors = std::max(n_vectors, model->reduced ? model->reduced->size() : 0);

@@ -230,7 +230,7 @@ namespace Squeal
           first.push_back(values_at(point));
         const SamplePlan plan = samples_of(first, inner);
         systems.emplace(space.systems(plan));
-        model = sample_model(*systems, 0, run.parameters.robustness.tolerance, run);
+        model = sample_model(*systems, 0, run);
 
         starts.resize(search.n_samples);
         std::vector<OperatingPoint> points;

@@ -106,8 +106,8 @@ namespace Squeal
     std::vector<FollowedSample>        followed; ///< the first ones
   };
 
-  /// Starts the model of a contact set of samples, with error estimates suited to @p tolerance.
-  std::unique_ptr<SweepModel> sample_model(const SampledSystems &systems, std::size_t contact_set, double tolerance, Run &run);
+  /// Starts the model of a contact set of samples.
+  std::unique_ptr<SweepModel> sample_model(const SampledSystems &systems, std::size_t contact_set, Run &run);
 
   /// Solves operating points of a system without a definite part, each at full order; failed points are left.
   ErrorControlledSweep solve_directly(const SweepModel &model, const std::vector<OperatingPoint> &points, const KeepPoint &keep);
