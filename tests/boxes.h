@@ -32,13 +32,13 @@ namespace Squeal::Testing
   struct Box
   {
     Cut                         cut;
-    std::array<unsigned int, 3> n; ///< bricks a direction; at least 4 along x if mixed
+    std::array<unsigned int, 3> n; ///< bricks per direction; at least 4 along x if mixed
     Mesh::Point                 lower, upper;
-    double                      distortion; ///< largest shift of a corner, of the size of a brick; faces of the box stay flat
+    double                      distortion; ///< largest shift of a corner relative to the brick size; faces of the box stay flat
     unsigned int                seed = 1;
   };
 
-  /// Adds bricks, each cut in the same way, as a volume of its own. Its lower and upper face in z become surfaces of the given names.
+  /// Adds a volume of bricks, all cut in the same way; its lower and upper face in z become surfaces with the given names.
   inline void add_box(Mesh &mesh, const Box &box, const std::string &volume, const std::array<std::string, 2> &surfaces)
   {
     std::mt19937                     random(box.seed);
@@ -80,7 +80,7 @@ namespace Squeal::Testing
               }
             else
               {
-                // Around a node inside: on each face a pyramid, or two tetrahedra, whose diagonal begins at the first node;
+                // Around a central node: on each face a pyramid, or two tetrahedra with the diagonal from the first node;
                 // the face towards hexahedra begins with 0, 4
                 const unsigned int centre = add_point({{i + 0.5, j + 0.5, k + 0.5}});
                 for (unsigned int face = 0; face < 6; ++face)
@@ -116,7 +116,7 @@ namespace Squeal::Testing
       }
   }
 
-  // A block of the disc and one of a pin on either side of an inclined plane
+  // A disc block and a pin block on the two sides of an inclined plane
 
   inline const Eigen::Vector3d block_centre(1.15, 0.1, 0.02);
   inline const Eigen::Matrix3d block_turn =

@@ -14,7 +14,7 @@
 
 namespace Squeal::Testing
 {
-  /// Slopes of the contact faces towards the rim, and some tilt about x so that no face is like another.
+  /// Slopes the contact faces towards the rim and tilts them about x so that no two faces are alike.
   inline Mesh sloped(const Mesh &mesh, const double slope)
   {
     return mapped(mesh, [slope](const Point3 &p) {
@@ -32,7 +32,7 @@ namespace Squeal::Testing
     double             slope   = 0.; ///< of the contact faces
     Element            element = Element::trilinear;
     std::vector<Mount> mounts  = held;
-    int                n_free  = 0; ///< rigid-body motions that the mounts leave to the disc
+    int                n_free  = 0; ///< rigid-body motions of the disc on its mounts
   };
 
   inline void PrintTo(const Case &c, std::ostream *stream)
@@ -49,7 +49,7 @@ namespace Squeal::Testing
                                                {"free disc, cone", 0.3, Element::trilinear, {}, 6},
                                                {"turns freely", 0., Element::trilinear, {{"disc_bore", 0., 7.80e10, 0.}}, 1}};
 
-  /// The action throws an exception of which the message has all @p parts.
+  /// Expects an exception whose message contains all @p parts.
   template <typename Exception = Error, typename Action>
   void expect_refusal(const Action &action, const std::vector<std::string> &parts)
   {

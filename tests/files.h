@@ -15,7 +15,7 @@
 
 namespace Squeal::Testing
 {
-  /// All that a file holds; nothing where there is no file.
+  /// Content of a file, empty if it does not exist.
   inline std::string content(const std::filesystem::path &file)
   {
     std::ifstream     stream(file);
@@ -24,14 +24,14 @@ namespace Squeal::Testing
     return text.str();
   }
 
-  /// Writes a file, and the folders in which it lies.
+  /// Writes a file and creates its folders.
   inline void put(const std::filesystem::path &file, const std::string &text)
   {
     std::filesystem::create_directories(file.parent_path());
     std::ofstream(file) << text;
   }
 
-  /// An empty folder that all processes share, removed at the end.
+  /// A temporary folder shared by all processes.
   class TemporaryFolder
   {
   public:
@@ -46,7 +46,7 @@ namespace Squeal::Testing
       alone([&] { std::filesystem::remove_all(path); });
     }
 
-    /// What one process does while the others wait.
+    /// Runs @p action on one process while the others wait.
     template <typename Function>
     void alone(const Function &action) const
     {
@@ -56,7 +56,7 @@ namespace Squeal::Testing
       MPI_Barrier(MPI_COMM_WORLD);
     }
 
-    /// Names of everything below it but folders, links as such.
+    /// Relative paths of all files below; links are listed, not followed.
     std::vector<std::string> files() const
     {
       std::vector<std::string> names;

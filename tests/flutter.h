@@ -17,13 +17,13 @@ namespace Squeal::Testing
    *   ẍ + (d + β K̃) ẋ + K̃ x = 0,   K̃ = [ k11   k12 - μ k_c ]
    *                                     [ k12   k22         ]
    *
-   * β is structural damping, of which friction takes its part: V_C = β V_K.
+   * β is structural damping, whose forces also cause friction: V_C = β V_K.
    */
   struct Flutter
   {
     double k_c = 1.3, damping = 0., beta = 0., k11 = 3., k22 = 2., k12 = 0.7;
 
-    /// Where the frequencies coalesce without damping: (k11 - k22)² + 4 k12 (k12 - μ k_c) = 0.
+    /// Friction coefficient at which the undamped frequencies coalesce: (k11 - k22)² + 4 k12 (k12 - μ k_c) = 0.
     double coalescence() const
     {
       return ((k11 - k22) * (k11 - k22) / (4. * k12) + k12) / k_c;

@@ -13,7 +13,7 @@
 
 namespace Squeal::Testing
 {
-  /// A file in a directory of its own that vanishes with the test.
+  /// A temporary file in its own directory.
   class File
   {
   public:
@@ -37,7 +37,7 @@ namespace Squeal::Testing
     std::filesystem::path directory, path;
   };
 
-  /// The text of the Exception that the action throws, "accepted" if it throws none.
+  /// Message of the Exception that the action throws, or "accepted".
   template <typename Exception, typename Action>
   std::string message(const Action &action)
   {

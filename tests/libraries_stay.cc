@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Part of every program that the address sanitizer watches. Open MPI unloads its modules before the program ends; what they have
-// not returned could not be told from leaks of the program, as the traces would lack their names.
+// Linked into programs under the address sanitizer: keeps the modules of Open MPI loaded until the end, so that their leaks are
+// reported with symbol names and can be distinguished from leaks of the program.
 extern "C" int dlclose(void *)
 {
   return 0;

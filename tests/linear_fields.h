@@ -13,7 +13,7 @@
 
 namespace Squeal::Testing
 {
-  /// H of u = u_0 + H x with every kind of strain and rotation.
+  /// H of u = u_0 + H x with all strains and rotations.
   inline constexpr double displacement_gradient[3][3] = {{1.1, 0.3, -0.4}, {-0.2, 0.7, 0.9}, {0.5, -0.8, -1.3}};
 
   inline Point3 linear_field(const Point3 &p)
@@ -27,7 +27,7 @@ namespace Squeal::Testing
 
   using ElasticTensor = dealii::Tensor<4, 3>;
 
-  /// C_ijkl [Pa] of a material whose axes are the columns of a rotation, from the inverse of its compliance.
+  /// C_ijkl [Pa] from the inverse compliance; the columns of @p axes are the material axes.
   inline ElasticTensor elastic_tensor(const Material &material, const Eigen::Matrix3d &axes = Eigen::Matrix3d::Identity())
   {
     ElasticTensor local, result;
@@ -54,7 +54,7 @@ namespace Squeal::Testing
     return result;
   }
 
-  /// ½ H : C : H of linear_field(), per volume.
+  /// ½ H : C : H of linear_field(), per unit volume.
   inline double strain_energy(const ElasticTensor &C)
   {
     double      energy = 0.;
@@ -67,7 +67,7 @@ namespace Squeal::Testing
     return energy;
   }
 
-  /// The nine constants of a material in which no two directions are alike.
+  /// Orthotropic constants without any symmetry between the axes.
   inline Orthotropy skew_orthotropy()
   {
     return {90e9, 30e9, 0.5, 0.2, 50e9, 20e9, 15e9};
@@ -81,7 +81,7 @@ namespace Squeal::Testing
       .matrix();
   }
 
-  /// Materials whose disc is orthotropic; fixed axes are given by vectors that are neither of unit length nor normal to each other.
+  /// Materials with an orthotropic disc; fixed axes are given by vectors that are neither normalised nor orthogonal.
   inline MaterialParameters orthotropic_disc(const Orthotropy &constants, const std::optional<Eigen::Matrix3d> &axes)
   {
     MaterialParameters materials = mounted({});

@@ -9,7 +9,7 @@
 int main(int argc, char **argv)
 {
   Squeal::set_blas_threads(1);
-  // Takes its own arguments away before the libraries see them
+  // Removes GoogleTest arguments before the libraries parse argv
   ::testing::InitGoogleTest(&argc, argv);
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   return RUN_ALL_TESTS();

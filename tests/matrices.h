@@ -30,7 +30,7 @@ namespace Squeal::Testing
     return scale == 0. ? 0. : max_norm(*add(1., A, -1., *transpose(A))) / scale;
   }
 
-  /// How rows are spread over the processes.
+  /// Distribution of rows over the processes.
   enum class Distribution
   {
     even,
@@ -50,7 +50,7 @@ namespace Squeal::Testing
     return RowMap(rank == 0 ? 0 : (rank == n_processes - 1 ? n - share * (n_processes - 2) : share), MPI_COMM_WORLD);
   }
 
-  /// Entries in [-1, 1], the same on every process: what a library draws on one of them, Eigen misses in its own sequence.
+  /// Random entries in [-1, 1], broadcast because a library may advance the random sequence on one process only.
   inline DenseMatrix agreed_random_matrix(const int n_rows, const int n_columns)
   {
     DenseMatrix result = DenseMatrix::Random(n_rows, n_columns);
@@ -69,7 +69,7 @@ namespace Squeal::Testing
     });
   }
 
-  /// The matrix A, which all processes have.
+  /// The matrix A, known on all processes.
   inline std::shared_ptr<SparseMatrix> sparse(const RowMap &row_map, const RowMap &column_map, const DenseMatrix &A)
   {
     return sparse(row_map, column_map, [&A](const int i) {
@@ -94,7 +94,7 @@ namespace Squeal::Testing
 
   /**
    * @p n_copies uncoupled Laplacians (7-point stencil) on cubes of m³ points with
-   * zero values around; eigenvalues Σ_d 2 - 2 cos(π k_d / (m + 1)).
+   * zero boundary values; eigenvalues Σ_d 2 - 2 cos(π k_d / (m + 1)).
    */
   inline std::shared_ptr<SparseMatrix> laplacian(const int m, const int n_copies, const Distribution distribution = Distribution::even)
   {
@@ -186,7 +186,7 @@ namespace Squeal::Testing
       return sparse(map, map, [&](const int dof) {
         Row       row;
         const int node = dof / 3, component = dof % 3;
-        // Nodes are numbered across the thickness first, which keeps the band narrow.
+        // Numbering across the thickness first keeps the bandwidth small.
         const int position[3] = {node / (nz * ny), (node / nz) % ny, node % nz};
         for (int a = 0; a < 8; ++a)
           {
@@ -218,7 +218,7 @@ namespace Squeal::Testing
     return max_norm(replicate(X));
   }
 
-  /// Largest relative distance of columns of @p X from those of @p Y.
+  /// Largest relative difference between columns of @p X and @p Y.
   inline double relative_difference(const MultiVector &X, const MultiVector &Y)
   {
     const auto norms = column_norms(X - Y), sizes = column_norms(Y);
@@ -228,7 +228,7 @@ namespace Squeal::Testing
     return result;
   }
 
-  /// For each of @p values the relative distance to its own neighbour in @p others; as many must there be.
+  /// Relative distance of each value to its one-to-one neighbour in @p others, which must have the same size.
   inline std::vector<double> distances(const std::vector<Complex> &values, std::vector<Complex> others)
   {
     EXPECT_EQ(values.size(), others.size());

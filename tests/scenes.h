@@ -39,8 +39,8 @@ namespace Squeal::Testing
   /**
    * An annulus of @p n_rings × @p n_sectors quadrilaterals; sector 0 begins at
    * the x axis, so that sector -1 - j is the mirror image of sector j about it.
-   * Boundary curves are called @p bore and @p rim: other names than disc_bore
-   * and disc_rim keep the polygons with quadratic elements.
+   * Boundary curves are called @p bore and @p rim; names other than disc_bore
+   * and disc_rim keep the polygons for quadratic elements.
    */
   inline Plan polar_plan(const double                 inner,
                          const double                 outer,
@@ -58,7 +58,7 @@ namespace Squeal::Testing
     for (int i = 0; i <= n_rings; ++i)
       for (int j = 0; j < n_sectors; ++j)
         {
-          // Mirror images to the last bit
+          // Bitwise mirror images
           const int    k     = std::min(j, n_sectors - j);
           const double r     = inner + (outer - inner) * i / n_rings;
           const double angle = 2. * M_PI * k / n_sectors;
@@ -86,7 +86,7 @@ namespace Squeal::Testing
     return plan;
   }
 
-  /// A circle of 6 k nodes filled with an O-grid: a plate and a pin on top of all of it, its axis at (@p distance, 0).
+  /// A round plate with 6 k boundary nodes and an O-grid, completely covered by a pin, with the axis at (@p distance, 0).
   inline Plan round_plan(const double distance, const double radius, const int k)
   {
     Plan                      plan;
@@ -121,7 +121,7 @@ namespace Squeal::Testing
     return mesh;
   }
 
-  /// A disc about z = 0 with faces of radius 0.2 m as a ring: pins above press on it from outside, those below from inside.
+  /// Maps a disc about z = 0 to a ring of radius 0.25 m: upper pins press on it from outside, lower pins from inside.
   inline Mesh turned_to_rims(const Mesh &disc)
   {
     return mapped(disc, [](const Point3 &p) {
@@ -145,7 +145,7 @@ namespace Squeal::Testing
     return mesh;
   }
 
-  /// Layers and heights of small scenes; the rest as in the default scene.
+  /// Default geometry with the given numbers of layers.
   inline GeometryParameters layers(const int disc_layers, const int pin_layers)
   {
     GeometryParameters parameters;
@@ -154,7 +154,7 @@ namespace Squeal::Testing
     return parameters;
   }
 
-  /// Volume of the trilinear hexahedra of one component, by Gauss' rule of two points, which is exact.
+  /// Volume of the trilinear hexahedra of one component, by the two-point Gauss rule, which is exact.
   inline double volume(const Mesh &mesh, const unsigned int component)
   {
     constexpr int corner[8][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
@@ -195,7 +195,7 @@ namespace Squeal::Testing
     return Squeal::couple(terms, contact, damping);
   }
 
-  /// A mesh with all that is computed from it before any modes.
+  /// A mesh with everything derived from it up to the coupled system.
   struct Scene
   {
     Scene(const Mesh                &mesh,
@@ -225,7 +225,7 @@ namespace Squeal::Testing
     CoupledSystem                       coupled;
   };
 
-  /// Materials of the default scene; mounts as given.
+  /// Default materials with the given mounts.
   inline MaterialParameters mounted(const std::vector<Mount> &mounts = {{"disc_bore", 0., 7.80e10, 1.88e10}})
   {
     MaterialParameters materials;
@@ -233,7 +233,7 @@ namespace Squeal::Testing
     return materials;
   }
 
-  /// The same materials with Rayleigh damping, unlike in disc and pins.
+  /// The same materials with Rayleigh damping, different in disc and pins.
   inline MaterialParameters damped(MaterialParameters materials)
   {
     materials.disc.rayleigh_alpha = 20.;
@@ -252,7 +252,7 @@ namespace Squeal::Testing
     return operation;
   }
 
-  /// The free dofs of a displacement field, at rest on all components but the given one.
+  /// Free dofs of a displacement field that is zero outside the given component.
   inline MultiVector displacements(const Model &model, const unsigned int component, const std::function<Point3(const Point3 &)> &u)
   {
     MultiVector result(model.free_map(), 1);

@@ -24,10 +24,10 @@ namespace Squeal::Testing
 {
   // ------------------------------------------------------------------ scenes
 
-  /// End of the band of the scenes [rad/s].
+  /// Upper end of the band [rad/s].
   inline const double omega_max = circular_frequency(6000.);
 
-  // Two pins above, two below; the same with its mirror image about the x axis, and skewed.
+  // Pins that are symmetric about the x axis, and skewed pins.
   inline const std::vector<PolarPin> symmetric_pins = {{Plan::Side::top, -1, 2, 1, 1},
                                                        {Plan::Side::top, 4, 2, 0, 1},
                                                        {Plan::Side::top, -6, 2, 0, 1},
@@ -51,7 +51,7 @@ namespace Squeal::Testing
     return symmetric_modes(*system.stiffness, *system.mass, omega_max * omega_max, options);
   }
 
-  /// A disc that no mount holds: it can translate in its plane and turn, λ = 0. Its modes without friction need a shift.
+  /// A free disc with in-plane rigid-body motions, λ = 0; its frictionless modes need a shift.
   struct FreeDisc
   {
     explicit FreeDisc(const MaterialParameters &materials = mounted({}))
@@ -117,7 +117,7 @@ namespace Squeal::Testing
   }
 
   /**
-   * A system with friction at some contact nodes from its matrices, of which that of damping may be null.
+   * A system with friction at some contact nodes from its matrices; damping may be null.
    *
    * @param tangential Aᵀ, n_c × n
    * @param V_K, V_C   reactions to stiffness and damping, n_c × n; those to mass vanish

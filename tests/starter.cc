@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Preloaded into the program, starts it many times: relocating more than 200 libraries takes longer than a small run, and is done once. For
-// every request the process forks before `main`; the child is the program with its arguments, the parent answers with its exit status.
+// Preloaded fork server: relocating more than 200 libraries takes longer than a small run and is done only once. For every
+// request the process forks before `main`; the child runs the program, the parent replies with its exit status.
 
 #include <dlfcn.h>
 #include <sys/prctl.h>
@@ -19,11 +19,11 @@ namespace
 {
   struct Request
   {
-    std::vector<char> text;       // working folder and arguments, each with a zero byte at its end
+    std::vector<char> text;       // working folder and arguments, each zero-terminated
     int               streams[2]; // standard output and error
   };
 
-  /// False as soon as nobody is left to ask.
+  /// False once the client has closed the socket.
   bool receive(const int socket, Request &request)
   {
     request.text.resize(1 << 20);
@@ -43,7 +43,7 @@ namespace
     return true;
   }
 
-  /// In the child: its streams, folder and environment; returns its arguments, followed by the environment as the kernel has them.
+  /// Sets streams, folder and environment of the child; returns its arguments and environment in the kernel's layout.
   std::vector<char *> become(Request &request)
   {
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);

@@ -27,7 +27,7 @@ TEST(Memory, AvailableOfTheMachineAndItsGroups)
   write("sys/fs/cgroup/batch/job/memory.max", "max\n");
   write("sys/fs/cgroup/batch/job/memory.current", "500000\n");
   EXPECT_EQ(available_memory(root), 4000. * 1024.);
-  // The groups about it limit it, too; what is only cached can be had
+  // Parent groups limit it, too; the file cache can be reclaimed
   write("sys/fs/cgroup/batch/memory.max", "1000000\n");
   write("sys/fs/cgroup/batch/memory.current", "900000\n");
   EXPECT_EQ(available_memory(root), 100000.);
@@ -50,7 +50,7 @@ namespace
     return block;
   }
 
-  /// Whether the system tells; the address sanitizer keeps freed memory, to find who still uses it.
+  /// Whether memory can be measured; the address sanitizer keeps freed memory to detect its use.
   bool is_told()
   {
 #ifdef __SANITIZE_ADDRESS__
@@ -71,7 +71,7 @@ TEST(Memory, PeakIsThatSinceTheReset)
     EXPECT_GT(resident_memory(), before + 0.9 * bytes);
   }
   EXPECT_GT(peak_resident_memory(), before + 0.9 * bytes);
-  // Only now does freed memory go back to the system: a library lets malloc keep it
+  // The reset returns freed memory, which malloc keeps because of a library
   ASSERT_TRUE(reset_peak_memory());
   EXPECT_LT(resident_memory(), before + 0.1 * bytes);
   EXPECT_LT(peak_resident_memory(), before + 0.1 * bytes);
@@ -86,7 +86,7 @@ TEST(Memory, FreedBlocksGoBack)
   used_block(bytes).reset();
   EXPECT_LT(resident_memory() - before, 0.1 * bytes);
 
-  // Smaller ones when asked for, though something behind them is in use
+  // Small blocks are returned on request, although a block behind them is in use
   constexpr std::size_t                small = 1'000'000;
   std::vector<std::unique_ptr<char[]>> blocks;
   for (std::size_t i = 0; i < bytes / small; ++i)

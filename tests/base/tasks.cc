@@ -22,7 +22,7 @@ using namespace Squeal::Testing;
 
 namespace
 {
-  /// Sets a variable of the environment, or removes it, as long as it exists.
+  /// Sets or removes an environment variable until the end of the scope.
   class Variable
   {
   public:
@@ -51,7 +51,7 @@ namespace
 TEST(Tasks, AreDoneAtATime)
 {
   set_task_threads(2);
-  // Each waits for the other
+  // Each task waits for the other
   std::atomic<int> n_begun = 0;
   run_tasks(2, [&](const int) {
     ++n_begun;
@@ -105,7 +105,7 @@ TEST(MpiEnvironment, DependsOnMpirunAndCores)
   n_processes.set("1000000");
   prepare_mpi_environment();
   EXPECT_EQ(value("OMPI_MCA_mpi_yield_when_idle"), "1");
-  // The user's choice stays
+  // User settings are kept
   yields.set("0");
   prepare_mpi_environment();
   EXPECT_EQ(value("OMPI_MCA_mpi_yield_when_idle"), "0");

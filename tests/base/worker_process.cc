@@ -25,7 +25,7 @@ namespace
     return fs::temp_directory_path() / ("squeal_worker_" + std::to_string(getpid()) + ".log");
   }
 
-  /// Runs one of the tests below, which do nothing by themselves, in a process of this program.
+  /// Arguments that run one of the disabled tests below in a child process.
   std::vector<std::string> only(const std::string &test)
   {
     return {"--gtest_also_run_disabled_tests", "--gtest_filter=" + test};

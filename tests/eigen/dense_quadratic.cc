@@ -26,7 +26,7 @@ namespace
     return DenseMatrix::NullaryExpr(n, n, [&] { return entry(generator); });
   }
 
-  /// Like a reduced model: diagonal stiffness over a wide range, nonsymmetric coupling, damping of low rank.
+  /// Like a reduced model: wide-range diagonal stiffness, nonsymmetric coupling, low-rank damping.
   struct Pencil
   {
     explicit Pencil(const int n)
@@ -40,7 +40,7 @@ namespace
     DenseMatrix M, C, K;
   };
 
-  /// Largest ‖Q(λ)x‖ / (|λ|²‖M‖ + |λ|‖C‖ + ‖K‖) of the columns of X; of Q(λ)ᵀ if transposed.
+  /// Largest ‖Q(λ)x‖ / (|λ|²‖M‖ + |λ|‖C‖ + ‖K‖) over the right vectors, or the left vectors with Q(λ)ᵀ.
   double backward_error(const Pencil &pencil, const bool damped, const DenseQuadraticModes &modes, const bool left)
   {
     const ComplexDenseMatrix &X     = left ? modes.left : modes.right;
@@ -96,7 +96,7 @@ TEST(DenseQuadratic, VectorsOfBothSides)
 
 TEST(DenseQuadratic, OscillatorsOverWideRange)
 {
-  // λ² + 2 ζ ω λ + ω² = 0 with ω from 1 to 1e5: also the smallest keep ten digits.
+  // λ² + 2 ζ ω λ + ω² = 0 with ω from 1 to 1e5: even the smallest values have ten correct digits.
   const int   n = 26;
   DenseMatrix C = DenseMatrix::Zero(n, n), K = DenseMatrix::Zero(n, n);
   for (int i = 0; i < n; ++i)
@@ -146,7 +146,7 @@ TEST(DenseQuadratic, ModesOfABandApartFromTheRest)
   DenseMatrix  K = random_entries(n, 4), D = random_entries(n, 7) / n, M = random_entries(n, 5) * 0.1 / n;
   for (int i = 0; i < n; ++i)
     {
-      // A rigid-body motion of the reference first
+      // The first mode of the reference is a rigid-body motion
       K(i, i) += i == 0 ? 0. : std::pow(1. + i + (i < n_band ? 0 : 20), 2);
       D(i, i) += 0.02 * (1. + i);
     }
@@ -167,7 +167,7 @@ TEST(DenseQuadratic, ModesOfABandApartFromTheRest)
   for (const DenseMatrix *damping : {static_cast<const DenseMatrix *>(nullptr), static_cast<const DenseMatrix *>(&D)})
     expect_same(dense_modes_of_band(M, damping, K, squares, end).value(), dense_quadratic_modes(M, damping, K, end));
 
-  // An overdamped mode of the rest, and one whose damping brings it down into the band
+  // A mode above the band that is overdamped, or that damping brings down into the band
   for (const double damping : {400., 135.})
     {
       DenseMatrix much = C;
@@ -191,19 +191,19 @@ TEST(DenseQuadratic, ABandThatIsNotApartIsNotSeparated)
   const auto        squares    = squares_of(apart);
   const DenseMatrix noise      = random_entries(n, 6);
   EXPECT_TRUE(band_subspaces(apart + noise, squares, end).has_value());
-  // No gap beyond the band, a band without an end
+  // No gap above the band; an unbounded band
   EXPECT_FALSE(band_subspaces(stiffness(0.) + noise, squares_of(stiffness(0.)), end).has_value());
   EXPECT_FALSE(band_subspaces(apart + noise, squares, std::numeric_limits<double>::infinity()).has_value());
-  // A mode of the rest that comes down into the band, or becomes real
+  // A mode above the band that comes down into it or becomes real
   for (const double square : {100., -1e4})
     {
       DenseMatrix A = apart + noise;
       A(50, 50)     = square;
       EXPECT_FALSE(band_subspaces(A, squares, end).has_value()) << square;
     }
-  // Steps that do not converge
+  // Iterations that do not converge
   EXPECT_FALSE(band_subspaces(apart + 2000. * noise, squares, end).has_value());
-  // Then the QR algorithm has to look at all of them
+  // Falls back to the QR algorithm for all eigenvalues
   DenseMatrix A = apart + noise;
   A(50, 50)     = 100.;
   EXPECT_FALSE(dense_modes_of_band(I, nullptr, A, squares, end).has_value());

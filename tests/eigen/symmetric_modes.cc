@@ -38,7 +38,7 @@ namespace
                            ::testing::Combine(::testing::Values(RealSolver::lanczos, RealSolver::anasazi, RealSolver::arpack),
                                               ::testing::Values(Distribution::even, Distribution::first_process_empty)));
 
-  /// What every result must satisfy.
+  /// Checks that apply to every result.
   void check_modes(const SparseMatrix &K, const SparseMatrix &M, const double limit, const SymmetricModes &modes)
   {
     const int n_modes = modes.eigenvalues.size();
@@ -50,7 +50,7 @@ namespace
     ASSERT_EQ(modes.vectors->n_columns(), n_modes);
     EXPECT_LT(orthonormality_defect(M, *modes.vectors), 1e-12);
 
-    // Residuals anew.
+    // Recomputes the residuals.
     for (int j = 0; j < n_modes; ++j)
       {
         const MultiVector x  = view(*modes.vectors, j, 1);
@@ -73,7 +73,7 @@ namespace
 
 TEST_P(SymmetricModesBy, LaplacianOnACube)
 {
-  // Threefold and sixfold eigenvalues by symmetry, of known value.
+  // Known eigenvalues, threefold and sixfold by symmetry.
   const int    m     = 9;
   const auto   K     = laplacian(m, 1, distribution());
   const auto   M     = diagonal(K->rows(), [](int) { return 2.; });
@@ -92,7 +92,7 @@ TEST_P(SymmetricModesBy, LaplacianOnACube)
 
 TEST_P(SymmetricModesBy, EigenvaluesOfMoreCopiesThanABlockHas)
 {
-  // Twelve equal bodies with a simple mode, then threefold ones: 12- and 36-fold exactly, more than the block size
+  // Twelve equal bodies with simple and threefold modes: multiplicities of 12 and 36 exceed the block size
   const int            m = 5, n_copies = 12;
   const auto           K     = laplacian(m, n_copies, distribution());
   const auto           M     = diagonal(K->rows(), [](int) { return 1.; });
@@ -114,7 +114,7 @@ TEST_P(SymmetricModesBy, FreeBodyHasSixRigidModes)
   EXPECT_GT(modes.eigenvalues[6], 1e-4 * limit);
   check_modes(*body.stiffness, *body.mass, limit, modes);
 
-  // The same with a shift of the caller's choice.
+  // The same with a prescribed shift.
   options.shift       = 0.2 * limit;
   const auto by_shift = symmetric_modes(*body.stiffness, *body.mass, limit, options);
   ASSERT_EQ(by_shift.n_counted, modes.n_counted);
@@ -173,7 +173,7 @@ TEST(SymmetricModes, SolversAndLibrariesAgree)
       ASSERT_EQ(modes.n_counted, results.front().n_counted);
       expect_values(modes.eigenvalues, results.front().eigenvalues, 1e-10);
 
-      // The same space: all singular values of ΦᵀMΨ are one.
+      // Equal subspaces: all singular values of ΦᵀMΨ are one.
       DenseMatrix       overlap = gram(*results.front().vectors, *body.mass * *modes.vectors);
       const DenseMatrix squares = overlap.transpose() * overlap;
       EXPECT_LT(max_norm(squares - DenseMatrix::Identity(modes.n_counted, modes.n_counted)), 1e-8);
@@ -189,7 +189,7 @@ TEST(SymmetricModes, DoNotDependOnThreads)
   set_task_threads(2);
   const auto two = symmetric_modes(*copies, *unit, 1.7, options);
   set_task_threads(1);
-  // The same bits, but among processes, which add in any order
+  // Bitwise equal on one process; several processes add in any order
   if (copies->rows().n_processes() > 1)
     {
       ASSERT_EQ(one.n_counted, two.n_counted);
@@ -203,7 +203,7 @@ TEST(SymmetricModes, DoNotDependOnThreads)
 
 TEST(SymmetricModes, ModesOnTheLimitAreCountedAgain)
 {
-  // Twelve modes at the end of the band and, next to it, a thirteenth that the count has seen on this side
+  // Twelve modes at the end of the band, and a thirteenth just above it that the count has included
   const auto            K = diagonal(rows(400), [](const int i) { return i < 12 ? 1. : i == 12 ? 1. + 5e-9 : 5. + i; });
   const auto            M = diagonal(K->rows(), [](int) { return 1.; });
   SymmetricModesOptions options;
@@ -226,7 +226,7 @@ TEST(SymmetricModes, EndOfTheLowestIsFoundByCounting)
     {
       for (const int n : {1, 2, 3, 6, 7, 8, 9})
         EXPECT_EQ(count_below(*K, *M, end(n, first), "test").n_modes, n) << "from " << first;
-      // Half of a multiple eigenvalue cannot be had; of a cluster one more may come along
+      // A multiple eigenvalue cannot be split; a cluster may add one more mode
       for (const int n : {4, 5})
         {
           const int n_below = count_below(*K, *M, end(n, first), "test").n_modes;
@@ -234,12 +234,12 @@ TEST(SymmetricModes, EndOfTheLowestIsFoundByCounting)
           EXPECT_LE(n_below, 6) << "from " << first;
         }
     }
-  EXPECT_THROW(end(9, 10., 5e3), SolverError); // fewer than 9 lie below that
+  EXPECT_THROW(end(9, 10., 5e3), SolverError); // fewer than 9 lie below this limit
 }
 
 TEST_P(SymmetricModesBy, UncoupledPartsAreSolvedAlone)
 {
-  // Seven equal chains of 60 masses, whose entries alternate: every eigenvalue comes seven times.
+  // Seven equal chains of 60 masses with interleaved dofs: every eigenvalue is sevenfold.
   constexpr int n_chains = 7, length = 60;
   const auto    map = rows(n_chains * length, distribution());
   const auto    K   = sparse(map, map, [](const int i) {
@@ -278,8 +278,8 @@ TEST_P(SymmetricModesBy, LargeBlocksInASmallSystem)
 
 TEST(SymmetricModes, CallZeroWhatRoundingHidesWhateverTheBand)
 {
-  // A chain of masses of one, held at one end by a spring much softer than its own of stiffness one: ω² = k / n
-  for (const int n : {40, 400}) // dense, and by Lanczos' method
+  // A chain of unit masses and springs, held at one end by a much softer spring k: ω² ≈ k / n
+  for (const int n : {40, 400}) // dense, and by Lanczos
     for (const double stiffness : {0., 1e-7, 1e-3})
       for (const double limit : {1e-2, 3.})
         {

@@ -19,7 +19,7 @@ namespace
 {
   using Complex = std::complex<double>;
 
-  /// Distance of two logarithms of one number.
+  /// Distance of two complex logarithms modulo 2π i.
   double distance(const Complex a, const Complex b)
   {
     return std::hypot(a.real() - b.real(), std::remainder(a.imag() - b.imag(), 2. * M_PI));
@@ -28,14 +28,14 @@ namespace
 
 TEST(Determinants, OfADenseComplexMatrix)
 {
-  // Rows in an order that makes the factorisation exchange them
+  // An order of rows that requires pivoting
   ComplexDenseMatrix A = ComplexDenseMatrix::Zero(3, 3);
   A(0, 1)              = {0., 2.};
   A(1, 2)              = {3., 0.};
   A(2, 0)              = {1., 1.};
   A(0, 0)              = 0.5;
   const ComplexLU lu(A);
-  // Both cyclic exchanges are even: 2i · 3 · (1 + i)
+  // The cyclic permutation is even: 2i · 3 · (1 + i)
   EXPECT_LT(distance(lu.log_determinant(), std::log(Complex(0., 6.) * Complex(1., 1.))), 1e-14);
 
   const ComplexDenseMatrix I = ComplexDenseMatrix::Identity(3, 3);
@@ -47,7 +47,7 @@ TEST(Determinants, OfADenseComplexMatrix)
   EXPECT_EQ(singular.log_determinant().real(), -std::numeric_limits<double>::infinity());
   EXPECT_EQ(singular.inverse_norm(), std::numeric_limits<double>::infinity());
 
-  // What is not finite reaches no LAPACK
+  // NaN is caught before LAPACK
   A(1, 2) = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(ComplexLU(A).inverse_norm(), std::numeric_limits<double>::infinity());
 }

@@ -36,7 +36,7 @@ namespace
 TEST_P(Factorizations, PositiveDefiniteSystemsAreSolved)
 {
   const auto A = laplacian(6, 2, GetParam());
-  // More right-hand sides than any library takes at once.
+  // More right-hand sides than any library solves at once.
   const MultiVector B = random_vectors(A->rows(), 70);
   for (const FactorizationLibrary library : libraries)
     {
@@ -53,7 +53,7 @@ TEST_P(Factorizations, PositiveDefiniteSystemsAreSolved)
 
 TEST_P(Factorizations, SolutionsForAnyNumberOfColumns)
 {
-  // Factors of one task; of several, with a top; of trees without a top
+  // Factors of one task, of several tasks with a top, of separate trees without a top
   for (const auto &A : {laplacian(7, 1, GetParam()), laplacian(22, 1, GetParam()), laplacian(9, 30, GetParam())})
     {
       const auto        factor = factorize_positive_definite(*A, FactorizationLibrary::automatic, "test matrix");
@@ -66,7 +66,7 @@ TEST_P(Factorizations, SolutionsForAnyNumberOfColumns)
               MultiVector X(B.map(), k), alone(B.map(), 1);
               factor->apply(view(B, 0, k), X);
               EXPECT_LT(residual(*A, X, view(B, 0, k), false), 1e-12) << A->n_rows() << " rows, " << k << " columns";
-              // which hardly depend on the others
+              // A solution hardly depends on the other columns
               factor->apply(view(B, k - 1, 1), alone);
               EXPECT_LT(column_norms(view(X, k - 1, 1) - alone)[0], 1e-13 * column_norms(alone)[0]) << k << " columns";
             }
@@ -107,7 +107,7 @@ TEST_P(Factorizations, MatricesThatAreNotDefiniteAreRefused)
 
 TEST_P(Factorizations, InertiaCountsEigenvalues)
 {
-  // The second matrix is large enough for nested dissection, whose order serves every count
+  // The second matrix is large enough for nested dissection, whose ordering is reused by every count
   for (const auto &[m, n_copies] : {std::make_pair(6, 2), {14, 1}})
     {
       const auto L      = laplacian(m, n_copies, GetParam());

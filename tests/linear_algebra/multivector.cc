@@ -23,7 +23,7 @@ namespace
                            MultiVectors,
                            ::testing::Values(Distribution::even, Distribution::first_process_empty, Distribution::last_process_all));
 
-  /// A symmetric positive definite tridiagonal matrix that is no multiple of the identity.
+  /// A symmetric positive definite tridiagonal matrix.
   std::shared_ptr<SparseMatrix> inner_product(const RowMap &map)
   {
     const int n = map.n();
@@ -72,7 +72,7 @@ TEST_P(MultiVectors, RandomEntriesDoNotDependOnTheDistribution)
 
 TEST_P(MultiVectors, ProductsAgreeWithDenseOnes)
 {
-  // Parts of rows that end in the middle, few vectors with many; beta = 0 replaces what was there
+  // Incomplete blocks of rows, few columns with many; beta = 0 overwrites NaN
   for (const auto &[n, n_many, k] : {std::array<int, 3>{{3, 15, 2}}, {{700, 4, 3}}, {{700, 43, 1}}, {{10000, 16, 9}}})
     {
       const MultiVector X = random_vectors(rows(n, GetParam()), n_many, 1), Y = random_vectors(X.map(), k, 2);
@@ -104,7 +104,7 @@ TEST_P(MultiVectors, GrowByColumns)
   EXPECT_EQ(max_norm(join({&A, &B}).local() - view(all, 0, 5).local()), 0.);
   if (all.n_local_rows() > 0)
     {
-      MultiVector some = view(all, 0, 2); // which cannot grow
+      MultiVector some = view(all, 0, 2); // views cannot grow
       EXPECT_THROW(some.append(B), SolverError);
     }
 }
@@ -118,7 +118,7 @@ TEST_P(MultiVectors, OrthonormalizeFindsTheRank)
   ASSERT_EQ(Q.n_columns(), 5);
   EXPECT_LT(orthonormality_defect(*M, Q), 1e-13);
 
-  // Three new directions of very different size, one of Q, one zero, one repeated.
+  // Three new directions of very different norms, one from Q, one zero, one repeated.
   const MultiVector fresh = random_vectors(map, 3, 2);
   MultiVector       X(map, 6);
   X.col(0)            = 1e6 * fresh.col(0);
@@ -131,7 +131,7 @@ TEST_P(MultiVectors, OrthonormalizeFindsTheRank)
   EXPECT_LT(orthonormality_defect(*M, W), 1e-13);
   EXPECT_LT(max_norm(gram(Q, *M * W)), 1e-13);
 
-  // The span is kept: nothing of X is left outside of Q and W.
+  // X lies in the span of Q and W.
   const MultiVector basis = join({&Q, &W});
   EXPECT_FALSE(orthonormalize_if_any(*M, &basis, X, 1e-10).has_value());
   EXPECT_THROW(orthonormalize(*M, &basis, X, 1e-10), SolverError);
@@ -144,7 +144,7 @@ TEST_P(MultiVectors, OrthonormalizeResolvesNearlyParallelDirections)
   const RowMap map = rows(60, GetParam());
   const auto   M   = inner_product(map);
 
-  // Directions at angles of 1e-2, 1e-4, ..., 1e-12: beyond what one Gram matrix can tell apart.
+  // Directions at angles of 1e-2, 1e-4, ..., 1e-12: more than one Gram matrix can resolve.
   const MultiVector fresh = orthonormalize(*M, nullptr, random_vectors(map, 7, 3), 1e-8);
   MultiVector       X(map, 7);
   for (int j = 0; j < 7; ++j)
@@ -161,7 +161,7 @@ TEST_P(MultiVectors, OrthonormalizeResolvesNearlyParallelDirections)
       EXPECT_LT(orthonormality_defect(*M, W), 1e-13);
     }
 
-  // The kept directions are accurate: fresh(4) sticks out by 1e-8 only and is still found to 1e-6.
+  // The kept directions are accurate: fresh(4) contributes only 1e-8 and is still resolved.
   const MultiVector W         = orthonormalize(*M, nullptr, X, 1e-13);
   const DenseMatrix component = gram(W, *M * view(fresh, 4, 1));
   EXPECT_NEAR(component.squaredNorm(), 1., 1e-10);
@@ -169,7 +169,7 @@ TEST_P(MultiVectors, OrthonormalizeResolvesNearlyParallelDirections)
 
 TEST_P(MultiVectors, OrthonormalizeTellsHowFarFromDependentTheColumnsAre)
 {
-  // Two unit vectors at an angle: the Gram matrix has the eigenvalues 1 ± cos.
+  // The Gram matrix of two unit vectors has the eigenvalues 1 ± cos of their angle.
   const RowMap      map    = rows(60, GetParam());
   const auto        M      = inner_product(map);
   const MultiVector Q      = orthonormalize(*M, nullptr, random_vectors(map, 2, 3), 1e-8);
@@ -187,7 +187,7 @@ TEST_P(MultiVectors, OrthonormalizeTellsHowFarFromDependentTheColumnsAre)
 
 TEST_P(MultiVectors, PrincipalAxesAreOrderedAndBest)
 {
-  // Columns of known singular values over twelve orders of magnitude, mixed by an orthogonal matrix
+  // Columns with singular values over twelve orders of magnitude, mixed by an orthogonal matrix
   const RowMap      map = rows(60, GetParam());
   const auto        M   = inner_product(map);
   const int         k   = 7;
@@ -218,7 +218,7 @@ TEST_P(MultiVectors, PrincipalAxesAreOrderedAndBest)
 
 TEST_P(MultiVectors, ProductsByBlocksAreThoseOfTheWhole)
 {
-  // More columns than a block has, more rows than a part has
+  // More columns and rows than a block has
   const auto        M = inner_product(rows(2500, GetParam()));
   const MultiVector X = random_vectors(M->rows(), 70, 1), Y = random_vectors(M->rows(), 130, 2);
   const DenseMatrix expected = gram(X, *M * Y);

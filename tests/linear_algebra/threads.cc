@@ -13,7 +13,7 @@ using namespace Squeal::Testing;
 
 namespace
 {
-  /// What a number of threads computes from the same vectors.
+  /// Results from the same vectors with a number of threads.
   struct Results
   {
     explicit Results(const unsigned int n_threads)
@@ -29,7 +29,7 @@ namespace
       set_task_threads(1);
     }
 
-    // More rows than a task has
+    // More rows than one task has
     std::shared_ptr<const SparseMatrix> K = laplacian(24, 1);
     std::shared_ptr<MultiVector>        products, combinations, solutions;
     DenseMatrix                         inner;
