@@ -35,7 +35,7 @@ namespace
     return std::find(mesh.surface_names.begin(), mesh.surface_names.end(), name) - mesh.surface_names.begin();
   }
 
-  /// Area of the quadrilaterals under the pins, seen along the axis.
+  /// Area of the pin contact faces, projected along the axis.
   double contact_area(const Mesh &mesh)
   {
     double area = 0.;
@@ -56,7 +56,7 @@ namespace
 
 TEST(ContactInterface, EveryNodeOnceWithItsFrame)
 {
-  // z → z + s (r - r0) slopes towards the rim: normal (-s e_r + e_z) / √(1 + s²) on top but for the edges of the polygon
+  // z → z + s (r - r0) slopes towards the rim: normal (-s e_r + e_z) / √(1 + s²) on top, except at edges of the polygon
   constexpr int n_sectors = 96;
   const Mesh    flat      = extrude(polar_plan(0.15, 0.3, 3, n_sectors, {{top, -3, 6, 1, 1}, {bottom, 3, 4, 1, 1}}), layers(2, 2));
   for (const double slope : {0., 0.3})
@@ -66,7 +66,7 @@ TEST(ContactInterface, EveryNodeOnceWithItsFrame)
           return Point3{{p[0], p[1], p[2] + slope * (std::hypot(p[0], p[1]) - 0.2)}};
         });
         const auto positive = pairs(mesh, element), negative = pairs(mesh, element, Rotation::negative);
-        // (d a + 1) (d b + 1) nodes over a × b faces
+        // (d a + 1) (d b + 1) nodes on a × b faces of degree d
         EXPECT_EQ(positive.size(), element == Element::trilinear ? 14u + 10u : 39u + 27u);
         ASSERT_EQ(negative.size(), positive.size());
 
@@ -87,7 +87,7 @@ TEST(ContactInterface, EveryNodeOnceWithItsFrame)
             EXPECT_GT(node.area, 0.);
             area += node.area;
 
-            // n outwards, t along e_θ, b = n × t; normals of faces differ from the cone's by half their angle at the ends of a pin
+            // n outwards, t along e_θ, b = n × t; at the ends of a pin, face normals differ from the cone's by half the sector angle
             const double r = node.axis_distance(), scale = 1. / std::sqrt(1. + slope * slope), side = node.normal[2] > 0. ? 1. : -1.;
             const double tolerance = 1.1 * slope * M_PI / n_sectors, near = slope > 0. ? 1e-3 : 0.;
             const Eigen::Vector3d e_r(node.position[0] / r, node.position[1] / r, 0.), e_theta(-e_r[1], e_r[0], 0.);
@@ -111,7 +111,7 @@ TEST(ContactInterface, EveryNodeOnceWithItsFrame)
 
 TEST(ContactInterface, PadsThatEndAtTheRimPairInDegree2)
 {
-  // The disc's rim and bore are curved; the pads' edges there must follow, whatever the shape of the rest of their outline.
+  // Pad edges on the rim and bore must follow the curve, whatever the rest of their outline.
   const auto interface =
     pairs(extrude(polar_plan(0.15, 0.3, 3, 16, {{top, -1, 2, 1, 2}, {bottom, 3, 3, 0, 1}}), layers(1, 1)), Element::quadratic);
   const auto n_at = [&](const double radius) {
@@ -125,7 +125,6 @@ TEST(ContactInterface, PadsThatEndAtTheRimPairInDegree2)
 
 TEST(ContactInterface, DisplacedPinsAreCoupledByMortarElements)
 {
-  // A pin is displaced
   const auto apart = [](const double distance) {
     Mesh                   mesh = flat_mesh();
     std::set<unsigned int> nodes;
@@ -147,7 +146,7 @@ TEST(ContactInterface, DisplacedPinsAreCoupledByMortarElements)
 
 TEST(ContactInterface, WhatCannotBePairedIsRefused)
 {
-  // The lateral faces of the pins are clamped as well, down to the contact
+  // Lateral faces of the pins are clamped as well, down to the contact
   Mesh clamped = flat_mesh();
   for (auto &quadrilateral : clamped.faces)
     if (clamped.surface_names[quadrilateral.surface] == PhysicalNames::pin_side)
@@ -165,7 +164,7 @@ TEST(RadialDissipation, SharesTheLoadOfEachSide)
   operation.friction_coefficient = 0.37;
   operation.rotation_speed       = 3.;
   operation.load_per_side        = 500.;
-  // c_b w_0 is the friction force μ R_n0 (consistent) or R_n0 (published), in equal shares
+  // c_b w_0 is the friction force μ R_n0 (consistent) or R_n0 (published), shared equally by the nodes
   for (const auto &[kind, force] :
        {std::make_pair(RadialDissipation::none, 0.), {RadialDissipation::consistent, 0.37 * 500.}, {RadialDissipation::published, 500.}})
     {

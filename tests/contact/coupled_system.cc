@@ -15,7 +15,7 @@ namespace
 
   Scene scene(const Case &c, const bool is_damped = false, const RadialDissipation dissipation = RadialDissipation::consistent)
   {
-    // Fewer elements where they are quadratic
+    // Fewer elements if they are quadratic
     const int                   n    = c.element == Element::trilinear ? 2 : 1;
     const std::vector<PolarPin> pins = {{Plan::Side::top, 0, n, 1, 1}, {Plan::Side::bottom, -1, n, 0, 1}};
     return Scene(sloped(extrude(polar_plan(0.15, 0.3, 1 + n, 4 + 4 * n, pins), layers(1, 2)), c.slope),
@@ -31,7 +31,7 @@ namespace
     return max_norm(*add(1., A, -1., B)) / max_norm(B);
   }
 
-  /// Largest norm of a column of A - B, in parts of that of B.
+  /// Largest column norm of A - B relative to that of B.
   double difference(MultiVector A, const MultiVector &B)
   {
     A -= B;
@@ -80,7 +80,7 @@ TEST(ReactionOperators, GiveTheSameEigenvaluesWhateverTheirKind)
   const DenseMatrix           N   = to_dense(P_n);
   const int                   n_c = N.rows(), n = N.cols();
 
-  // From the displacements of the pins alone, of the disc alone, and the pseudo-inverse of all directions in a weighted norm
+  // Reactions from the pins alone, from the disc alone, and from a weighted pseudo-inverse of all directions
   DenseMatrix pin = DenseMatrix::Zero(n_c, n), B(3 * n_c, n), W = DenseMatrix::Zero(n, n);
   for (int c = 0; c < n_c; ++c)
     for (const int dof : s.interface[c].pin_node.dofs)
@@ -120,18 +120,18 @@ TEST_P(Contact, KernelSpansTheAdmissibleDisplacements)
   EXPECT_EQ(T_c.n_columns(), T_c.n_rows() - static_cast<int>(s.interface.size()));
   EXPECT_LT(max_norm(*multiply(*s.contact.normal, T_c)), 1e-15);
 
-  // Full rank, well conditioned: free dofs appear with 1, and a slave follows five others with |ratio| ≤ 1, 1 ≤ TᵀT ≤ 1 + 5.
+  // Full rank, 1 ≤ TᵀT ≤ 1 + 5: free dofs have the entry 1, and a slave depends on five others with |ratio| ≤ 1.
   const auto G    = multiply(T_c, T_c, true, false);
   const auto unit = identity(G->rows());
   EXPECT_EQ(count_negative_eigenvalues(*add(1., *G, -0.999, *unit), "TᵀT - 1"), 0);
   EXPECT_EQ(count_negative_eigenvalues(*add(-1., *G, 6.001, *unit), "6 - TᵀT"), 0);
 
-  // A selection where n is a coordinate axis: one entry, a one, in every row
+  // A selection matrix, with a single entry of 1 per row, if n is a coordinate axis
   const DenseMatrix T            = to_dense(T_c);
   const bool        is_selection = ((T.array() == 0.) || (T.array() == 1.)).all() && (T.rowwise().sum().array() == 1.).all();
   EXPECT_EQ(is_selection, GetParam().slope == 0.);
 
-  // Every displacement with P_n u = 0 is reached: u minus its projection on the columns vanishes.
+  // The columns span every displacement with P_n u = 0: the residual of the projection vanishes.
   MultiVector u = random_vectors(s.model.free_map(), 3);
   multiply_add(-0.5, transpose_times(*s.contact.normal, *s.contact.normal * u), DenseMatrix::Identity(3, 3), 1., u);
   EXPECT_LT(max_norm(replicate(*s.contact.normal * u)), 1e-14);
@@ -159,7 +159,7 @@ TEST_P(Contact, ComponentKernels)
 
 TEST_P(Contact, MatricesAreThoseOfTheUnreducedEquation)
 {
-  // T_cᵀ (1 − μ/2 P_tᵀ P_n) K T_c, likewise M and C of the bodies, of whose damping friction takes its part; C_b in addition
+  // T_cᵀ (1 − μ/2 P_tᵀ P_n) K T_c, likewise M and C of the bodies, whose damping forces also cause friction; C_b is added without friction
   for (const bool is_damped : {false, true})
     for (const RadialDissipation dissipation : {RadialDissipation::none, RadialDissipation::consistent})
       {
@@ -195,7 +195,7 @@ TEST_P(Contact, DampingActsAlongTheSlidingAndTheRadialDirection)
   for (std::size_t c = 0; c < s.interface.size(); ++c)
     {
       c_b.push_back(1. + c);
-      c_t.push_back(-3. + c % 5); // of either sign, as of friction that falls with the speed
+      c_t.push_back(-3. + c % 5); // of either sign; negative if friction falls with speed
     }
   const auto along = [&](const Matrix &P, const std::vector<double> &values) {
     return projected(*Testing::diagonal(P->rows(), [&](const int c) { return values[c]; }), *P);
@@ -208,7 +208,7 @@ TEST_P(Contact, DampingActsAlongTheSlidingAndTheRadialDirection)
   EXPECT_EQ(contact_damping(s.contact, {zeros, {}}), nullptr);
   EXPECT_EQ(contact_damping(s.contact, {zeros, zeros}), nullptr);
 
-  // Friction takes no part
+  // Contact damping causes no friction
   const CoupledSystem coupled = couple(s.system, s.contact, {c_b, c_t});
   EXPECT_TRUE(has_no_reaction_to_velocity(coupled));
   EXPECT_EQ(difference(*with_friction(coupled, 0.4).damping, *with_friction(coupled, 0.).damping), 0.);
@@ -233,13 +233,13 @@ TEST_P(Contact, UpdatedInverseEqualsSparseFactors)
               EXPECT_LT(difference(X, Y), 1e-10) << "shift " << shift << ", mu " << mu;
             }
         }
-      // The frictionless inverse does not change; attachment modes S X = A
+      // The frictionless inverse is independent of μ; attachment modes S X = A
       const Matrix S = dynamic_stiffness(with_friction(s.coupled, 0.), shift);
       EXPECT_LT(difference(*S * inverse.solve_frictionless(B), B), 1e-10);
       const DenseMatrix forces = replicate(s.coupled.friction_forces->columns(0, s.coupled.n_contact()));
       EXPECT_LT(max_norm(replicate(*S * inverse.attachment_modes()) - forces), 1e-10);
 
-      // Attachment modes that are solved for when they are needed
+      // Attachment modes computed on demand
       const UpdatedInverse waiting(s.coupled, shift, FactorizationLibrary::automatic, AttachmentModes::when_needed);
       const DenseMatrix    Y = agreed_random_matrix(s.coupled.n_contact(), 3);
       EXPECT_LT(difference(waiting.attachment_modes_times(Y), inverse.attachment_modes_times(Y)), 1e-12);
@@ -283,7 +283,7 @@ TEST_P(Contact, ComplexModesSatisfyTheUnreducedEquation)
           EXPECT_LT(rest.col(j).norm(), 1e-9 * size[j]) << "mode " << j;
           n_touching += forces.col(j).norm() > 1e-2 * size[j];
         }
-      // The reactions matter in the balance, but for modes of the disc in its plane.
+      // Reactions contribute to the balance, except for in-plane modes of the disc.
       EXPECT_GT(n_touching, k / 2);
     }
 }
@@ -309,7 +309,7 @@ TEST_P(Contact, SpringsYieldByTheReactions)
   const DenseMatrix expected = to_dense(*s.system.stiffness) + (P_n + mu * P_t).transpose() * D.asDiagonal() * P_n;
   EXPECT_LT(max_norm(to_dense(*with_friction(spring, mu).stiffness) - expected), 1e-14 * max_norm(expected));
 
-  // The constraint is its limit, with errors in proportion to 1 / k
+  // The rigid constraint is the limit, with errors proportional to 1 / k
   const auto lowest = [&](const CoupledSystem &system) {
     const auto matrices = with_friction(undamped(system), mu);
     return dense_quadratic_modes(to_dense(*matrices.mass), nullptr, to_dense(*matrices.stiffness), 6e4).values;

@@ -11,7 +11,7 @@
 using namespace Squeal;
 using namespace Squeal::Testing;
 
-// Constant pressure between blocks whose flat faces do not match is exact, whatever their cells.
+// Contact patch test: constant pressure across non-matching flat faces, for all cell shapes.
 
 namespace
 {
@@ -40,7 +40,7 @@ namespace
                                               {"9 and 6 nodes", Cut::tetrahedra, Cut::hexahedra, Element::quadratic},
                                               {"both, quadratic", Cut::mixed, Cut::mixed, Element::quadratic}};
 
-  // Bricks of the disc's block and of the pin's
+  // Bricks of the disc block and of the pin block
   const std::array<std::array<unsigned int, 3>, 2> fine = {{{{4, 3, 1}}, {{5, 2, 1}}}}, coarse = {{{{1, 2, 1}}, {{2, 1, 1}}}};
 
   class Blocks : public ::testing::TestWithParam<BlockCase>
@@ -56,7 +56,7 @@ namespace
 
 TEST_P(Blocks, ConstantPressureIsInEquilibrium)
 {
-  // Uniaxial stress along the normal, with the blocks free to expand across it
+  // Uniaxial stress along the normal, with free lateral expansion
   constexpr double      p = 2e6;
   const Eigen::Vector3d n = block_turn.col(2);
   MultiVector           u(s.model.free_map(), 1);
@@ -70,14 +70,14 @@ TEST_P(Blocks, ConstantPressureIsInEquilibrium)
       });
     }
 
-  // K u − f: what the contact must bear; f acts on both ends
+  // Contact forces K u − f; f acts on both ends
   MultiVector forces = *s.system.stiffness * u;
   for (const Node &node : s.model.nodes())
     for (const int dof : node.dofs)
       if (const int i = forces.map().place(dof);
           i >= 0 && std::abs(n.dot(Eigen::Vector3d::Map(node.position.data()) - block_centre)) > 1e-9)
         forces(i, 0) = 0.;
-  // Functions on distorted quadrilaterals are no polynomials of the coordinates: quadrature is not exact
+  // Shape functions on distorted quadrilaterals are not polynomials of the coordinates, so that quadrature is inexact
   const bool   has_triangles_only = GetParam().disc == Cut::tetrahedra && GetParam().pin == Cut::tetrahedra;
   const double tolerance          = has_triangles_only || GetParam().distortion == 0. ? 1e-12 : 1e-10;
   EXPECT_LT(largest_entry(transpose_times(T_c, forces)), tolerance * largest_entry(forces));
@@ -107,7 +107,7 @@ TEST_P(Blocks, OperatorsFitTogether)
     EXPECT_LT(max_norm(*multiply(S, *P, false, true)), 1e-13);
   EXPECT_LT(max_norm(*multiply(P_n, T_c)), 1e-13);
 
-  // T_c is as wide as ker P_n, and of full rank because it selects dofs
+  // T_c has dim ker P_n columns, and full rank because it selects dofs
   EXPECT_EQ(T_c.n_rows(), s.model.free_map().n());
   EXPECT_EQ(T_c.n_columns(), T_c.n_rows() - n_c);
   const auto G = multiply(T_c, T_c, true, false);

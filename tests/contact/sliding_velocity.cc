@@ -21,7 +21,7 @@ namespace
     return operation;
   }
 
-  /// A block that stands on a rail along x, off its middle.
+  /// A block on a rail along x, off-centre.
   Mesh block_on_rail()
   {
     Mesh mesh;
@@ -35,7 +35,7 @@ namespace
     return mapped(mesh, [](const Point3 &p) { return Point3{{-p[1], p[0], p[2]}}; });
   }
 
-  const std::vector<Mount> resting = {{"disc_bore", 1e10, 1e10, 1e10}}; // the same in all directions
+  const std::vector<Mount> resting = {{"disc_bore", 1e10, 1e10, 1e10}}; // isotropic
 
   std::vector<std::complex<double>> eigenvalues(const Mesh &mesh, const OperationParameters &operation)
   {
@@ -67,7 +67,7 @@ TEST(SlidingVelocity, IsRotationAboutTheAxisUnlessGiven)
           EXPECT_NEAR(twice[c].lever, 2. * usual[c].lever, 1e-15);
           EXPECT_TRUE(given[c].turns && usual[c].turns && !twice[c].turns);
         }
-      // Twice the speed damps half as much
+      // Doubling the speed halves the damping
       OperationParameters       operation = operating(RadialDissipation::consistent, rotation);
       const std::vector<double> reactions(usual.size(), -3.);
       const auto c_b = radial_dissipation(usual, reactions, operation), less = radial_dissipation(twice, reactions, operation);

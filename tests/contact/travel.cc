@@ -28,7 +28,7 @@ namespace
       operation.load_per_side        = 500.;
     }
 
-    /// Force along a direction that the reactions of a body leave to its backplate [N].
+    /// Force on the backplate of a body along a direction, from the contact reactions [N].
     double force(const unsigned int pin, const Eigen::Vector3d &e, const std::vector<double> &reactions) const
     {
       double sum = 0.;
@@ -66,7 +66,7 @@ TEST(Travel, LevelAndConicalFacesArePressedAlongTheAxis)
         EXPECT_EQ(backplate_numbers(e, false), (std::vector<int>{-1, 0, 0, 1}));
         EXPECT_EQ(backplate_numbers(e, true), (std::vector<int>{-1, 0, 1, 2}));
 
-        // The axial force on the backplate of each side is the load, and the nodes of a side have equal reactions
+        // Axial forces on the backplates of a side add up to the load, and the nodes of a side have equal reactions
         EXPECT_NEAR(s.force(1, e[1].direction, r) + s.force(2, e[2].direction, r), 500., 1e-10);
         EXPECT_NEAR(s.force(3, e[3].direction, r), 500., 1e-10);
         for (std::size_t c = 0; c < r.size(); ++c)
@@ -85,7 +85,7 @@ TEST(Travel, ShoesOutsideAndInsideOfARingAreSidesOfTheirOwn)
       EXPECT_EQ(backplate_numbers(e, false), (std::vector<int>{-1, 0, 1, 2}));
       for (const unsigned int pin : {1, 2, 3})
         {
-          // Towards the ring from the middle of the shoe: inwards from outside, outwards from inside
+          // Towards the ring: inwards for outer shoes, outwards for inner shoes
           Eigen::Vector3d middle(0., 0., 0.);
           for (const ContactNode &node : s.interface)
             if (node.pin == pin)
@@ -99,7 +99,7 @@ TEST(Travel, ShoesOutsideAndInsideOfARingAreSidesOfTheirOwn)
 
 TEST(Travel, ABodyThatRubsBothFacesIsRefusedByName)
 {
-  // The upper pins and the lower one as one body: faces of unequal areas, and of equal ones
+  // Upper and lower pins as one body, with unequal and with equal areas
   for (const bool is_equal : {false, true})
     {
       Mesh mesh = is_equal ?
@@ -118,10 +118,10 @@ TEST(Travel, ABodyThatRubsBothFacesIsRefusedByName)
 
 TEST(Travel, FrictionThatCarriesTheLoadIsRefused)
 {
-  // Faces that rise along the sliding direction: with enough friction they hold the pin without any load
+  // Self-locking: on faces that rise along the sliding direction, enough friction holds the pin without load
   const Mesh    mesh = mapped(unequal_pins(), [](const Point3 &p) { return Point3{{p[0], p[1], p[2] + 0.1 * std::atan2(p[1], p[0])}}; });
   const Pressed weak(mesh, 0.4), strong(mesh, 5.), reversed(mesh, 5., Rotation::negative);
   EXPECT_NO_THROW(weak.shares());
-  for (const Pressed *s : {&strong, &reversed}) // one side or the other
+  for (const Pressed *s : {&strong, &reversed}) // locks on one side or the other
     expect_refusal([&] { s->shares(); }, {"Operation/Friction coefficient"});
 }

@@ -13,13 +13,13 @@ using namespace Scenes;
 namespace
 {
 
-  /// Area of a regular polygon in a circle.
+  /// Area of a regular polygon inscribed in a circle.
   double polygon(const double radius, const unsigned int n)
   {
     return 0.5 * n * radius * radius * std::sin(2. * M_PI / n);
   }
 
-  /// Distance from each node of one surface to the nearest of another, the largest.
+  /// Largest distance from a node in @p from to the nearest node in @p to.
   double largest_gap(const Mesh &mesh, const std::set<unsigned int> &from, const std::set<unsigned int> &to)
   {
     double largest = 0.;
@@ -45,7 +45,7 @@ namespace
       EXPECT_EQ(pins.count(node), 0u);
   }
 
-  /// With all digits of points and all names.
+  /// MSH text with all digits and names.
   std::string text_of(const Mesh &mesh)
   {
     std::ostringstream stream;
@@ -78,7 +78,7 @@ TEST(GenerateMesh, PinFacesHaveTheirNodesAndGoodElements)
       EXPECT_EQ(nodes_on(mesh, "pin_clamp").size(), parameters.nodes_per_pin_face);
       EXPECT_EQ(nodes_on(mesh, "pin_side").size(), 6 * k * (parameters.pin_layers + 1));
 
-      // The pin's outline is the regular polygon; no corner is flatter than the block corners on it
+      // The outline is a regular polygon, and no corner is flatter than the block corners on it
       const double pin_area = polygon(parameters.pin_diameter / 2., 6 * k);
       EXPECT_NEAR(area(mesh, "pin_contact"), pin_area, 1e-12);
       EXPECT_NEAR(area(mesh, "disc_contact"), pin_area, 1e-12);
@@ -131,7 +131,7 @@ TEST(GenerateMesh, PinsThatAreNotOppositeAreAtTheirPlaces)
       for (std::size_t pin = 0; pin < 6; ++pin)
         EXPECT_EQ(n_on_outline(mesh, side, pins.radii[pin], pins.angles[pin], radius), n_outline);
   };
-  // A little aside, half a pitch aside, nothing opposite
+  // Slightly offset, offset by half a pitch, not opposite at all
   for (const double shift : {0.1, 2., 9.2, 14., 30., 180.})
     {
       GeometryParameters parameters;
@@ -139,7 +139,7 @@ TEST(GenerateMesh, PinsThatAreNotOppositeAreAtTheirPlaces)
         angle += shift;
       expect(parameters, 0.15);
     }
-  // Those above spread further than those below, so that they overlap askew
+  // Upper pins are spread wider than lower ones, so that they overlap obliquely
   for (const double spread : {27., 30., 33.})
     for (const unsigned int nodes : {7, 19})
       for (const double size : {0.012, 0.02, 0.03})
@@ -165,7 +165,7 @@ TEST(GenerateMesh, OppositePinsStayWhereThePlanHasThem)
       for (const unsigned int node : nodes_on(mesh, "disc_contact"))
         (mesh.points[node][2] > 0. ? above : below).emplace(mesh.points[node][0], mesh.points[node][1]);
       EXPECT_EQ(above.size(), 6 * nodes);
-      EXPECT_EQ(above, below); // to the last bit: nothing was sheared
+      EXPECT_EQ(above, below); // bitwise: nothing was sheared
     }
 }
 
@@ -185,7 +185,7 @@ TEST(GenerateMesh, CloseAndThinPinsAreMeshed)
   parameters.bottom     = {};
   EXPECT_GT(mesh_quality(generate_mesh(parameters)).worst_scaled_jacobian, 0.1);
 
-  // Thin ones: elements grow between them
+  // Thin pins: elements grow between them
   GeometryParameters thin;
   thin.pin_diameter = 0.001;
   EXPECT_LT(generate_mesh(thin).cells.size(), 30000u);
@@ -199,7 +199,7 @@ TEST(GenerateMesh, ScaledParametersGiveTheScaledMesh)
       GeometryParameters p = one_pin();
       for (double *length : {&p.disc_inner_radius, &p.disc_outer_radius, &p.disc_thickness, &p.pin_diameter, &p.pin_height, &p.element_size,
                              &p.pairing_tolerance, &p.top.radii[0]})
-        *length = std::stod(std::to_string(*length) + "e" + std::to_string(exponent)); // the nearest number
+        *length = std::stod(std::to_string(*length) + "e" + std::to_string(exponent)); // the nearest double
       const Mesh other = generate_mesh(p);
       ASSERT_EQ(other.points.size(), mesh.points.size());
       for (std::size_t i = 0; i < mesh.points.size(); ++i)
@@ -215,7 +215,7 @@ TEST(GenerateMesh, SameParametersGiveTheSameMeshAlsoFromItsFile)
   const std::string written = text_of(mesh);
   EXPECT_EQ(text_of(generate_mesh(one_pin())), written);
   EXPECT_EQ(text_of(generate_mesh(of_file(File("mesh.msh", written).string()))), written);
-  // Checksums tell meshes apart
+  // Checksums distinguish meshes but ignore rounding
   EXPECT_EQ(checksum(generate_mesh(one_pin())), of);
   double &z = mesh.points.back()[2];
   z += 1e-16; // rounding
@@ -248,10 +248,10 @@ TEST(GenerateMesh, SolidsAreTakenAsTheyAreWithFacesOfSeveralNamesAndGroupsOfOneN
   expect_mentions(message<MeshError>([&] { generate_mesh(of_file(file.string()), {"wall"}); }),
                   {"'ground'", "disc_contact, pin_contact, pin_clamp, pin_side, disc_bore, disc_rim"});
 
-  // Through a file, which holds a face of two names twice
+  // Round trip through a file, which lists a face with two names twice
   const File written("mesh.msh", text_of(mesh));
   EXPECT_EQ(text_of(generate_mesh(of_file(written.string()), {"ground", "wall"})), text_of(mesh));
-  // The same with the second group named like the first
+  // The same with equal names of both groups
   std::string one_name = text_of(mesh);
   one_name.replace(one_name.find("\"wall\""), 6, "\"ground\"");
   const File merged("merged.msh", one_name);
@@ -282,7 +282,7 @@ TEST(PlanSmoothing, InvertedFacesAreTurnedOver)
         EXPECT_NEAR(points[5 * j + i][1], j, 0.1);
       }
 
-  // Faces that nothing can help, and faces that need no help, stay
+  // Faces that cannot be repaired and good faces stay unchanged
   std::vector<Plan::Point> flat   = {{0., 0.}, {1., 0.}, {2., 0.}, {3., 0.}};
   const auto               before = flat, good = points;
   untangle({{{0, 1, 2, 3}}}, std::vector<bool>(4, true), {}, flat);

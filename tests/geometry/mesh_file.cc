@@ -14,7 +14,7 @@ using Point = Mesh::Point;
 
 namespace
 {
-  /// Cells of these types of Gmsh, each a volume of that name, with so many of their nodes, three units apart.
+  /// A cell of a Gmsh type in its own volume, with the first @p n_nodes of its nodes.
   struct GmshCell
   {
     std::string  type, volume;
@@ -94,7 +94,7 @@ TEST(MeshFile, TakesCellsOfEveryShapeAndOrder)
 
 TEST(MeshFile, SerendipityElementsShareTheNodesThatTheyGet)
 {
-  // Two hexahedra side by side, of 27 and of 20 nodes, with a named face of eight on the second; an edge of the latter bulges
+  // Adjacent hexahedra with 27 and 20 nodes; the second has a named face of 8 nodes and a curved edge
   GmshMesh   mesh  = gmsh_mesh({complete[3], {"Hexahedron 20", "disc", Shape::hexahedron, 2, 20}});
   auto      &first = mesh.groups[0].elements.begin()->second[0].nodes, &second = mesh.groups[1].elements.begin()->second[0].nodes;
   const auto nodes_of = [](const unsigned int face) { return nodes_of_face(Shape::hexahedron, 2, face); };
@@ -118,8 +118,8 @@ TEST(MeshFile, SerendipityElementsShareTheNodesThatTheyGet)
   ASSERT_EQ(result.faces.size(), 1u);
   const unsigned int centre = result.faces[0].nodes[8];
   EXPECT_EQ(centre, result.cells[1].nodes[nodes_of(3)[8]]);
-  EXPECT_NEAR(result.points[centre][0], 2.1, 1e-12);                     // half of the edges
-  EXPECT_NEAR(result.points[result.cells[1].nodes[26]][0], 1.55, 1e-12); // a quarter of them
+  EXPECT_NEAR(result.points[centre][0], 2.1, 1e-12);                     // half of the edge shift
+  EXPECT_NEAR(result.points[result.cells[1].nodes[26]][0], 1.55, 1e-12); // a quarter of it
 }
 
 TEST(MeshFile, OtherElementsAreRefused)
@@ -184,7 +184,7 @@ TEST(MeshFile, VolumesThatShareNodesAreOneBody)
 
 TEST(Bodies, AreNamedAfterTheirVolumes)
 {
-  // Tetrahedra, of which some share a node
+  // Tetrahedra, some of which share a node
   const auto names = [](const std::vector<std::string> &volumes, const std::vector<std::array<unsigned int, 2>> &joined) {
     Mesh mesh;
     mesh.volume_names = volumes;

@@ -24,7 +24,7 @@ namespace
     return values;
   }
 
-  /// Angles of parts of a circle of n, from one to another.
+  /// Angles of a circle divided into n parts, from the first to the last.
   Values angles(const int n, const int first, const int last)
   {
     return interval(2. * M_PI * first / n, 2. * M_PI * last / n, last - first);
@@ -45,7 +45,7 @@ namespace
     return mesh;
   }
 
-  /// Adds a grid of cells. Where it is shared, it shares nodes at the same place with itself and with what its volume has already.
+  /// Adds a grid of cells; where @p is_shared holds, coincident nodes of the volume are merged.
   void add_grid(Mesh              &mesh,
                 const unsigned int volume,
                 const Values      &a,
@@ -86,7 +86,7 @@ namespace
           }
   }
 
-  /// Names faces whose nodes all are wanted: those of the disc disc_contact, others pin_contact.
+  /// Adds the faces whose nodes are all wanted, as disc_contact on the disc and as pin_contact on other bodies.
   void name_contact(Mesh &mesh, const Choice &is_wanted)
   {
     for (const CellFace &face : all_faces(mesh))
@@ -96,7 +96,7 @@ namespace
 
   const Values radii = {0.15, 0.2, 0.25, 0.3};
 
-  /// Faces between the ring and the first sectors of the pad, of 24 in a circle.
+  /// Nodes between the ring and the first @p n_sectors sectors of the pad, with 24 sectors in a circle.
   Choice under_pad(const int n_sectors)
   {
     return [n_sectors](const Point &p) {
@@ -105,7 +105,7 @@ namespace
     };
   }
 
-  /// A ring with a pad of three sectors above, from z = 0.02 on.
+  /// A ring with a pad of three sectors on top, at z ≥ 0.02.
   Mesh disc_with_pad(const Values &pad_z = {0.02, 0.03, 0.04}, const Values &ring = angles(24, 0, 24), const int n_sectors = 3)
   {
     Mesh mesh = mesh_of({"disc", "pin_top"});
@@ -121,7 +121,7 @@ namespace
     return {c * p[0] - s * p[2], p[1], s * p[0] + c * p[2]};
   }
 
-  /// As in a file with so many significant digits.
+  /// The mesh as read from a file with this number of significant digits.
   Mesh rounded(const Mesh &mesh, const int digits)
   {
     return moved(mesh, [digits](const Point &p) {
@@ -147,7 +147,7 @@ namespace
     EXPECT_NO_THROW(check_topology(mesh, 1e-6, "the.msh"));
   }
 
-  /// Refused in every size, position and precision of coordinates.
+  /// Expects rejection for every scale, position and precision of the coordinates.
   void expect_refused(const Mesh &mesh, const std::vector<std::string> &mentions)
   {
     expect_mentions(refusal(mesh), mentions);
@@ -174,7 +174,7 @@ TEST(MeshTopology, ConformingMeshesPass)
   add_grid(corner, 0, {1., 2.}, {1., 2.}, {0., 1.}, cartesian, any);
   expect_passes(corner);
 
-  // A shoe on the rim whose elements are twice as long: chords of curved faces cross
+  // A shoe on the rim with elements twice as long: chords of the curved faces cross
   Mesh shoe = mesh_of({"disc", "pin_rim"});
   add_grid(shoe, 0, radii, angles(96, 0, 96), {0., 0.02}, cylindrical, any);
   add_grid(shoe, 1, {0.3, 0.33}, angles(48, 1, 7), {0., 0.02});
@@ -190,7 +190,7 @@ TEST(MeshTopology, SeamIsFound)
     add_grid(mesh, 0, radii, ring, {0., 0.01, 0.02});
     return mesh;
   };
-  // The ring ends where it begins, and nearly so
+  // The ring closes exactly, and with a tiny gap
   for (const double gap : {0., 1e-9, 6e-6})
     {
       expect_refused(with_gap(gap, 0.3), {"12 nodes of body 'disc' coincide", "the.msh", "merge"});
@@ -204,7 +204,7 @@ TEST(MeshTopology, SeamIsFound)
 
 TEST(MeshTopology, CrackInsideIsFound)
 {
-  // Two halves that share only the nodes around six inner ones
+  // Two halves joined everywhere except at six inner nodes
   Mesh mesh = mesh_of({"disc"});
   add_grid(mesh, 0, interval(0., 4., 4), interval(0., 3., 3), {0., 1.}, cartesian);
   add_grid(mesh, 0, interval(0., 4., 4), interval(0., 3., 3), {1., 2.}, cartesian,
@@ -215,13 +215,13 @@ TEST(MeshTopology, CrackInsideIsFound)
 
 TEST(MeshTopology, HangingNodesAreFound)
 {
-  // A layer twice as fine along two directions: on interior faces, 2 x 2 elements to one
+  // A layer twice as fine in two directions: 2 x 2 faces on one
   Mesh layers = mesh_of({"disc"});
   add_grid(layers, 0, interval(0., 2., 2), interval(0., 2., 2), {0., 1.}, cartesian, any);
   add_grid(layers, 0, interval(0., 2., 4), interval(0., 2., 4), {1., 2.}, cartesian, any);
   expect_refused(layers, {"16 nodes of body 'disc'", "hanging"});
 
-  // In a corner only
+  // Refined in one corner only
   Mesh corner = mesh_of({"disc"});
   add_grid(corner, 0, interval(0., 3., 3), interval(0., 3., 3), {0., 1.}, cartesian, any);
   add_grid(corner, 0, interval(0., 3., 3), {0., 1., 2.}, {1., 2.}, cartesian, any);
@@ -230,7 +230,7 @@ TEST(MeshTopology, HangingNodesAreFound)
   expect_refused(corner, {"3 nodes of body 'disc'", "hanging"});
   expect_mentions(refusal(corner), {"(2.5, 2, 1)"});
 
-  // Between rings: nodes of the finer one are on the circle, faces of the coarser one are chords
+  // Between rings: nodes of the finer one lie on the circle, faces of the coarser one on chords
   for (const int n_inside : {16, 32})
     {
       Mesh rings = mesh_of({"disc"});
@@ -242,7 +242,7 @@ TEST(MeshTopology, HangingNodesAreFound)
 
 TEST(MeshTopology, TrianglesUponQuadrilateralsAreFound)
 {
-  // A cube with a pyramid upon it, and with two tetrahedra in its place
+  // A cube with a pyramid on top, and with two tetrahedra instead
   Mesh mesh = mesh_of({"disc"});
   add_grid(mesh, 0, {0., 1.}, {0., 1.}, {0., 1.}, cartesian);
   mesh.points.emplace_back(0.4, 0.6, 2.);
@@ -271,17 +271,17 @@ TEST(MeshTopology, OverlapIsFound)
     add_grid(mesh, 2, a, b, c, place);
     return mesh;
   };
-  // A copy of the pad: its nodes lie on those of the other one, only centres are inside
+  // A copy of the pad: nodes coincide, so that only element centres lie inside
   expect_refused(with_second_pin({0.2, 0.25, 0.3}, angles(24, 0, 3), {0.02, 0.03, 0.04}, cylindrical),
                  {"'pin_1'", "'pin_2'", "overlap", "0 nodes and 12 element centres"});
-  // A small body within one element, one that reaches out of the disc
+  // A small body inside one element, and one that protrudes from the disc
   for (const auto &[end, nodes] : {std::pair(0.008, "8 nodes"), {0.5, "4 nodes"}})
     expect_refused(with_second_pin({-0.23, -0.22}, {-0.01, 0.01}, {0.004, end}, cartesian), {"'pin_2'", "'disc'", "overlap", nodes});
 }
 
 TEST(MeshTopology, BodiesThatTouchWithoutContactAreNoted)
 {
-  // The pad's last column has no name
+  // The last column of pad faces has no name
   const UnnamedContact contact = find_unnamed_contact(disc_with_pad({0.02, 0.03, 0.04}, angles(24, 0, 24), 2));
   EXPECT_EQ(contact.n_nodes, 3u);
   EXPECT_EQ(contact.body, "disc");

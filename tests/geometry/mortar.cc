@@ -32,8 +32,8 @@ namespace
   {
     Kind         kind;
     unsigned int degree;
-    unsigned int n;                ///< cells a direction
-    double       distortion;       ///< largest shift of a corner, of the size of a cell
+    unsigned int n;                ///< cells per direction
+    double       distortion;       ///< largest shift of a corner relative to the cell size
     bool         is_below = false; ///< faces downwards
   };
 
@@ -44,14 +44,14 @@ namespace
     return {x, y, 0.3 * x - 0.2 * y};
   }
 
-  /// Of the unit square: corners are shifted at random, other nodes are in the middle of those.
+  /// Mesh of the unit square with randomly shifted corners; other nodes lie midway between them.
   SurfacePatch patch(const Grid &grid, const Embedding &place = flat)
   {
     std::mt19937                                      random(grid.n);
     std::uniform_real_distribution<>                  shift(-grid.distortion, grid.distortion);
     const unsigned int                                n = grid.n;
     std::vector<dealii::Point<2>>                     corners;
-    std::map<std::vector<unsigned int>, unsigned int> numbers; // of nodes, by the corners around them
+    std::map<std::vector<unsigned int>, unsigned int> numbers; // of nodes, by adjacent corners
     SurfacePatch                                      result;
     for (unsigned int j = 0; j <= n; ++j)
       for (unsigned int i = 0; i <= n; ++i)
@@ -93,7 +93,7 @@ namespace
     return result;
   }
 
-  /// ∫ N_i of every node.
+  /// ∫ N_i for every node.
   VectorXd loads(const SurfacePatch &patch)
   {
     VectorXd result = VectorXd::Zero(patch.points.size());
@@ -155,7 +155,7 @@ namespace
     MatrixXd relative; ///< constant and linear displacements
   };
 
-  /// For every kind of slave, degree and distortion.
+  /// Runs the check for every kind, degree and distortion of the slave mesh.
   template <typename Check>
   void for_all(const Check &check)
   {
@@ -202,7 +202,7 @@ TEST(Mortar, LinearDisplacementsAndConstantPressureAreExact)
         EXPECT_EQ(tied.result.rows.size(), slave.points.size());
         EXPECT_NEAR(tied.result.overlap_area, tied.result.slave_area, 1e-14);
         EXPECT_LT(tied.relative.cwiseAbs().maxCoeff(), 1e-14);
-        // In distorted quadrilaterals quadrature is not exact
+        // Quadrature is inexact on distorted quadrilaterals
         const double tolerance = grid.distortion == 0. ? 1e-15 : 1e-11;
         EXPECT_LT((tied.slave.transpose() * tied.area - loads(slave)).cwiseAbs().maxCoeff(), tolerance);
         EXPECT_LT((tied.master.transpose() * tied.area - loads(master)).cwiseAbs().maxCoeff(), tolerance);
@@ -221,7 +221,7 @@ TEST(Mortar, PartsThatOverlapAreTied)
           const double overlap = tied.result.overlap_area;
           EXPECT_LT(tied.area.size(), tied.slave.cols());
           EXPECT_NEAR(overlap, (1. - offset) * (1. - offset / 2.) * std::sqrt(1.13), 1e-14);
-          // Elements with hardly any overlap are left out
+          // Elements with negligible overlap are left out
           EXPECT_LT(tied.area.sum(), overlap * (1. + 1e-14));
           EXPECT_GT(tied.area.sum(), 0.97 * overlap);
           EXPECT_LT(tied.relative.cwiseAbs().maxCoeff(), 1e-11);

@@ -11,7 +11,7 @@ using namespace Scenes;
 namespace
 {
 
-  /// Area and polar moment about the centroid of faces of a plan [m², m⁴].
+  /// Area and polar moment about the centroid inside an outline [m², m⁴].
   std::pair<double, double> area_and_polar_moment(const std::vector<Plan::Edge> &outline, const std::vector<Plan::Point> &points)
   {
     // Green's theorem, edge by edge
@@ -28,7 +28,7 @@ namespace
     return {area, moment - first * first / area};
   }
 
-  /// Without curves, and with two pins above the same faces.
+  /// A round plan without curves and with two pins on the same faces.
   Plan polygon_pins(const unsigned int k, const double radius)
   {
     Plan plan   = Testing::round_plan(0.2, radius, k);
@@ -39,7 +39,7 @@ namespace
 
   using Points = std::vector<dealii::Point<2>>;
 
-  /// Points of an ellipse about (3, -2) radii, seen under the given angles.
+  /// Points of an ellipse centred at (3, -2) radii, at the given angles.
   Points on_ellipse(const double radius, const double ratio, const std::vector<double> &angles)
   {
     Points points;
@@ -105,7 +105,7 @@ TEST(Polygon, CirclesAreFoundInAnyUnitOfLengthAndFromArcs)
         EXPECT_NEAR(circle->centre[1] / radius, -2., 1e-10);
       }
 
-  // What is not round or has too few points gives no circle
+  // Points that are not round, too few or collinear give no circle
   const std::vector<double> angles = {0., 1., 2., 3., 4., 5.};
   EXPECT_TRUE(circle_through(on_ellipse(0.026, 1. + 1e-7, angles)));
   EXPECT_FALSE(circle_through(on_ellipse(0.026, 1. + 1e-5, angles)));

@@ -31,7 +31,7 @@ TEST(GeometryParameters, RefusalsNameParameterValueAndRemedy)
          {[](auto &p) { p.bottom.angles[1] = -10.; }, {"Bottom pin angles: pins 1 and 2", "overlap by 0.0231", "0.052 m"}}})
     expect_mentions(message<ParameterError>([&] { with(change).check(); }), mentions);
 
-  // In a plan of the user's own the positions need not mean anything
+  // Pin positions are not checked for a user-defined plan
   GeometryParameters parameters = of_file("my_plan.geo");
   parameters.top.radii[3]       = 0.3;
   EXPECT_NO_THROW(parameters.check());

@@ -82,7 +82,7 @@ TEST(PinGrid, PinsOfASceneHaveRingsAndThinnerLayersAtTheirHeldEnd)
   const double z_face = parameters.disc_thickness / 2.;
   for (const double side : {1., -1.})
     {
-      // Heights above the face: 4 : 2 : 1 of 7
+      // Layer heights from the face on: 4 : 2 : 1
       std::set<double> heights;
       for (const Mesh::Point &p : mesh.points)
         if (side * p[2] >= z_face)
@@ -92,7 +92,7 @@ TEST(PinGrid, PinsOfASceneHaveRingsAndThinnerLayersAtTheirHeldEnd)
       EXPECT_NEAR(*std::next(heights.begin(), 2), 6. / 7., 1e-8);
       EXPECT_EQ(*heights.rbegin(), 1.);
     }
-  // Distances from the axes: of every pin the same, on both sides
+  // Every pin has the same ring radii on both sides
   for (std::size_t pin = 0; pin < 2; ++pin)
     {
       const double      angle = parameters.bottom.angles[pin] * M_PI / 180., radius = parameters.pin_diameter / 2.;
@@ -102,7 +102,7 @@ TEST(PinGrid, PinsOfASceneHaveRingsAndThinnerLayersAtTheirHeldEnd)
         if (p[2] < -z_face - parameters.pin_height / 2.)
           for (const double end : graded_intervals(2, 2.))
             n_found += std::abs(std::hypot(p[0] - axis[0], p[1] - axis[1]) / radius - 0.8 - 0.2 * end) < 1e-9;
-      // Layers of nodes above half of the height: three of four
+      // Three of four node layers lie in the outer half of the pin
       EXPECT_EQ(n_found, 3u * 3u * 12u) << pin;
     }
 }

@@ -8,7 +8,7 @@ using namespace Scenes;
 
 namespace
 {
-  /// What generate_mesh() says.
+  /// Error message of generate_mesh().
   std::string refusal(const GeometryParameters &parameters, const std::vector<std::string> &additional_surfaces = {})
   {
     return message<MeshError>([&] { generate_mesh(parameters, additional_surfaces); });
@@ -16,7 +16,7 @@ namespace
 
   using Refusals = std::vector<std::pair<std::string, std::vector<std::string>>>;
 
-  /// Files "geometry.geo" of these contents are refused.
+  /// Expects rejection of geometry.geo with each of these contents.
   void expect_refused(const Refusals &refusals)
   {
     for (const auto &[content, mentions] : refusals)
@@ -58,7 +58,7 @@ TEST(Refusals, SolidsThatDoNotFit)
 
 TEST(Refusals, PlansThatDoNotFit)
 {
-  // A square plate with a square hole or pad, in the plane: surface 2 is the pad, 3 the rest
+  // A plane square plate with a square hole or pad: surface 2 is the pad, 3 the rest
   const std::string plate = R"(
     SetFactory("OpenCASCADE");
     Rectangle(1) = {-1, -1, 0, 2, 2};
@@ -81,7 +81,7 @@ TEST(Refusals, PlansThatDoNotFit)
       {"'pin_top_1' has 8 nodes", "multiple of 6"}},
      {apart + disc + pad, {"coincide", "are not joined"}}});
 
-  // Two pins one behind the other fill the ring, the one below overlaps both
+  // Two radially aligned pins fill the ring, and the lower one overlaps both
   GeometryParameters parameters;
   parameters.disc_inner_radius = 0.05;
   parameters.disc_outer_radius = 0.1545;
@@ -89,7 +89,7 @@ TEST(Refusals, PlansThatDoNotFit)
   parameters.top               = {{0.0765, 0.1275}, {0., 0.}};
   parameters.bottom            = {{0.102}, {0.}};
   expect_mentions(refusal(parameters), {"no room", "Move the pins"});
-  // A surface of a mount
+  // A missing surface of a mount
   expect_mentions(refusal(one_pin(), {"disc_ear"}), {"'disc_ear'", "disc_bore"});
 }
 
@@ -111,13 +111,13 @@ TEST(Refusals, BadElementsAreFound)
   EXPECT_EQ(right_handed.cells[0].nodes, mesh.cells[0].nodes);
   EXPECT_EQ(make_right_handed(right_handed), 0u);
 
-  // Two elements one upon the other, the upper one folded into the lower one
+  // Two stacked elements, the upper one folded into the lower one
   Mesh folded = mesh;
   folded.points.insert(folded.points.end(), {{0, 0, 0.5}, {1, 0, 0.5}, {1, 1, 0.5}, {0, 1, 0.5}});
   folded.cells.push_back({Shape::hexahedron, {4, 5, 6, 7, 8, 9, 10, 11}, 0});
   expect_mentions(message<MeshError>([&] { make_right_handed(folded); }), {"inverted", "element 1", "'disc'"});
 
-  // Elements that occur twice, and a third one at a face
+  // Duplicate elements, and a third element on one face
   Mesh twice = mesh;
   check_unique(twice, "twice.msh");
   twice.cells.push_back({Shape::hexahedron, {4, 5, 6, 7, 0, 1, 2, 3}, 0});

@@ -29,12 +29,12 @@ TEST(DiscAxes, OnesThatAreNotTheZAxisAreRefusedByName)
     expect_mentions(message<MeshError>([&, map = map] { check(map); }), {text, "here", "Translate and Rotate"});
 
   EXPECT_TRUE(check([](const Point &p) { return p; }));
-  // A disc with an ear: radii of a sector of 60° are stretched
+  // A disc with an ear: radii are stretched within a 60° sector
   EXPECT_TRUE(check([](const Point &p) {
     const double factor = std::abs(std::atan2(p[1], -p[0])) < std::acos(-1.) / 6. ? 1.2 : 1.;
     return Point{factor * p[0], factor * p[1], p[2]};
   }));
-  // Square discs, on the axis and beside it, are not round, but accepted
+  // Square discs, centred and off-centre, are accepted as not round
   for (const double offset : {0., 1.})
     EXPECT_FALSE(check([&](const Point &p) {
       const double factor = std::hypot(p[0], p[1]) / std::max(std::abs(p[0]), std::abs(p[1]));
@@ -74,7 +74,6 @@ TEST(WaveResolution, RefusesElementsLongerThanAShearWave)
   const Mesh         mesh = generate_mesh(one_pin());
   MaterialParameters soft_pins;
   soft_pins.pin.young_modulus *= 1e-3;
-  // The frequency from which on elements are too long is in the message
   const auto refused = [&](const MaterialParameters &materials, const unsigned int degree, const double frequency) {
     return message<ParameterError>([&] { check_wave_resolution(mesh, materials, degree, circular_frequency(frequency)); }) != "accepted";
   };
@@ -82,13 +81,13 @@ TEST(WaveResolution, RefusesElementsLongerThanAShearWave)
   while (!refused(soft_pins, 1, limit))
     limit *= 1.1;
   EXPECT_FALSE(refused(MaterialParameters(), 1, limit));
-  // Nodes of quadratic elements are twice as dense
-  // Orthotropic: the same with a shear modulus that is as small
+  // Orthotropic pins with the same small shear modulus
   MaterialParameters soft_in_shear;
   soft_in_shear.orthotropic = {
     {{1.9e9, 0.25, 3070., 0., 0., Orthotropy{1.9e9, 1.9e9, 0.25, 0.25, 1e9, soft_pins.pin.least_wave_modulus(), 1e9}}, "pin_top_1"}};
   EXPECT_TRUE(refused(soft_in_shear, 1, limit));
   EXPECT_FALSE(refused(soft_in_shear, 1, limit / 1.1));
+  // Nodes of quadratic elements are twice as dense
   EXPECT_FALSE(refused(soft_pins, 2, limit));
   EXPECT_TRUE(refused(soft_pins, 2, 2. * limit));
 }

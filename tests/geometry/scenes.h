@@ -21,7 +21,7 @@ namespace Scenes
   using Testing::File;
   using Testing::message;
 
-  /// One pin on the upper face: small and quick.
+  /// A small model with one pin on the upper face.
   inline GeometryParameters one_pin()
   {
     GeometryParameters parameters;
@@ -42,7 +42,7 @@ namespace Scenes
     return mesh;
   }
 
-  /// Geometry of the user's own.
+  /// User-defined geometry.
   inline GeometryParameters of_file(const std::string &file)
   {
     GeometryParameters parameters;
@@ -50,7 +50,7 @@ namespace Scenes
     return parameters;
   }
 
-  /// Two blocks one upon the other, of 8 hexahedra each; @p names may be those below.
+  /// Two stacked blocks of 8 hexahedra each; @p names may be those below.
   inline std::string blocks(const std::string &names, const std::string &before_names = "")
   {
     return R"(
@@ -84,7 +84,7 @@ namespace Scenes
     return nodes;
   }
 
-  /// Area of a surface whose faces are plane [m²].
+  /// Area of a surface with plane faces [m²].
   inline double area(const Mesh &mesh, const std::string &name)
   {
     const unsigned int s   = surface(mesh, name);
@@ -95,7 +95,7 @@ namespace Scenes
     return sum;
   }
 
-  /// Volume of all cells of the bodies whose name begins so, of each by Gauss' theorem over its faces, which are plane [m³].
+  /// Volume of the bodies whose names begin with @p prefix, by the divergence theorem for cells with plane faces [m³].
   inline double volume(const Mesh &mesh, const std::string &prefix)
   {
     double sum = 0.;
@@ -108,7 +108,7 @@ namespace Scenes
     return sum;
   }
 
-  /// Nodes of the contact faces on one side of the disc that lie on the outline of the pin at this place.
+  /// Number of contact nodes on one side of the disc on the outline of the pin at this position.
   inline unsigned int n_on_outline(const Mesh &mesh, const double side, const double radius, const double angle, const double pin_radius)
   {
     const double x = radius * std::cos(angle * M_PI / 180.), y = radius * std::sin(angle * M_PI / 180.);

@@ -15,7 +15,7 @@ namespace
 {
   constexpr double distance = 0.2, radius = 0.026;
 
-  /// The plate of the plan with the pin on top of all of it.
+  /// The plate of the plan, completely covered by the pin.
   Mesh covered(Plan plan)
   {
     plan.pins[0].faces.resize(plan.faces.size());
@@ -23,7 +23,7 @@ namespace
     return extrude(plan, layers(1, 1));
   }
 
-  /// A plate and a pin on top of all of it, with rings.
+  /// A round plate covered by a pin, with rings.
   Mesh round_mesh(const unsigned int k, const unsigned int rings)
   {
     Plan                      plan = round_plan(distance, radius, k);
@@ -35,7 +35,7 @@ namespace
     return covered(plan);
   }
 
-  /// Nodes of a body at that distance from the axis, seen along it, in micrometres.
+  /// Plan positions [µm] of the nodes of a body at distance @p r from the axis.
   std::set<std::pair<long, long>> nodes_at(const Mesh &mesh, const double r, const unsigned int body)
   {
     const std::vector<unsigned int> bodies = body_of_nodes(mesh);
@@ -46,7 +46,7 @@ namespace
     return places;
   }
 
-  /// A regular prism of tetrahedra about z, three in each sector, with all faces round it named disc_rim.
+  /// A regular prism about z with three tetrahedra per sector and lateral faces named disc_rim.
   Mesh prism_of_tetrahedra(const unsigned int n_sides)
   {
     Mesh mesh;
@@ -77,7 +77,7 @@ TEST(SecondOrder, RingsAreRoundOnBothSidesOfTheContact)
 {
   const Mesh mesh = second_order(round_mesh(2, 3));
   EXPECT_NO_THROW(check_mesh(mesh));
-  // Two rings between r and 0.8 r, 1 : 2 from outside: corners and middles of edges, 24 on each circle
+  // Two rings between r and 0.8 r, 1 : 2 from outside, with 24 corner and mid-edge nodes on each circle
   for (const double r : {1., 1. - 0.2 / 3., 0.8})
     {
       EXPECT_EQ(nodes_at(mesh, r * radius, 1).size(), 24u) << r;
@@ -111,7 +111,7 @@ TEST(SecondOrder, TetrahedraFollowCylinders)
   EXPECT_EQ(mesh.degree, 2u);
   EXPECT_NO_THROW(check_mesh(mesh));
   EXPECT_EQ(second_order(mesh).points, mesh.points);
-  // On the rim: corners above and below, middles of edges above and below, at the height and on the diagonal of each side
+  // Rim nodes per side: corner and mid-edge nodes at top and bottom, one on the vertical edge and one on the diagonal
   std::size_t n_on_rim = 0;
   for (const Mesh::Point &p : mesh.points)
     n_on_rim += std::abs(std::hypot(p[0], p[1]) - 1.) < 1e-12;
@@ -120,7 +120,7 @@ TEST(SecondOrder, TetrahedraFollowCylinders)
     for (const unsigned int node : face.nodes)
       EXPECT_NEAR(std::hypot(mesh.points[node][0], mesh.points[node][1]), 1., 1e-12);
 
-  // Without that name, edges stay straight
+  // Edges stay straight without this name
   Mesh straight             = linear;
   straight.surface_names[0] = "rim";
   straight                  = second_order(straight);

@@ -21,10 +21,10 @@ namespace
   struct Energy
   {
     double value;    ///< ½ uᵀ K u
-    double rounding; ///< bound of its error: the unit of rounding times the number of summands and the sum of their moduli
+    double rounding; ///< error bound: machine epsilon times the number of terms and the sum of their moduli
   };
 
-  /// Of a box about the origin whose nodes are displaced by @p field.
+  /// Energy of a box about the origin with nodal displacements @p field.
   Energy energy(const Element element, const double poisson_ratio, const Field &field)
   {
     Mesh mesh;
@@ -54,7 +54,7 @@ namespace
     return result;
   }
 
-  /// Pure bending of unit curvature about y with its anticlastic curvature: σ_x = E z, all other stresses zero.
+  /// Pure bending of unit curvature about y with anticlastic curvature: σ_x = E z, all other stresses zero.
   Field bending(const double nu)
   {
     return [nu](const Point<3> &p) {
@@ -72,12 +72,12 @@ TEST(CellStiffness, OneCellBendsAsABeamDoes)
     {
       const Energy trilinear = energy(Element::trilinear, nu, bending(nu)), bent = energy(Element::incompatible_modes, nu, bending(nu)),
                    quadratic = energy(Element::quadratic, nu, bending(nu));
-      // Condensation subtracts what the modes release from the trilinear energy
+      // Static condensation subtracts from the trilinear energy, whose rounding error remains
       EXPECT_NEAR(bent.value, exact, trilinear.rounding) << nu;
       EXPECT_NEAR(quadratic.value, exact, quadratic.rounding) << nu;
       EXPECT_LT(std::max(trilinear.rounding, quadratic.rounding), 1e-7 * exact) << nu;
 
-      // Trilinear, γ_xz = x and γ_yz = −ν y do not vanish; strains of x and y without that of z
+      // Trilinear elements have the parasitic shear γ_xz = x, γ_yz = −ν y, and ε_z = 0
       const double G = 1. / (2. * (1. + nu)), lame = 2. * G * nu / (1. - 2. * nu), trace = 1. - nu;
       const double I     = b * h * h * h / 12. * a;
       const double shear = 0.5 * G * (a * a * a * b * h + nu * nu * b * b * b * a * h) / 12.;

@@ -22,7 +22,7 @@ namespace
     return extrude(polar_plan(0.15, 0.3, 3, 12, {{Plan::Side::top, 0, 2, 1, 2}, {Plan::Side::bottom, 5, 3, 0, 1}}), layers(2, 2));
   }
 
-  /// Own nodes of all processes, by their numbers.
+  /// Locally owned nodes of all processes by number.
   std::map<std::int64_t, Node> all_nodes(const Model &model)
   {
     std::vector<Node> own;
@@ -37,7 +37,7 @@ namespace
         for (const Node &node : part)
           result[node.number] = node;
       }
-    EXPECT_EQ(result.size(), n) << "every node belongs to one process";
+    EXPECT_EQ(result.size(), n) << "every node must belong to exactly one process";
     return result;
   }
 
@@ -74,7 +74,7 @@ TEST(Models, HaveTheSameNodesHoweverTheyAreDistributed)
       EXPECT_EQ(static_cast<int>(dofs.size()), model.free_map().n());
       EXPECT_EQ(*dofs.rbegin() + 1, model.free_map().n());
 
-      // What a process knows of nodes of others
+      // Ghost nodes agree with their owners
       for (const Node &node : model.nodes())
         {
           ASSERT_EQ(nodes.count(node.number), 1u);

@@ -22,7 +22,7 @@ namespace
     return Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()).matrix();
   }
 
-  /// Cells of every shape around the z axis, on which nodes and points of quadrature lie.
+  /// A box around the z axis, with nodes and quadrature points on the axis.
   Mesh box_about_axis(const Cut cut)
   {
     Mesh mesh;
@@ -59,7 +59,7 @@ TEST(ElasticLaws, TurnWithTheirAxes)
       EXPECT_LT(largest_difference(ElasticLaw(fixed).at(x), fixed.young_modulus, elastic_tensor(fixed, oblique_axes())), 1e-14);
       EXPECT_LT(largest_difference(ElasticLaw(round).at(x), round.young_modulus, elastic_tensor(round, axes_at(angle))), 1e-14);
     }
-  // On the axis radial is x
+  // On the axis the radial direction is x
   EXPECT_LT(largest_difference(ElasticLaw(round).at({0., 0., 0.1}), round.young_modulus, elastic_tensor(round)), 1e-14);
 }
 
@@ -113,7 +113,7 @@ TEST_P(OrthotropicElements, FrequenciesDoNotChangeWhenMeshAndAxesTurn)
   const Eigen::VectorXd fixed = eigenvalues(mesh, oblique_axes()), round = eigenvalues(mesh, cylindrical);
   EXPECT_LT((eigenvalues(turned(turn), (turn * oblique_axes()).eval()) - fixed).cwiseAbs().maxCoeff(), 1e-10 * fixed.maxCoeff());
   EXPECT_LT((eigenvalues(turned(axes_at(0.6)), cylindrical) - round).cwiseAbs().maxCoeff(), 1e-10 * round.maxCoeff());
-  // Axes that stay behind are another material
+  // Axes that do not rotate with the mesh give a different material
   EXPECT_GT((eigenvalues(turned(turn), oblique_axes()) - fixed).cwiseAbs().maxCoeff(), 1e-3 * fixed.maxCoeff());
 }
 

@@ -12,7 +12,7 @@
 using namespace Squeal;
 using namespace Squeal::Testing;
 
-// Constant stress is exact in cells of every shape, however distorted.
+// Patch test: constant stress in distorted cells of every shape.
 
 namespace
 {
@@ -24,7 +24,7 @@ namespace
     const char *name;
     Cut         cut;
     Element     element;
-    bool        is_curved = false; ///< nodes of degree 2 inside are moved as well
+    bool        is_curved = false; ///< interior second-order nodes are shifted as well
   };
 
   void PrintTo(const PatchCase &c, std::ostream *stream)

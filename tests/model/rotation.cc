@@ -43,7 +43,7 @@ namespace
     return result;
   }
 
-  /// A free ring of hexahedra, of which nothing but the disc is looked at, and its lowest modes.
+  /// A free ring of hexahedra and its lowest modes; the pins are ignored.
   struct Ring
   {
     Ring(const double inner, const double outer, const double thickness, const int n_around, const double band)
@@ -67,7 +67,7 @@ namespace
       return geometry;
     }
 
-    /// Part of a mode's square norm along the axis.
+    /// Axial share of the squared norm of a mode.
     double axial_share(const int mode) const
     {
       const MultiVector u       = *kernel * view(*modes.vectors, mode, 1);
@@ -80,7 +80,7 @@ namespace
       return sums[1] / (sums[0] + sums[1]);
     }
 
-    /// λ with Im λ > 0 at an angular velocity, of the disc reduced to its modes.
+    /// λ with Im λ > 0 at an angular velocity, from the disc reduced to its modes.
     std::vector<std::complex<double>> lambda(const double angular_velocity) const
     {
       const BodyTerms         bodies = rotating(model, mounted({}), angular_velocity);
@@ -128,7 +128,7 @@ TEST(Rotation, IsThatOfLinearFields)
       EXPECT_NEAR(product(u, G, v) / expected, -1., 1e-12);
       EXPECT_NEAR(product(v, N, u) / product(turned_v, M, turned_u), 1., 1e-12);
 
-      // Skew and symmetric for whatever fields
+      // G is skew-symmetric, N is symmetric
       const DenseMatrix dense = to_dense(G);
       EXPECT_LT(max_norm(dense + dense.transpose()), 1e-14 * max_norm(dense));
       EXPECT_LT(symmetry_defect(N), 1e-14);
@@ -139,8 +139,8 @@ TEST(Rotation, IsThatOfLinearFields)
 
 TEST(Rotation, SplitsDoubletsByTheDopplerShift)
 {
-  // Waves e^{i(nθ ± ωt)} of bending out of the plane travel with the material, ω ± nΩ in the fixed frame. Those in the plane
-  // of a thin ring lag behind it because of Coriolis' forces: ω ± nΩ (n² − 1) / (n² + 1) (G. H. Bryan, 1890).
+  // Out-of-plane bending waves e^{i(nθ ± ωt)} travel with the material, ω ± nΩ in the fixed frame. In-plane waves of a thin
+  // ring lag behind it because of Coriolis forces: ω ± nΩ (n² − 1) / (n² + 1) (G. H. Bryan, 1890).
   const double        band = 2. * M_PI * 700., speed = 5.;
   const Ring          ring(0.29, 0.31, 0.02, 32, band);
   std::vector<double> omega, found;
@@ -150,11 +150,11 @@ TEST(Rotation, SplitsDoubletsByTheDopplerShift)
   for (const auto &l : ring.lambda(speed))
     if (l.imag() > 0.5 * omega[n_rigid])
       {
-        // Without friction nothing grows
+        // No growth without friction
         EXPECT_LT(std::abs(l.real()), 1e-9 * band);
         found.push_back(l.imag());
       }
-  // The two lowest doublets: n = 2 in the plane and out of it
+  // The two lowest doublets: n = 2, in-plane and out-of-plane
   constexpr int n         = 2;
   int           n_checked = 0, n_in_plane = 0;
   for (std::size_t j = n_rigid; j + 1 < omega.size() && n_checked < 4; ++j)
@@ -168,7 +168,7 @@ TEST(Rotation, SplitsDoubletsByTheDopplerShift)
             const double nearest = *std::min_element(found.begin(), found.end(), [&](const double x, const double y) {
               return std::abs(x - mean - sign * shift) < std::abs(y - mean - sign * shift);
             });
-            EXPECT_NEAR((nearest - mean) / shift, sign, 0.02) << (axial ? "axial" : "in the plane");
+            EXPECT_NEAR((nearest - mean) / shift, sign, 0.02) << (axial ? "axial" : "in-plane");
             ++n_checked;
           }
       }

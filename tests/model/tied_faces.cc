@@ -12,7 +12,7 @@
 using namespace Squeal;
 using namespace Squeal::Testing;
 
-// Two blocks whose faces are tied are one body: constant stress passes, whatever their cells.
+// Patch test of tied faces: constant stress passes between two blocks, for all cell shapes.
 
 namespace
 {
@@ -59,7 +59,7 @@ namespace
       return result;
     }();
     const SecondOrderSystem system = assemble(model, materials);
-    // Integrands on distorted quadrilaterals are no polynomials: quadrature of the coupling is not exact
+    // Integrands on distorted quadrilaterals are not polynomials, so that the coupling quadrature is inexact
     const double tolerance =
       GetParam().distortion == 0. || GetParam().name == std::string("3 nodes") || GetParam().name == std::string("6 nodes") ? 1e-12 : 1e-10;
   };
@@ -69,7 +69,7 @@ namespace
 TEST_P(Tied, ConstantStressPasses)
 {
   ASSERT_EQ(model.component_names(), std::vector<std::string>{"disc"});
-  // Uniaxial, along the normal of the tied faces, with a rotation: the other faces are free
+  // Uniaxial stress along the normal of the tied faces, plus a rotation; the other faces are free
   const double      nu      = materials.disc.poisson_ratio;
   const double      H[3][3] = {{-nu, 0.3, -0.4}, {-0.3, -nu, 0.9}, {0.4, -0.9, 1.}};
   const MultiVector u       = displacements(model, 0, [&](const Point3 &p) {
