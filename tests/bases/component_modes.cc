@@ -20,7 +20,6 @@ namespace
   constexpr auto A = ModeFamily::axial, R = ModeFamily::radial, C = ModeFamily::circumferential;
   constexpr auto F = ModeFamily::flexural, T = ModeFamily::torsional, L = ModeFamily::longitudinal;
 
-  /// Of a pin.
   ModeLabel pin_mode(const ModeFamily family, const int rank)
   {
     return {family, 0, 0, rank};
@@ -40,7 +39,7 @@ namespace
     return Scene(extrude(polar_plan(0.15, 0.31, 6, 36, pins), layers(1, 3)), mounted(mounts), operating());
   }
 
-  /// A round pin, its axis at (0.2, 0).
+  /// A round pin with its axis at (0.2, 0).
   Scene pin_scene()
   {
     return Scene(extrude(round_plan(0.2, 0.026, 2), layers(1, 4)), mounted({}), operating());
@@ -56,7 +55,7 @@ namespace
     return component_modes(s.model, s.interface, s.interface, s.system, component, boundary, omega * omega, options);
   }
 
-  /// A disc with its component modes up to some kHz and those of the pins.
+  /// A disc with its component modes up to 4 kHz and those of the pins up to 12 kHz.
   struct Disc
   {
     Scene               s      = disc_scene(mounted().mounts);
@@ -72,13 +71,13 @@ namespace
     {
       made = std::make_unique<Disc>();
     }
-    /// Nothing distributed may outlive MPI.
+    /// Frees distributed objects before MPI is finalised.
     static void TearDownTestSuite()
     {
       made.reset();
     }
 
-    /// Displacement of the disc in the direction of a family, from radius and angle.
+    /// Displacement of the disc in the direction of a mode family, as a function of radius and angle.
     MultiVector along(const ModeFamily family, const std::function<double(double, double)> &value) const
     {
       return displacements(s.model, 0, [&](const Point3 &p) {
@@ -97,7 +96,7 @@ namespace
     const ComponentModes                     &disc = made->disc, &pins = made->pins;
     const std::vector<const ComponentModes *> references = {&disc, &pins};
 
-    // Two disc modes of one label, and one of another
+    // Two disc modes with the same label and one with a different label
     const int first = std::adjacent_find(disc.labels.begin(), disc.labels.end()) - disc.labels.begin();
     const int single =
       std::find_if(disc.labels.begin(), disc.labels.end(), [&](const ModeLabel &label) { return !(label == disc.labels.at(first)); }) -
@@ -108,7 +107,7 @@ namespace
 
 TEST_F(DiscModes, LabelsOfAnalyticFields)
 {
-  // Displacement along one direction, cos(π m s) over the radius (m sign changes), n waves around, pattern turned by an angle
+  // One direction, cos(π m s) along the radius (m sign changes), n waves around the circumference, rotated pattern
   std::vector<MultiVector> fields;
   std::vector<std::string> expected;
   for (const ModeFamily family : {A, R, C})
@@ -120,7 +119,7 @@ TEST_F(DiscModes, LabelsOfAnalyticFields)
           }));
           expected.push_back(to_string(family) + std::to_string(m) + "-" + std::to_string(n));
         }
-  // In-plane modes have radial and circumferential parts of the same harmonic: the larger one decides.
+  // In-plane modes have radial and circumferential parts of the same harmonic; the larger one determines the label.
   for (const auto &[radial, around] : {std::make_pair(1., 0.9), {0.9, 1.}})
     {
       fields.push_back(along(R, [x = radial](double, const double theta) { return x * std::cos(3. * theta); }));
@@ -145,15 +144,15 @@ TEST_F(DiscModes, WaveSharesOfAnalyticFields)
             {
               MultiVector u = along(family, [&, f = f, g = g](const double r, const double theta) {
                 const double value = imaginary ? (g - f) * std::sin(n * theta) : (f + g) * std::cos(n * theta);
-                return (1. + 5. * r) * value + 0.3 * std::cos((n + 1) * theta); // another harmonic does not count
+                return (1. + 5. * r) * value + 0.3 * std::cos((n + 1) * theta); // other harmonics are ignored
               });
-              u += along(family == A ? R : A, [](double, double) { return 0.2; }); // nor does another direction
+              u += along(family == A ? R : A, [](double, double) { return 0.2; }); // and so are other directions
               (imaginary ? im : re).push_back(u);
             }
           labels.push_back({family, 0, n});
           expected.push_back(f * f / (f * f + g * g));
         }
-  // A common phase changes nothing
+  // Shares do not depend on the phase
   const MultiVector X = join_all(re), Y = join_all(im);
   const auto        shares = wave_shares(s.model, made->masses, labels, 0.6 * X - 0.8 * Y, 0.8 * X + 0.6 * Y);
   ASSERT_EQ(shares.size(), expected.size());
@@ -164,7 +163,7 @@ TEST_F(DiscModes, WaveSharesOfAnalyticFields)
       EXPECT_NEAR(shares[j]->negative, 1. - expected[j], 1e-10) << to_string(labels[j]);
     }
 
-  // Only disc modes with nodal diameters and motion along their direction have any
+  // Only disc modes with nodal diameters and motion in their direction have wave shares
   const MultiVector axial = along(A, [](const double r, const double theta) { return r * std::cos(theta); });
   for (const ModeLabel &label : {ModeLabel{A, 0, 0}, pin_mode(F, 1), ModeLabel(), ModeLabel{ModeFamily::rigid_body}, ModeLabel{R, 0, 1}})
     EXPECT_FALSE(wave_shares(s.model, made->masses, {label}, axial, MultiVector(axial.map(), 1))[0]) << to_string(label);
@@ -172,7 +171,7 @@ TEST_F(DiscModes, WaveSharesOfAnalyticFields)
 
 TEST(PinLabels, ModesOfRoundPinsInOrder)
 {
-  // Slender beams have flexural modes first; the numbers of every family ascend with frequency and count all pins.
+  // Slender pins have flexural modes first; each family is numbered by frequency across all pins.
   const Scene         s = pin_scene();
   std::vector<double> torsion;
   for (const ContactBoundary boundary : {ContactBoundary::free, ContactBoundary::sliding})
@@ -181,13 +180,13 @@ TEST(PinLabels, ModesOfRoundPinsInOrder)
       const auto &labels = modes.labels;
       ASSERT_GE(labels.size(), 3u);
       EXPECT_EQ(texts({labels.begin(), labels.begin() + 2}), (std::vector<std::string>{"F1", "F1"}));
-      EXPECT_NEAR(modes.eigenvalues[0] / modes.eigenvalues[1], 1., 1e-9); // the O-grid has a threefold axis
+      EXPECT_NEAR(modes.eigenvalues[0] / modes.eigenvalues[1], 1., 1e-9); // threefold symmetry of the O-grid
       ASSERT_EQ(std::count(labels.begin(), labels.end(), pin_mode(T, 1)), 1);
       torsion.push_back(modes.eigenvalues[std::find(labels.begin(), labels.end(), pin_mode(T, 1)) - labels.begin()]);
-      // Held at both ends a bar stretches at half a wave: twice the frequency, c / (2 L) = 12 kHz.
+      // Held at both ends, the first longitudinal mode is a half wave at c / (2 L) = 12 kHz, above the limit.
       EXPECT_EQ(std::count(labels.begin(), labels.end(), pin_mode(L, 1)), boundary == ContactBoundary::free);
 
-      // Orthonormal in M, at rest on the disc, on the rigid face if sliding
+      // M-orthonormal, zero on the disc, no normal motion of sliding faces
       EXPECT_LT(orthonormality_defect(*s.system.mass, *modes.vectors), 1e-12);
       const DenseMatrix u = replicate(*modes.vectors);
       for (const Node &node : s.model.nodes())
@@ -196,10 +195,10 @@ TEST(PinLabels, ModesOfRoundPinsInOrder)
       const double normal_motion = max_norm(replicate(*s.contact.normal * *modes.vectors)) / max_norm(u);
       EXPECT_EQ(normal_motion < 1e-14, boundary == ContactBoundary::sliding) << normal_motion;
     }
-  // Torsion has no motion along the axis, so that the contact does not see it (but for the warping of a polygon).
+  // Contact does not affect torsion, except for the warping of the polygon.
   EXPECT_NEAR(torsion.at(0) / torsion.at(1), 1., 2e-3);
 
-  // A pin that hardly touches bends about its own axis
+  // A pin that touches at a single node bends about its own axis
   const ContactInterface closed(s.interface.begin(), s.interface.begin() + 1);
   const double           limit = 2. * M_PI * 9000.;
   const auto             touching =
@@ -214,7 +213,7 @@ TEST(MarkDoublets, PairsOnly)
   mark_doublets(labels);
   EXPECT_EQ(texts(labels), (std::vector<std::string>{"A0-2 -", "F1", "A0-2 +", "A0-0", "F1", "F1", "unnamed", "unnamed"}));
 
-  // With rates, the one that grows more is plus
+  // With growth rates, plus is the mode that grows faster
   labels = {{A, 0, 4}, {A, 0, 4}, {A, 0, 5}, {A, 0, 5}, {R, 0, 1}, {R, 0, 1}, pin_mode(T, 1), pin_mode(T, 1)};
   mark_doublets(labels, {100., 0., 0., 50., 0., 0., 3., 2.});
   EXPECT_EQ(texts(labels), (std::vector<std::string>{"A0-4 +", "A0-4 -", "A0-5 -", "A0-5 +", "R0-1 -", "R0-1 +", "T1 +", "T1 -"}));
@@ -231,7 +230,7 @@ TEST_F(DiscModes, ComponentModesAreIdentifiedAsThemselves)
   for (const ModeLabel &label : found)
     EXPECT_NEAR(label.participation, 1., 1e-10);
 
-  // Noise has next to nothing of the lowest modes.
+  // Random vectors contain almost nothing of the lowest modes.
   const auto none = identities(random_vectors(s.model.free_map(), 2));
   EXPECT_EQ(none, std::vector<ModeLabel>(2));
   for (const ModeLabel &label : none)
@@ -240,14 +239,14 @@ TEST_F(DiscModes, ComponentModesAreIdentifiedAsThemselves)
 
 TEST_F(DiscModes, SharesOfMixturesAndPhases)
 {
-  // A turned doublet is wholly of its label, also with a complex factor; 3:4 gives shares 0.36 and 0.64 of any size.
+  // Any complex combination of a doublet has its label with share 1; a 3:4 mixture has shares 0.36 and 0.64 at any scale.
   const MultiVector re = join_all({0.6 * a - 0.8 * b, 3. * a}), im = join_all({2. * a + 1. * b, 4. * c});
   const auto        found = identities(re, &im);
   EXPECT_EQ(found, (std::vector<ModeLabel>{disc.labels[first], disc.labels[single]}));
   EXPECT_NEAR(found[0].participation, 1., 1e-10);
   EXPECT_NEAR(found[1].participation, 0.64, 1e-10);
 
-  // Three vectors that all resemble a doublet most: one gets another label, which is given no more often than its modes are.
+  // All three vectors resemble the doublet most, but its label is given only twice, so that one vector gets another.
   EXPECT_EQ(identities(join_all({1. * a + 0.1 * c, 1. * a + (0.2 * b + 0.4 * c), 1. * a + (0.4 * b + 0.1 * c)})),
             (std::vector<ModeLabel>{disc.labels[first], disc.labels[single], disc.labels[first]}));
 }
@@ -255,7 +254,7 @@ TEST_F(DiscModes, SharesOfMixturesAndPhases)
 TEST_F(DiscModes, CoordinatesInABasisGiveTheSameShares)
 {
   const MultiVector random = random_vectors(s.model.free_map(), 3);
-  const MultiVector basis  = join({disc.vectors.get(), pins.vectors.get(), &random}); // neither orthonormal nor in their span
+  const MultiVector basis  = join({disc.vectors.get(), pins.vectors.get(), &random}); // neither orthonormal nor in the span of the modes
   const DenseMatrix Y      = agreed_random_matrix(basis.n_columns(), 8);
   const MultiVector re = basis * DenseMatrix(Y.leftCols(4)), im = basis * DenseMatrix(Y.rightCols(4));
   const auto        expected = shape_shares(references, *s.system.mass, re, &im);
@@ -275,7 +274,7 @@ TEST(RigidBody, AFreeDiscHasSixMotionsAloneAndThreeCoupled)
   EXPECT_GT(shift, 0.);
   EXPECT_LT(shift, omega);
   options.shift = shift * shift;
-  // Sliding faces keep the height, so only the motions in the plane are left.
+  // Sliding faces fix the height, which leaves only in-plane motions.
   for (const auto &[boundary, n] : {std::make_pair(ContactBoundary::free, 6), {ContactBoundary::sliding, 3}})
     {
       const auto modes = modes_below(s, 3000., Component::disc, boundary, options);
@@ -285,7 +284,7 @@ TEST(RigidBody, AFreeDiscHasSixMotionsAloneAndThreeCoupled)
     }
   EXPECT_EQ(symmetric_modes(*s.coupled.stiffness, *s.coupled.mass, omega * omega, options).n_rigid_body, 3);
 
-  // Motions: x, y and about z meet no resistance, the others that of the pins.
+  // The pins resist axial motion and tilting; nothing resists x, y and rotation about z.
   const MultiVector X = rigid_disc_motions(s.model, s.coupled), KX = *s.coupled.stiffness * X;
   const auto        size = column_norms(X), force = column_norms(KX);
   const double      K = max_norm(*s.coupled.stiffness);
@@ -297,7 +296,7 @@ TEST(RigidBody, AFreeDiscHasSixMotionsAloneAndThreeCoupled)
 
 TEST(RigidBody, ADiscThatIsHeldInItsPlaneNeedsNoShift)
 {
-  // In its plane and along its axis, against turning only, along its axis only
+  // Tangential and axial springs, tangential only, axial only
   for (const auto &[tangential, axial] : {std::make_pair(7.8e10, 1.88e10), {7.8e10, 0.}, {0., 1.88e10}})
     {
       const Scene s = disc_scene({{"disc_bore", 0., tangential, axial}});

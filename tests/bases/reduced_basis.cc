@@ -25,7 +25,7 @@ namespace
   constexpr double mu        = 0.6;
   const double     omega_max = circular_frequency(6000.);
 
-  /// Bases in the tables of the paper with their sizes there.
+  /// A basis and its sizes in the tables of the paper.
   struct Kind
   {
     std::string name;
@@ -47,7 +47,7 @@ namespace
     return kinds;
   }
 
-  /// Disc and three pins; in quadratic elements half as many.
+  /// Disc and three pins, with half as many elements if they are quadratic.
   Mesh mesh_of(const Case &c)
   {
     const int n = c.element == Element::trilinear ? 2 : 1;
@@ -57,7 +57,7 @@ namespace
                   c.slope);
   }
 
-  /// A scene with everything that bases are made from.
+  /// A model with all ingredients of the bases.
   struct Bodies
   {
     explicit Bodies(const Case &c)
@@ -94,7 +94,7 @@ namespace
       return in;
     }
 
-    /// Made once.
+    /// Built on first use.
     const ReducedBasis &basis(const std::string &kind) const
     {
       auto found = made.find(kind);
@@ -113,7 +113,7 @@ namespace
     mutable std::map<std::string, ReducedBasis>         made;
   };
 
-  /// Largest M-norm that a column of Y, of unit M-norm, has outside of the span of the M-orthonormal X.
+  /// Largest relative M-norm of the part of a column of Y outside the span of the M-orthonormal X.
   double outside(const SparseMatrix &M, const MultiVector &X, MultiVector Y)
   {
     const std::vector<double> norms = column_products(Y, M * Y);
@@ -122,7 +122,7 @@ namespace
     return std::sqrt((as_column(column_products(Y, M * Y)).array().max(0.) / as_column(norms).array()).maxCoeff());
   }
 
-  /// Bodies of a case are made when a test first asks for them.
+  /// Bodies of a case are built on first use.
   class BasesOfACase : public ::testing::Test
   {
   protected:
@@ -133,7 +133,7 @@ namespace
         result = std::make_unique<Bodies>(c);
       return *result;
     }
-    /// Nothing distributed may outlive MPI.
+    /// Frees distributed objects before MPI is finalised.
     static void TearDownTestSuite()
     {
       of_case.clear();
@@ -173,7 +173,7 @@ TEST(BasisTables, SizesOfThePaper)
 TEST_P(ReducedBases, KeepTheContactClosedAndAreOrthonormal)
 {
   const int   n_c = b.s.interface.size();
-  BasisCounts counts; // as they are, by the formulas of the tables
+  BasisCounts counts; // actual counts for the formulas of the tables
   counts.contact = n_c;
   for (const auto &[source, set] : b.ingredients().sets)
     counts.sets[source] = set->n_columns();
@@ -191,7 +191,7 @@ TEST_P(ReducedBases, KeepTheContactClosedAndAreOrthonormal)
       if (is_connected)
         {
           EXPECT_EQ(basis.connection.rank, n_c);
-          EXPECT_EQ(basis.n_dropped, 0); // component bases hold no vector twice
+          EXPECT_EQ(basis.n_dropped, 0); // component bases contain no duplicate vectors
           EXPECT_GT(basis.connection.smallest_kept, 1e-9);
           EXPECT_EQ(basis.connection.largest_dropped, 0.);
           EXPECT_LT(basis.connection.constraint_error, 1e-10);
@@ -225,7 +225,7 @@ TEST_P(ReducedBases, FrictionlessRitzValuesComeDownToTheExactOnes)
       no_higher(exact, found[kind], kind);
     }
   no_higher(found["free + t.a.m."], found["free with r.a.m."], "free + t.a.m. contains r.a.m.");
-  // Responses of a free disc are next to rigid, and orthonormalising them costs a digit.
+  // Responses of a free disc are almost rigid, so that orthonormalisation costs a digit.
   const double exactness = b.real.n_rigid_body > 0 ? 1e-7 : 1e-8;
   for (const auto &[kind, n_r0, n_r] : real_kinds)
     EXPECT_LT(error(found[kind]), exactness) << kind;
@@ -239,18 +239,18 @@ TEST_P(ReducedBases, FrictionlessRitzValuesComeDownToTheExactOnes)
 TEST_P(ReducedBases, StaticallyCompleteBasesGiveStaticResponsesExactly)
 {
   if (GetParam().mounts.empty())
-    return; // responses of a free disc are next to rigid, if there are any
+    return; // static responses of a free disc are almost rigid or do not exist
   const auto missing = [&](const std::string &kind) {
     return outside(*b.s.coupled.mass, *b.basis(kind).vectors, b.inverse.attachment_modes());
   };
   // Tangential loads on the contact: K_c u = A
   for (const std::string kind : {"free + t.a.m.", "fixed + t.a.m.", "mixed + t.a.m.", "real + t.a.m."})
     EXPECT_LT(missing(kind), 1e-7) << kind;
-  // They are needed for that.
+  // Bases without tangential attachment modes lack them.
   for (const std::string kind : {"free", "fixed", "mixed", "free with r.a.m.", "real"})
     EXPECT_GT(missing(kind), 1e-2) << kind;
 
-  // Loads f that the bodies' own modes respond to, and the contact forces they bring about:
+  // Loads f whose static response is a mode of the bodies, and the resulting contact forces:
   // (K_c − μ A V_K) u = T_cᵀf − μ/2 A P_n f
   const MultiVector f = *b.s.system.stiffness * view(*b.components.at(BasisSource::disc_free), 0, 4);
   for (const auto &[kind, friction] :
@@ -288,7 +288,7 @@ TEST_P(ReducedBases, OfRealModesSpanWhatTheyAreMadeOf)
 
 TEST(CompleteBasis, GivesTheFullModel)
 {
-  // All vectors of the sliding components and the constraint modes span everything that keeps the contact closed.
+  // All sliding component modes and the constraint modes span all displacements that keep the contact closed.
   const std::vector<PolarPin> pins = {{Plan::Side::top, 0, 1, 0, 1}, {Plan::Side::bottom, 2, 1, 0, 1}};
   const Scene                 s(sloped(extrude(polar_plan(0.1505, 0.3155, 1, 7, pins), layers(1, 2)), 0.3), mounted(held),
                                 operating(RadialDissipation::consistent));
@@ -323,7 +323,7 @@ TEST(CompleteBasis, GivesTheFullModel)
       EXPECT_LT(largest(distances(full.values, reduced.values)), 1e-10);
     }
 
-  // One vector more is one too many.
+  // One more vector makes the basis dependent.
   const MultiVector first = view(disc, 0, 1), more = join({&disc, &first});
   in.sets[BasisSource::disc_sliding] = &more;
   EXPECT_THROW(reduced_basis(*find_recipe("fixed"), in), SolverError);
@@ -363,7 +363,7 @@ TEST_F(BasesOfACase, RigidBodyMotionsAreAddedWhereTheyAreMissing)
 
 TEST_F(BasesOfACase, PrincipalAxesOfSnapshots)
 {
-  // Six vectors of which three are combinations of the others
+  // Six snapshots of rank three
   const Bodies     &b     = bodies();
   const MultiVector first = view(*b.real.vectors, 0, 3), snapshots = join({&first, &first});
   BasisIngredients  in;

@@ -32,7 +32,7 @@ namespace
     StaticModes   modes;
   };
 
-  /// Pᵀ with the rows of the other component at zero.
+  /// Pᵀ with zero rows for the other component.
   MultiVector forces(const Scene &s, const SparseMatrix &P, const Component component)
   {
     MultiVector f = transpose_times(P, unit_vectors(P.rows()));
@@ -45,7 +45,7 @@ namespace
     return f;
   }
 
-  /// Largest ‖K u − f + M N Nᵀf‖ / ‖f‖ of the columns.
+  /// Largest ‖K u − f + M N Nᵀf‖ / ‖f‖ over the columns.
   double residual(const Modes &m, const MultiVector &u, MultiVector f)
   {
     const auto norms = column_norms(f);
@@ -76,12 +76,12 @@ TEST_P(StaticModesOf, AttachmentModesAreStaticResponses)
 {
   ASSERT_EQ(m.modes.normal_attachment().n_columns(), n_c);
   const auto f = [](const SparseMatrix &P) { return transpose_times(P, unit_vectors(P.rows())); };
-  // Of a trilinear disc that is held no more than rounding is left
+  // A held disc with trilinear elements leaves only rounding errors
   const bool is_simple = GetParam().slope == 0. && GetParam().element == Element::trilinear && GetParam().n_free == 0;
   EXPECT_LT(residual(m, m.modes.normal_attachment(), f(*P.normal)), is_simple ? 1e-11 : 1e-9);
   EXPECT_LT(residual(m, m.modes.tangential_attachment(), f(*P.tangential)), 1e-9);
 
-  // Unit forces along n on each component; together they are the set of both
+  // Unit forces along n on each component add up to those on both
   MultiVector rest = m.modes.normal_attachment(), f_pins = forces(m.s, *P.normal, Component::pins);
   f_pins *= -1.;
   EXPECT_LT(residual(m, m.modes.normal_attachment(Component::disc), forces(m.s, *P.normal, Component::disc)), 1e-9);
@@ -89,13 +89,13 @@ TEST_P(StaticModesOf, AttachmentModesAreStaticResponses)
   rest.local() -= m.modes.normal_attachment(Component::disc).local() - m.modes.normal_attachment(Component::pins).local();
   EXPECT_EQ(max_norm(replicate(rest)), 0.);
 
-  // A force and the friction it causes
+  // A normal force and the friction it causes
   const double mu      = 0.37;
   MultiVector  rubbing = f(*P.normal);
   rubbing.local() += mu * f(*P.tangential).local();
   EXPECT_LT(residual(m, m.modes.rubbing_attachment(mu), rubbing), 1e-9);
 
-  // A free disc is relieved by inertia
+  // Inertia relief of a free disc
   const MultiVector *N = m.modes.response.rigid_body_modes(), &u = m.modes.normal_attachment();
   ASSERT_EQ(N != nullptr ? N->n_columns() : 0, GetParam().n_free);
   if (N == nullptr)
@@ -120,7 +120,7 @@ TEST_P(StaticModesOf, ConstraintModesKeepTheirValues)
       multiply_add(-1., f, gram(f, F), 1., rest);
       EXPECT_LT(max_norm(replicate(rest)), 1e-9 * max_norm(replicate(F)));
 
-      // Ψ_cn = Ψ_an F⁻¹ where nothing moves rigidly, F = n·Ψ_an at the contact nodes
+      // Ψ_cn = Ψ_an F⁻¹ without rigid-body motions, F = n·Ψ_an at the contact nodes
       if (component == Component::disc && GetParam().n_free > 0)
         continue;
       const MultiVector attachment = m.modes.normal_attachment(component);
@@ -140,7 +140,7 @@ TEST(Kernels, AreUndoneByCoordinates)
   expect_undone(*s.contact.kernel);
   expect_undone(*component_kernel(s.model, s.interface, Component::pins, ContactBoundary::free));
 
-  // Where faces are inclined by 45 degrees, a slave row holds a single one, like the row of the dof it follows.
+  // On faces inclined by 45 degrees, a slave row has a single entry of 1, like the row of its master dof.
   ContactInterface inclined = s.interface;
   const double     h        = std::sqrt(0.5);
   for (ContactNode &node : inclined)

@@ -12,7 +12,7 @@ namespace
 {
   const MaterialParameters materials = mounted();
 
-  /// Annuli with a pin on either side of the same sectors; the outlines of meshes of other widths are other polygons.
+  /// Annuli with opposite pins; the polygonal outlines depend on the refinement.
   Mesh mesh(const int refinement, const int n_layers)
   {
     const std::vector<PolarPin> pins = {{Plan::Side::top, -refinement, 2 * refinement, refinement, refinement},
@@ -25,7 +25,7 @@ namespace
     return Model(mesh, Element::trilinear, MPI_COMM_WORLD);
   }
 
-  /// A mesh of three bodies and their points.
+  /// A mesh of three bodies and its common points.
   struct Points
   {
     explicit Points(const int degree = 1)
@@ -58,13 +58,13 @@ TEST(CommonPoints, HaveTheMassOfEveryBody)
 
 TEST(CommonPoints, EvaluateMultilinearFieldsExactlyInTheirOwnBodyOnly)
 {
-  // In the space of extruded cells, and zero on the clamped face of the upper pin
+  // In the finite element space of extruded cells, and zero on the clamped face of the upper pin
   const auto multilinear = [](const Point3 &x) {
     const GeometryParameters parameters;
     const double             z = x[2] - parameters.disc_thickness / 2. - parameters.pin_height;
     return Point3{{z * (1. + 2. * x[0] - x[1]), z * x[1], 3. * z}};
   };
-  // √m u(x) at all points, one after the other: faces of disc and pin coincide, but each body has a field of its own
+  // √m u(x) at all points; faces of disc and pin coincide, but each body has its own field
   const Points        p;
   std::vector<double> expected;
   for (unsigned int body = 0; body < 3; ++body)
@@ -74,7 +74,7 @@ TEST(CommonPoints, EvaluateMultilinearFieldsExactlyInTheirOwnBodyOnly)
         for (const double value : multilinear({{x[0], x[1], x[2]}}))
           expected.push_back(body == 1 ? std::sqrt(p.points.bodies[body].masses[q]) * value : 0.);
       }
-  // The same outline, cells that do not match, names in another order
+  // Same outline, non-matching cells, different order of names
   Mesh fine = extrude(polar_plan(0.1505, 0.3155, 3, 24, {{Plan::Side::top, -1, 2, 1, 1}, {Plan::Side::bottom, -1, 2, 1, 1}}, "bore", "rim"),
                       layers(3, 5));
   for (Mesh::Cell &cell : fine.cells)
@@ -91,7 +91,7 @@ TEST(CommonPoints, EvaluateMultilinearFieldsExactlyInTheirOwnBodyOnly)
 
 TEST(BodyFrames, CarryPointsToTheSamePlacesOfADisc)
 {
-  // Another width of the disc and another thickness of everything
+  // Different disc width and different thickness of all bodies
   const Points p(0);
   const auto   carry = [](const double r, const double theta, const double z) {
     const double carried = 0.1 + 2. * (r - 0.1505);
@@ -111,7 +111,7 @@ TEST(BodyFrames, CarryPointsToTheSamePlacesOfADisc)
       EXPECT_LT(carried.bodies[0].points[q].distance(carry(std::hypot(x[0], x[1]), std::atan2(x[1], x[0]), x[2])), 1e-14);
     }
 
-  // A body that the other design lacks is left out
+  // A body that is missing in the other design is left out
   std::vector<BodyFrame> fewer = frames;
   fewer.erase(fewer.begin() + 1);
   const CommonPoints rest = carried_over(p.points, frames, fewer);
@@ -121,7 +121,7 @@ TEST(BodyFrames, CarryPointsToTheSamePlacesOfADisc)
 
 TEST(CylindricalDirections, FollowATurnedScene)
 {
-  // The same displacement, turned with the scene, has the same components
+  // A displacement that is rotated with the model has the same components
   const Points p(0);
   const Model  to     = trilinear(mapped(p.coarse, [](const Point3 &x) { return Point3{{-x[1], x[0], x[2]}}; }));
   CommonPoints turned = p.points;

@@ -12,7 +12,7 @@ using namespace Squeal::Testing;
 
 namespace
 {
-  /// Modes below 10 rad/s with what they lose.
+  /// Modes in the band and their conditioning.
   std::pair<ComplexModes, Conditioning> conditioned(const CoupledSystem &system, const double mu, const double band = 10.)
   {
     UpdatedInverse   inverse(system, 0., FactorizationLibrary::automatic);
@@ -23,7 +23,7 @@ namespace
     return {modes, estimate_conditioning(system, inverse, 0., modes, modal_products(system, modes))};
   }
 
-  /// Condition numbers ‖y‖ ‖x‖ / |yᴴ x| of the eigenvalues of ż = A z in the coordinates z = (K^½ u, v), largest.
+  /// Largest eigenvalue condition number ‖y‖ ‖x‖ / |yᴴ x| of ż = A z in the coordinates z = (K^½ u, v).
   double condition_of_first_order_system(const double mu)
   {
     const DenseMatrix K{{3., 0.7}, {0.7, 2.}}, K_mu{{3., 0.7 - mu}, {0.7, 2.}};

@@ -58,7 +58,7 @@ TEST(Extrapolation, DistrustsOscillationDivergenceAndOrdersOutOfRange)
       EXPECT_NEAR(e.limit, v[2] + (v[2] - v[1]) / 3., 1e-14);
       EXPECT_GE(e.uncertainty, std::abs(v[2] - v[1]));
     }
-  // The three finest decide
+  // Only the three finest values count
   const Extrapolation recovered = extrapolate({8., 4., 2., 1.}, {100., 16., 4., 1.}, 2.);
   EXPECT_TRUE(recovered.is_trustworthy);
   EXPECT_NEAR(recovered.limit, 0., 1e-12);

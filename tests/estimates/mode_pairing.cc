@@ -30,7 +30,7 @@ namespace
            ComplexDenseMatrix::Identity(n_values, k);
   }
 
-  /// Columns i and j turned into each other by an angle.
+  /// Rotates columns i and j in their plane.
   void turn(ComplexDenseMatrix &X, const int i, const int j, const double degrees)
   {
     const double           angle = degrees * M_PI / 180., c = std::cos(angle), s = std::sin(angle);
@@ -39,7 +39,7 @@ namespace
     X.col(j) = c * y - s * x;
   }
 
-  /// The first n columns mixed at random.
+  /// Mixes the first n columns at random.
   ComplexDenseMatrix mixed(const ComplexDenseMatrix &X, const int n)
   {
     const ComplexDenseMatrix random = orthonormal(n).topRows(n);
@@ -67,7 +67,7 @@ namespace
 
   constexpr double share = 1. / 3.;
 
-  /// Modes of the same shapes on both meshes.
+  /// Errors of modes with equal shapes on both meshes.
   std::vector<DiscretisationError> errors(const std::vector<Complex> &coarse, const std::vector<Complex> &fine)
   {
     const ComplexDenseMatrix X = orthonormal(fine.size());
@@ -80,11 +80,11 @@ TEST(ModePairing, MarksTurnedModesAndNoOther)
   const ComplexDenseMatrix   X      = orthonormal(6);
   const std::vector<Complex> lambda = {10. * i, 10.1 * i, 20. * i, 20.1 * i, 30. * i, 30.1 * i};
   ComplexDenseMatrix         Y      = X;
-  turn(Y, 0, 1, 45.); // a doublet
-  turn(Y, 2, 3, 20.); // nearly one
-  turn(Y, 4, 5, 70.); // turned on
+  turn(Y, 0, 1, 45.); // ambiguous
+  turn(Y, 2, 3, 20.); // unambiguous
+  turn(Y, 4, 5, 70.); // exchanged
   const ModePairing pairing = pair_modes(modes(lambda, Y), modes(lambda, X));
-  // In a doublet the order of the frequencies decides; a turn by 70° is one by 20° of the other mode
+  // Ambiguous modes are paired by frequency; a rotation by 70° is one by 20° of the other mode
   EXPECT_EQ(partners(pairing.coarse), (std::vector<int>{0, 1, 2, 3, 5, 4}));
   EXPECT_EQ(marked(pairing.coarse), (std::vector<int>{0, 1}));
   EXPECT_EQ(marked(pairing.fine), (std::vector<int>{0, 1}));
@@ -94,7 +94,7 @@ TEST(ModePairing, MarksTurnedModesAndNoOther)
 
 TEST(ModePairing, FindsClustersOfManyModes)
 {
-  // 12 modes mixed at random: none has a counterpart; the others have, also one with a small share of the cluster
+  // 12 modes mixed at random have no counterpart; the others do, even one with a small share of the cluster
   const ComplexDenseMatrix X = orthonormal(15);
   ComplexDenseMatrix       Y = mixed(X, 12);
   std::vector<Complex>     lambda;
@@ -111,7 +111,7 @@ TEST(ModePairing, FindsClustersOfManyModes)
 
 TEST(ModePairing, PairsClustersByTheirFrequenciesButForAShift)
 {
-  // Five modes mixed at random, all of them higher by more than their distances from each other
+  // Five modes mixed at random, shifted by more than their spacing
   const ComplexDenseMatrix   X       = orthonormal(7);
   const std::vector<Complex> fine    = {3500. * i, 3510. * i + 5., 3510. * i - 5., 3520. * i, 3540. * i, 4000. * i, 5000. * i};
   const std::vector<Complex> coarse  = {3600. * i, 3609. * i - 4., 3609. * i + 4., 3621. * i, 3642. * i, 4100. * i, 5100. * i};
@@ -122,7 +122,7 @@ TEST(ModePairing, PairsClustersByTheirFrequenciesButForAShift)
 
 TEST(ModePairing, SaysWhichModesHaveNoPartner)
 {
-  // Beyond the other band: single modes and a member of a doublet; a mode that is something else
+  // Modes outside the other band, among them a member of a doublet, and a mode of a different shape
   const ComplexDenseMatrix   X      = orthonormal(6);
   const std::vector<Complex> lambda = {10. * i, 20. * i, 30. * i, 30.1 * i};
   ComplexDenseMatrix         Y      = X.leftCols(4);
@@ -139,7 +139,7 @@ TEST(ModePairing, SaysWhichModesHaveNoPartner)
 
 TEST(ModePairing, KeepsTheTwoModesOfAFlutterApart)
 {
-  // u + e^{±iα} v: right eigenvectors of a coalesced pair overlap, yet growth and decay are two modes on both meshes
+  // u + e^{±iα} v: right eigenvectors of a flutter pair overlap, but the growing and the decaying mode stay distinct
   const ComplexDenseMatrix X    = orthonormal(2);
   const auto               pair = [&X](const double angle) {
     ComplexDenseMatrix result(n_values, 2);
@@ -155,7 +155,6 @@ TEST(ModePairing, KeepsTheTwoModesOfAFlutterApart)
 
 TEST(DiscretisationError, IsAShareOfTheDifference)
 {
-  // A third of the difference
   const auto lambda = [](const double error) { return std::vector<Complex>{100. * (1. + error) * Complex(0.01 + error, 1.)}; };
   const std::vector<DiscretisationError> found = errors(lambda(4e-3), lambda(1e-3));
   ASSERT_EQ(found.size(), 1u);
@@ -183,7 +182,7 @@ TEST(DiscretisationError, DecidesWhatGrowsBeyondIt)
 
 TEST(DiscretisationError, NeutralModesThatMayMeetAreUndecided)
 {
-  // Distances: 1 from 4 on the coarse mesh; 1 from 1.5; 0.001 from 0.01, at which they could hardly grow
+  // Gaps on the fine and the coarse mesh: 1 and 4; 1 and 1.5; 0.001 and 0.01, too small for noticeable growth
   const std::vector<DiscretisationError> found = errors({104. * i, 100. * i, 201.5 * i, 200. * i, 300.01 * i, 300. * i},
                                                         {101. * i, 100. * i, 201. * i, 200. * i, 300.001 * i, 300. * i});
   for (const int j : {0, 1})

@@ -14,7 +14,7 @@ namespace
 {
   constexpr double large_friction = 0.6;
 
-  /// A scene with its real modes and complex reference modes.
+  /// A model with its real modes and complex reference modes.
   struct Reference
   {
     Reference()
@@ -51,12 +51,12 @@ namespace
     return result;
   }
 
-  /// The two degrees of freedom of flutter, K = [k11 k12 - μ k_c; k12 k22], and a stiff third one, without which k11 is known too stiff.
+  /// Two-dof flutter, K = [k11 k12 - μ k_c; k12 k22], with a stiff third dof, without which k11 is too large.
   struct StiffenedFlutter
   {
     double damping = 0., k11 = 3., k22 = 2., k12 = 0.7, k_c = 1.3, c = 0.3, k33 = 100.;
 
-    /// Where the modes coalesce if the stiffness of the first is k.
+    /// Friction coefficient at which the modes coalesce for k11 = k.
     double threshold(const double k) const
     {
       return ((k - k22) * (k - k22) / (4. * k12) + k12) / k_c;
@@ -76,7 +76,7 @@ namespace
     }
   };
 
-  /// Masses of one on springs of their own, without contact, of which some modes are known.
+  /// Uncoupled oscillators of unit mass without contact.
   struct Masses
   {
     explicit Masses(const std::vector<double> &k)
@@ -109,9 +109,9 @@ TEST(ReductionErrors, AreTheFormulasOfThePaper)
   const ReducedModes modes  = reduced_modes(model, large_friction, omega_max, BandEnd::open);
   const auto         errors = reduction_errors(r.s.coupled, r.inverse, model, modes, r.complex);
   EXPECT_GT(largest(errors, &ModeError::shape), 1e-6);
-  EXPECT_THROW(r.errors(view(*r.real.vectors, 0, r.real.vectors->n_columns() - 3)), SolverError); // fewer than the reference
+  EXPECT_THROW(r.errors(view(*r.real.vectors, 0, r.real.vectors->n_columns() - 3)), SolverError); // fewer modes than the reference
 
-  // The full vectors of the reduced modes, with ε_res computed where modes are finished
+  // Full-order vectors of the reduced modes, with ε_res from full_order_modes()
   std::set<int> matches;
   for (const ModeError &error : errors)
     {
@@ -134,7 +134,7 @@ TEST(ReductionErrors, AreTheFormulasOfThePaper)
 
 TEST(ModeMatching, ClustersAreComparedAsSubspaces)
 {
-  // The same mode twice, a third nearby, one apart: turned vectors have no counterpart of their own, their span has.
+  // A double mode, a third nearby and one apart: rotated vectors have no individual counterparts, but their span does.
   Masses masses({1., 1., 1.0005, 4., 9., 16.});
   masses.model.extend(masses.I);
   const MultiVector &I     = masses.I;
@@ -156,7 +156,7 @@ TEST(ModeMatching, ClustersAreComparedAsSubspaces)
     EXPECT_EQ(errors[j].cluster_size, j < 3 ? 3 : 1);
   EXPECT_EQ(errors_of(1e-6)[2].cluster_size, 1);
 
-  // A vector of the cluster tilted out of it by an angle whose sine is 0.28
+  // Tilts one vector out of the cluster by an angle with sine 0.28
   turned.col(1) = 0.28 * I.col(4) + 0.96 * turned.col(1);
   for (const ModeError &error : errors_of())
     EXPECT_NEAR(error.subspace, error.cluster_size == 3 ? 0.28 * 0.28 : 0., 1e-12);
@@ -164,18 +164,17 @@ TEST(ModeMatching, ClustersAreComparedAsSubspaces)
 
 TEST(ModeMatching, ByEquation17OneReducedModeMayServeTwice)
 {
-  // Modes 0 and 2 are far apart. The reduced mode near e_0 holds most of what the reduced space has of e_2, too: by eq. (17)
-  // it is the counterpart of both, one-to-one mode 2 gets the other one.
+  // The reduced mode closest to e_0 is closest to e_2, too: it is the counterpart of both by eq. (17), whereas one-to-one
+  // matching gives e_2 the other reduced mode.
   Masses             masses({1., 4., 1.2, 9.});
   const MultiVector &I = masses.I;
-  // Two reduced modes: 0.8 e_0 + 0.6 e_2 and 0.28 e_2 + 0.96 e_3, not orthogonal on purpose; the pencil tells them apart
   MultiVector T(I.map(), 2), exact(I.map(), 2);
   exact.col(0) = I.col(0);
   exact.col(1) = I.col(2);
   T.col(0)     = 0.8 * I.col(0) + 0.6 * I.col(2);
   T.col(1)     = 0.28 * (0.6 * I.col(0) - 0.8 * I.col(2)) + 0.96 * I.col(3);
   masses.model.extend(T);
-  // Frequencies within reach of the matching: it is about shapes here
+  // Frequencies are set so that shapes alone decide the matching
   ReducedModes modes = reduced_real_modes(masses.model, 10., BandEnd::open);
   modes.lambda       = {{0., 1.}, {0., std::sqrt(1.2)}};
 
@@ -204,7 +203,7 @@ TEST(ModeMatching, ByEquation17OneReducedModeMayServeTwice)
 
 TEST(EigenvalueEstimates, FindTheErrorAndMendIt)
 {
-  // Flutter with a degree of freedom left out: the estimate is the error to first order, away from the coalescence.
+  // With one dof left out, the estimate is the error to first order away from the coalescence.
   for (const double damping : {0., 0.02})
     {
       const StiffenedFlutter flutter{damping};
@@ -227,7 +226,7 @@ TEST(EigenvalueEstimates, FindTheErrorAndMendIt)
           for (int j = 0; j < 2; ++j)
             {
               SCOPED_TRACE("factor " + std::to_string(factor) + ", mode " + std::to_string(j));
-              // Members of an unstable pair have one frequency: either may come first.
+              // Both modes of an unstable pair have the same frequency, so that their order is arbitrary.
               const Complex same = exact.lambda[j], other = exact.lambda[1 - j];
               const Complex nearest = std::abs(same - modes.lambda[j]) < std::abs(other - modes.lambda[j]) ? same : other;
               const Complex error   = nearest - modes.lambda[j];

@@ -12,18 +12,18 @@ namespace
 {
   constexpr double mu = 0.4;
 
-  /// Products of the projected residuals are those of full order, without friction and with it.
+  /// Expects products of projected residuals to equal those of full order, with and without friction.
   void expect_agreement(const CoupledSystem &system, const double shift, const ContactDamping &damping, const MultiVector &real)
   {
     const UpdatedInverse inverse(shift > 0. ? undamped(system) : system, shift, FactorizationLibrary::automatic);
     const SparseMatrix  &M = *system.mass;
-    // Nearly rigid motions, whose strain energy is small, have large rounding errors by comparison.
+    // Nearly rigid motions have little strain energy and therefore large relative rounding errors.
     const double tolerance = shift > 0. ? 1e-10 : 1e-12;
     for (const double friction : {0., mu})
       {
         ProjectedResiduals projected(system, inverse, shift, damping.values());
         ReducedModel       model(system);
-        // In two steps, as a basis grows
+        // In two steps, like a growing basis
         model.extend(orthonormalize(M, nullptr, real, 1e-10));
         projected.extend(model);
         const ParameterValues values  = system.at(friction, damping.values());
@@ -52,9 +52,9 @@ namespace
             for (int i = 0; i < k; ++i)
               EXPECT_LT(std::abs(products.coupling(i, j) - direct.coupling(i, j)), tolerance * std::sqrt(left[i] * right[j]));
           }
-        EXPECT_TRUE(friction == 0. || largest_energy > 1e-9) << "residuals are more than rounding errors";
+        EXPECT_TRUE(friction == 0. || largest_energy > 1e-9) << "residuals must exceed rounding errors";
 
-        // A sketch knows them to the statistical error of 128 numbers, without rounding errors of its own
+        // A sketch of 128 vectors: five standard deviations of a squared norm
         ProjectedResiduals sketched(system, inverse, shift, damping.values());
         sketched.use_sketch();
         sketched.extend(model);

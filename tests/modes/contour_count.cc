@@ -34,7 +34,7 @@ namespace
     return count_by_contour(system, mu, options, progress);
   }
 
-  /// The methods that run on so many processes.
+  /// Methods available for this number of processes.
   std::vector<ContourMethod> methods(const CoupledSystem &system)
   {
     if (system.map().n_processes() > 1)
@@ -42,7 +42,7 @@ namespace
     return {ContourMethod::condensed, ContourMethod::sparse_lu};
   }
 
-  /// How many of them lie in the rectangle.
+  /// Number of eigenvalues in the rectangle.
   int n_inside(const std::vector<Complex> &lambda, const double largest_circular_frequency, const double largest_growth = 0.)
   {
     const double a = largest_growth > 0. ? largest_growth : 0.1 * largest_circular_frequency;
@@ -76,13 +76,13 @@ TEST(ContourCount, FlutterOfTwoDegreesOfFreedom)
   const CoupledSystem system = flutter.system();
   for (const ContourMethod method : methods(system))
     {
-      // Below the threshold, both on the imaginary axis: the contour may be as narrow as one likes.
+      // Below the threshold both eigenvalues are imaginary, so that the contour may be narrow.
       const double stable = 0.9 * flutter.coalescence(), omega = flutter.lambda(stable).back().imag();
       EXPECT_EQ(count(system, {stable}, contour(3., 0.01, method))[0].n_modes, 2);
       EXPECT_EQ(count(system, {stable}, contour(1.0001 * omega, 0.01, method))[0].n_modes, 2);
       EXPECT_EQ(count(system, {stable}, contour(0.9999 * omega, 0.01, method))[0].n_modes, 1);
 
-      // Beyond it, at −R + iω and R + iω
+      // Above it they are −R + iω and R + iω
       const double  unstable = 1.3 * flutter.coalescence();
       const Complex l        = flutter.lambda(unstable).back();
       ASSERT_GT(std::abs(l.real()), 0.05);
@@ -97,7 +97,7 @@ TEST(ContourCount, FlutterOfTwoDegreesOfFreedom)
 
 TEST(ContourCount, AgreesWithBothSolversUnderStrongFriction)
 {
-  // Modes diverge, and others grow faster than the band is wide
+  // Some modes diverge, others have growth rates larger than the band
   const Scene  s      = scene(RadialDissipation::none);
   const double radius = Band(omega_max).radius();
   int          n_real = 0;
@@ -107,7 +107,7 @@ TEST(ContourCount, AgreesWithBothSolversUnderStrongFriction)
       EXPECT_LT(largest(distances(other.lambda, found.lambda)), 1e-6);
       EXPECT_EQ(count(s.coupled, {mu}, contour(omega_max))[0].n_modes, n_inside(found.lambda, omega_max));
 
-      // Real eigenvalues and the whole disc beside a dense solution
+      // Compares real eigenvalues and the whole disc |λ| ≤ radius with a dense solution
       const SecondOrderSystem matrices = with_friction(s.coupled, mu);
       const auto              dense    = dense_quadratic_modes(to_dense(*matrices.mass), nullptr, to_dense(*matrices.stiffness), omega_max);
       std::vector<Complex>    inside;
@@ -177,7 +177,7 @@ TEST(ContourCount, BetweenARealModeAndWhatFrictionMakesOfIt)
     }
   EXPECT_GT(n_tested, 5);
 
-  // On a mode itself there is no count
+  // A contour through an eigenvalue is rejected
   const double omega = modes.lambda[5].imag(), omega_real = std::sqrt(real.eigenvalues[5]);
   for (const ContourMethod method : methods(s.coupled))
     {
@@ -201,7 +201,7 @@ TEST(ContourCount, DampingOfModesAndOfTheSlidingMotion)
           add_modal_damping(system, *real.vectors, real.eigenvalues, std::vector<double>(real.eigenvalues.size(), 0.02));
         }
       const auto modes = krylov(system, 0.6);
-      // Wide, and between the growth rates
+      // Wide contours, and narrow ones between the growth rates
       for (const double a : {0., 0.01 * omega_max, 0.004 * omega_max})
         EXPECT_EQ(count(system, {0.6}, contour(omega_max, a))[0].n_modes, n_inside(modes.lambda, omega_max, a)) << a;
       EXPECT_LT(n_inside(modes.lambda, omega_max, 0.004 * omega_max), n_inside(modes.lambda, omega_max));

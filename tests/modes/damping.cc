@@ -24,7 +24,7 @@ namespace
     return materials;
   }
 
-  /// ζ of the tests with modal damping: between 1 and 4 % within the band.
+  /// Modal damping ratio, between 1 and 4 % within the band.
   double ratio_at(const double omega)
   {
     return 0.01 + 0.03 * omega / omega_max;
@@ -38,20 +38,20 @@ namespace
     return ratios;
   }
 
-  /// The system with damping of its real modes.
+  /// The system with modal damping.
   CoupledSystem with_modal_damping(CoupledSystem system, const SymmetricModes &real)
   {
     add_modal_damping(system, *real.vectors, real.eigenvalues, ratios_of(real));
     return system;
   }
 
-  /// C_m X of a system to which modal damping was added last.
+  /// C_m X of a system whose last term is modal damping.
   MultiVector modal_forces(const CoupledSystem &system, const MultiVector &X)
   {
     return times({system.terms.back()}, system.values, 1, X);
   }
 
-  /// λ with Im λ > 0 of real modes, each damped by itself: λ² + c(ω) λ + ω² = 0.
+  /// λ with Im λ > 0 of individually damped real modes: λ² + c(ω) λ + ω² = 0.
   std::vector<Complex> damped_oscillators(const SymmetricModes &real, const std::function<double(double)> &c)
   {
     std::vector<Complex> result;
@@ -66,8 +66,8 @@ namespace
 
 TEST(RayleighDamping, ProportionalDampingOfEveryMode)
 {
-  // C = α M + β K without friction: λ = −(α + β ω²)/2 ± i √(ω² − ((α + β ω²)/2)²); an elastic mount
-  // allows β with dashpots of β times its stiffness only.
+  // C = α M + β K without friction: λ = −(α + β ω²)/2 ± i √(ω² − ((α + β ω²)/2)²);
+  // with an elastic mount this requires dashpots of β times its stiffness.
   int n_growing = 0;
   for (const auto &[alpha, beta] : {std::make_pair(500., 0.), {100., 3e-6}})
     {
@@ -83,7 +83,7 @@ TEST(RayleighDamping, ProportionalDampingOfEveryMode)
       EXPECT_LT(largest(distances(krylov(s.coupled, 0.).lambda, expected)), 1e-9);
       EXPECT_LT(largest(distances(iterated(s.coupled, 0., 1e-10).lambda, expected)), 1e-9);
 
-      // With friction C̃ = α M̃ + β K̃: each undamped λ_0, of either growth, becomes the root of λ² + (α + β κ) λ + κ = 0, κ = −λ_0².
+      // With friction C̃ = α M̃ + β K̃: each undamped λ_0, growing or not, becomes a root of λ² + (α + β κ) λ + κ = 0, κ = −λ_0².
       const auto           growing = krylov(undamped(s.coupled), friction_coefficient);
       std::vector<Complex> shifted;
       for (const Complex &l : growing.lambda)
@@ -99,7 +99,7 @@ TEST(RayleighDamping, ProportionalDampingOfEveryMode)
 
 TEST(RayleighDamping, ADiscThatMovesFreely)
 {
-  // The same about a shift, with damping in the factor and in the reactions: λ = 0 and −α besides.
+  // The same with a shift and damping in the factor and in the reactions; λ = 0 and −α are eigenvalues, too.
   constexpr double alpha = 20., beta = 1e-6;
   const FreeDisc   disc(proportional(alpha, beta));
   const auto &[s, shift, real] = disc;
@@ -156,12 +156,12 @@ TEST(RayleighDamping, ResidualsOfBothSidesAreThoseOfTheMatrices)
 
 TEST(SpeedDependentFriction, MassOnASpring)
 {
-  // m ẍ + c ẋ + k x = μ(w_0 - ẋ) N on a belt: about the steady state m ẍ + (c + μ'N) ẋ + k x = 0, and x grows if -μ'N > c.
+  // m ẍ + c ẋ + k x = μ(w_0 - ẋ) N on a belt, linearised m ẍ + (c + μ'N) ẋ + k x = 0, which is unstable if -μ'N > c.
   const double m = 2., c = 0.05, k = 18., N = 3., w_0 = 0.5;
   const auto   friction = [](const double w) { return 0.3 + 0.2 * std::exp(-w / 0.4); };
   const double falling  = -0.5 * std::exp(-w_0 / 0.4);
 
-  // The belt is no dof: P_t u = 0 - x, and nothing moves along n and b.
+  // The belt has no dof: P_t u = 0 - x, without motion along n and b.
   const RowMap     map = rows(1), nodes = rows(1);
   const auto       one  = [&](const double value) { return Testing::diagonal(map, [value](int) { return value; }); };
   const auto       none = sparse(nodes, map, [](int) { return Row{}; });
@@ -192,12 +192,12 @@ TEST(ModalDamping, GivesEachModeItsRatioAndTheRestNothing)
   const MultiVector Phi    = *real.vectors;
   const auto        system = with_modal_damping(s.coupled, real);
 
-  // Without effect on what is M-orthogonal to the modes
+  // No effect on vectors that are M-orthogonal to the modes
   const MultiVector X = random_vectors(system.map(), 3);
   const MultiVector Y = orthonormalize(*system.mass, &Phi, X, 1e-10);
   EXPECT_LT(max_norm(gram(Y, modal_forces(system, Y))), 1e-11 * max_norm(gram(Phi, modal_forces(system, Phi))));
 
-  // Rigid-body modes get none; no ratios, no damping.
+  // Rigid-body modes and modes with zero ratio are undamped.
   std::vector<double> eigenvalues = real.eigenvalues;
   eigenvalues.front()             = 0.;
   CoupledSystem free = s.coupled, none = s.coupled;
@@ -216,7 +216,7 @@ TEST(ModalDamping, GivesEachModeItsRatioAndTheRestNothing)
 
 TEST(ModalDamping, BothSolversAgreeWithFriction)
 {
-  // With every other damping
+  // Combined with all other damping
   const Scene         s(mesh_of(skewed_pins), damped(mounted()), operating());
   const CoupledSystem bare =
     couple(s.system, s.contact, {std::vector<double>(s.interface.size(), 50.), std::vector<double>(s.interface.size(), -20.)});
@@ -225,12 +225,12 @@ TEST(ModalDamping, BothSolversAgreeWithFriction)
   for (const double tolerance : {1e-4, 1e-8})
     EXPECT_LT(largest(distances(iterated(system, friction_coefficient, tolerance).lambda, reference.lambda)), 2. * tolerance);
   EXPECT_LT(largest(reference.residuals), 1e-11);
-  EXPECT_GT(largest(distances(krylov(bare, friction_coefficient).lambda, reference.lambda)), 1e-3); // it matters
+  EXPECT_GT(largest(distances(krylov(bare, friction_coefficient).lambda, reference.lambda)), 1e-3); // modal damping matters
 }
 
 TEST(ModalDamping, OfADiscThatMovesFreely)
 {
-  // The Krylov solver has no inverse at a shift then, the residual iteration needs none.
+  // The Krylov solver lacks the inverse at a shift with modal damping; residual iteration does not need it.
   const FreeDisc disc;
   const auto &[s, shift, real] = disc;
   const auto     system        = with_modal_damping(s.coupled, real);

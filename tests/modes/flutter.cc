@@ -23,7 +23,7 @@ TEST(Flutter, ClosedForm)
 
 TEST(Flutter, InstabilityBeginsAtTheThreshold)
 {
-  // Near the coalescence δλ ~ √ε: 1e-7 from it the values are known to about 1e-9 only.
+  // Near the coalescence δλ ~ √ε: at a distance of 1e-7 the values are only accurate to about 1e-9.
   const Flutter       flutter;
   const CoupledSystem system = flutter.system();
   for (const auto &values : solutions(system, flutter.coalescence() * (1. - 1e-7)))

@@ -22,7 +22,7 @@ namespace
     return std::accumulate(values.begin(), values.end(), 0.);
   }
 
-  /// Pins on a disc with every damping there is.
+  /// Pins on a disc with all kinds of damping.
   struct DampedBrake
   {
     DampedBrake()
@@ -48,7 +48,7 @@ namespace
     CoupledSystem  system;
   };
 
-  /// Re(φᴴ A φ) and Im(φᴴ A φ) with a sparse matrix on coupled dofs.
+  /// φᴴ A φ with a sparse matrix on coupled dofs.
   std::complex<double> quadratic_form(const SparseMatrix &A, const MultiVector &re, const MultiVector &im)
   {
     const DenseMatrix x = replicate(re), y = replicate(im), Ax = replicate(A * re), Ay = replicate(A * im);
@@ -60,7 +60,7 @@ TEST(PowerBalances, AddUpToTheDivergenceRateAndAgreeWithTheSparseMatrices)
 {
   const DampedBrake  brake;
   const ComplexModes modes  = krylov(brake.system, friction);
-  CoupledSystem      bodies = couple(brake.s.system, brake.s.contact); // with friction, without damping of contact and modes
+  CoupledSystem      bodies = couple(brake.s.system, brake.s.contact); // without contact damping and modal damping
   const auto         with = with_friction(bodies, friction), without = with_friction(bodies, 0.);
   ASSERT_GT(n_unstable(modes), 0);
   ASSERT_LT(n_unstable(modes), static_cast<int>(modes.lambda.size()));
@@ -70,7 +70,7 @@ TEST(PowerBalances, AddUpToTheDivergenceRateAndAgreeWithTheSparseMatrices)
       const double       xi = modal_quantities(modes.lambda[j]).divergence_rate;
       EXPECT_NEAR(b.sum(), xi, 1e-8 * std::max(std::abs(xi), 1e-4)) << j;
 
-      // Damping takes, but for friction that falls with the sliding speed
+      // Damping dissipates, except for friction that falls with sliding speed
       EXPECT_LE(*std::max_element(b.radial_damping.begin(), b.radial_damping.end()), 0.);
       EXPECT_GE(*std::min_element(b.sliding_damping.begin(), b.sliding_damping.end()), 0.);
       EXPECT_LE(*std::max_element(b.bodies.begin(), b.bodies.end()), 0.);

@@ -12,7 +12,7 @@ namespace
 {
   constexpr double infinity = std::numeric_limits<double>::infinity(), not_a_number = std::numeric_limits<double>::quiet_NaN();
 
-  /// Of a mode at 1000 rad/s: rates up to 10⁻⁵ 1/s are rounding errors.
+  /// Verdict on a mode at 1000 rad/s, where rates up to 10⁻⁵ 1/s are rounding errors.
   Verdict of_rate(const double rate, const double error = 0., const bool growth_needs_coalescence = false)
   {
     return verdict_of({rate, 1000.}, error, growth_needs_coalescence);
@@ -25,7 +25,7 @@ TEST(Verdict, OfExactModesKnowsRoundingOnly)
   EXPECT_EQ(of_rate(-2e-5), Verdict::stable);
   for (const double rate : {0., -0., 0.9e-5, -0.9e-5})
     EXPECT_EQ(of_rate(rate), Verdict::neutral) << rate;
-  // Rates of the order of rounding count beside the frequency
+  // The rounding level is relative to the frequency
   EXPECT_EQ(verdict_of({2e-5, 1.}), Verdict::unstable);
   EXPECT_EQ(verdict_of({2e-5, 1e4}), Verdict::neutral);
 }
@@ -37,7 +37,7 @@ TEST(Verdict, LeavesOpenWhatThreeTimesTheErrorMayTurn)
   EXPECT_EQ(of_rate(0., 1.), Verdict::undecided);
   EXPECT_EQ(of_rate(-2.9, 1.), Verdict::undecided);
   EXPECT_EQ(of_rate(-3.1, 1.), Verdict::stable);
-  // Of errors below rounding nothing hangs
+  // Errors below rounding do not matter
   EXPECT_EQ(of_rate(0., 1e-6), Verdict::neutral);
   EXPECT_EQ(of_rate(0., 1e-5), Verdict::undecided);
   for (const double rate : {-1e6, 0., 1e6})

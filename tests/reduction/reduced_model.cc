@@ -16,7 +16,7 @@ using namespace Squeal::Testing;
 
 namespace
 {
-  /// As few dofs as a disc between two pins can have.
+  /// The smallest mesh of a disc between two pins.
   Scene tiny_scene(const RadialDissipation dissipation, const MaterialParameters &materials = mounted())
   {
     const std::vector<PolarPin> pins = {{Plan::Side::top, 0, 1, 0, 1}, {Plan::Side::bottom, 2, 1, 0, 1}};
@@ -41,7 +41,7 @@ TEST(ReducedModel, FullBasisGivesTheFullSpectrum)
       const Scene s = tiny_scene(dissipation, materials);
       const auto &M = *s.coupled.mass;
 
-      // A basis of all directions, grown in uneven parts, not that of the dofs
+      // A random full basis, extended in uneven parts
       const int         n = s.coupled.map().n();
       const MultiVector T = orthonormalize(M, nullptr, random_vectors(s.coupled.map(), n), 1e-13);
       ASSERT_EQ(T.n_columns(), n);
@@ -51,7 +51,7 @@ TEST(ReducedModel, FullBasisGivesTheFullSpectrum)
       reduced.extend(view(T, n - 15, 15));
       ASSERT_EQ(reduced.size(), n);
 
-      // In the band; the far end of the spectrum of a random basis is known less well.
+      // The upper end of the spectrum is less accurate in a random basis.
       const double limit = 2. * M_PI * 20000.;
       for (const double mu : {0., 0.6})
         {
@@ -99,7 +99,7 @@ TEST(ReducedModel, ProjectsEveryBlock)
 
 TEST(ReducedModel, ModalDamping)
 {
-  // Alone and beside a damping matrix, in a full basis and in a small one grown in parts
+  // Alone and with a damping matrix, in a full basis and in a small one extended in parts
   const double limit = 2. * M_PI * 20000., mu = 0.6;
   for (const MaterialParameters &materials : {mounted(), damped(mounted())})
     {
@@ -130,7 +130,7 @@ TEST(ReducedModel, ModalDamping)
 
 TEST(ReducedModel, LessThanAFullBasisIsNotExact)
 {
-  // The first test can fail: without one direction it would.
+  // Shows that the first test fails if one direction is missing.
   const Scene       s     = tiny_scene(RadialDissipation::none);
   const int         n     = s.coupled.map().n();
   const MultiVector T     = unit_vectors(s.coupled.map());

@@ -18,7 +18,7 @@ namespace
 {
   constexpr double friction = 0.5;
 
-  /// Pins on a turning disc with every damping of bodies and contact.
+  /// Pins on a rotating disc with damped bodies and contact.
   struct DampedBrake
   {
     DampedBrake()
@@ -52,7 +52,7 @@ namespace
             join({modes.left_real_part.get(), modes.left_imaginary_part.get()})};
   }
 
-  /// dλ/ds of the λ nearest to each of @p lambda from λ at s = −2h, −h, h, 2h: of fourth order.
+  /// dλ/ds of the λ nearest to each @p lambda, by fourth-order central differences from s = −2h, −h, h, 2h.
   std::vector<Complex> differences(const std::vector<Complex>                               &lambda,
                                    const std::function<std::vector<Complex>(double change)> &eigenvalues,
                                    const double                                              h)
@@ -70,7 +70,7 @@ namespace
     return result;
   }
 
-  /// To 1e-5; parameters that a mode hardly knows of to what the differences resolve.
+  /// Tolerance 1e-5; for insensitive modes, the resolution of the differences.
   void expect_alike(const std::vector<Complex> &derivatives, const std::vector<Complex> &others, const std::vector<Complex> &lambda)
   {
     for (std::size_t j = 0; j < lambda.size(); ++j)
@@ -95,7 +95,7 @@ TEST(Sensitivities, OfEveryParameterAgreeWithDifferences)
   const ParameterValues values = system.at(friction);
   const auto            D = of_contact.by_lambda(values), Q = of_contact.pencil(values);
 
-  // λ is an eigenvalue, D its derivative and both vectors belong to it
+  // Vectors of both sides satisfy the pencil and are biorthogonal
   for (Eigen::Index i = 0; i < Q.rows(); ++i)
     for (Eigen::Index j = 0; j < Q.cols(); ++j)
       {
@@ -135,7 +135,7 @@ TEST(Sensitivities, OfEveryParameterAgreeWithDifferences)
 
 TEST(Sensitivities, DoNotChangeWithTheUnitOfForce)
 {
-  // All stiffnesses by one factor: ω by its root, whatever friction does
+  // Scaling all stiffnesses scales ω by the square root, whatever the friction
   const Scene           s(mesh_of(skewed_pins), mounted(), operating());
   const BodyTerms       bodies = body_terms(s.model, mounted());
   const Eigentriples    modes  = triples(iterated(s.coupled, friction, 1e-13));
@@ -175,7 +175,7 @@ namespace
 
 TEST(Sensitivities, OfACoalescence)
 {
-  // 1 + 2.8 (0.7 − s μ_c) = 0; with K_12 = 0.7 + e there and K_21 as it is, e changes μ_c by 1 / s
+  // 1 + 2.8 (0.7 − s μ_c) = 0
   const double           s = 1.3, mu_c = Flutter{s}.coalescence();
   const CoupledSystem    system = Flutter{s}.system();
   std::array<Complex, 3> by_friction{}, by_stiffness{};
@@ -226,7 +226,7 @@ TEST(Sensitivities, OfTheMeanStayFiniteAtACoalescence)
       single = modulus;
       means.push_back(mean_derivative(N, D, {0, 1}));
     }
-  // λ² = −a ± i √|b|: the mean of both is i √((a + √(a² − b)) / 2), of which the derivative at b = 0 is −i b' / (8 a^{3/2})
+  // λ² = −a ± i √|b|: the mean of both is i √((a + √(a² − b)) / 2), with the derivative −i b' / (8 a^{3/2}) at b = 0
   const double expected = 0.7 * s / (8. * std::pow(2.5, 1.5));
   for (const Complex &mean : means)
     EXPECT_LE(std::abs(mean - Complex(0., expected)), 2e-3 * expected) << mean;

@@ -26,7 +26,7 @@ namespace
     return {F_nn, F_nt, mu, gap, DenseMatrix::Ones(n, 1), -DenseMatrix::Ones(1, n), {load}, {}};
   }
 
-  /// A disc of mass 1 / @p unit² that floats between two backplates, three nodes on each side; entries of the motions off by rounding.
+  /// A disc of mass 1 / @p unit² floating between two backplates, three nodes per side, with rounding errors in the motions.
   ContactProblem floating(const double unit, const double tilt, const unsigned int seed, const std::vector<double> &loads)
   {
     constexpr int  n = 6;
@@ -117,7 +117,7 @@ TEST(ContactProblem, TwoSpringsClosedForm)
 
 TEST(ContactProblem, FrictionTiltsABlock)
 {
-  // A rigid block that is free to turn, on two springs at ±a, pushed at height h: moments about that height give
+  // A rigid block that is free to tilt, on two springs at ±a, pushed at height h: moment balance about that height gives
   // r_{1,2} = −½ (1 ± μ h/a), and beyond μ h = a the block topples.
   const double      a = 1., h = 2.;
   const DenseMatrix F = DenseMatrix::Identity(2, 2), zero = DenseMatrix::Zero(2, 2), motions{{1., a}, {1., -a}};
@@ -159,7 +159,7 @@ TEST(ContactProblem, FindsWhatEnumerationFinds)
       n_unique += uniqueness.is_certified;
       n_several += uniqueness.found_other;
     }
-  // Both cases must have occurred, or the test shows nothing.
+  // The test is meaningful only if both cases occur.
   EXPECT_GT(n_unique, 10);
   EXPECT_GT(n_several, 0);
 }
@@ -178,7 +178,7 @@ TEST(ContactProblem, BoundOfUniquenessIsWhereTheSymmetricPartLosesDefiniteness)
 
 TEST(FloatingDisc, IsHeldWhateverRoundingLeaves)
 {
-  // Nothing but the disc's way along its axis is undetermined: reactions are those of a disc that is held
+  // Only the axial travel of the disc is undetermined; reactions are those of a held disc
   for (const double unit : {1e-6, 0.07, 1., 1e6})
     {
       for (unsigned int seed = 0; seed < 50; ++seed)
@@ -189,11 +189,11 @@ TEST(FloatingDisc, IsHeldWhateverRoundingLeaves)
           for (const double r : solve_contact(problem).reactions)
             EXPECT_NEAR(r, -200., 1e-9);
         }
-      // Gaps determine it
+      // Gaps determine the travel
       ContactProblem tilted = floating(unit, 1e-3, 1, {600., 600.});
       hold_undetermined_motion(tilted, 2);
       EXPECT_TRUE(tilted.held.empty());
-      // Loads that do not balance, or are equal but for decimals
+      // Loads that do not balance, and loads that balance within the tolerance
       ContactProblem unbalanced = floating(unit, 0., 1, {600., 600.000001}), balanced = floating(unit, 0., 1, {600., 600.00000001});
       EXPECT_THROW(hold_undetermined_motion(unbalanced, 2), SolverError);
       EXPECT_NO_THROW(hold_undetermined_motion(balanced, 2));

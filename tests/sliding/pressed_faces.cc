@@ -12,7 +12,7 @@
 using namespace Squeal;
 using namespace Squeal::Testing;
 
-// A pad that springs hold in the plane of its back only: the pressure on it alone presses it to the disc, and it may tilt.
+// A pad guided by springs in the plane of its back: only pressure presses it to the disc, and it may tilt.
 
 namespace
 {
@@ -42,7 +42,7 @@ namespace
 
   const std::vector<Mount> guided = {{"disc_bore", 1e11, 1e11, 1e11}, {"pad_back", 1e9, 1e9, 0.}};
 
-  /// Poisson's ratio of zero: columns in compression.
+  /// Zero Poisson's ratio: columns in compression.
   MaterialParameters materials(const std::vector<Mount> &mounts)
   {
     MaterialParameters result = mounted(mounts);
@@ -128,13 +128,13 @@ TEST(PressedFaces, APressedColumnHasUniformPressure)
 
 TEST(PressedFaces, OfTiedNodesPressTheNodesThatTheyFollow)
 {
-  // A lining that is wider than the plate tied to it: all of its back is pressed, or the plate
+  // A lining as long as the plate tied to it or longer, pressed on its own back or on the plate
   for (const Cut cut : {Cut::hexahedra, Cut::tetrahedra})
     for (const double plate_length : {length, 0.4 * length})
       for (const char *pressed_face : {"lining_back", "pad_back"})
         {
           if (plate_length < length && pressed_face == std::string("pad_back"))
-            continue; // bends
+            continue; // would bend
           SCOPED_TRACE(pressed_face);
           Mesh mesh;
           add_box(mesh, {cut, {{4, 3, 1}}, {1., 0., -0.05}, {1. + length, width, 0.}, 0.}, "disc", {{"disc_bore", "disc_contact"}});
@@ -156,7 +156,7 @@ TEST(PressedFaces, OfTiedNodesPressTheNodesThatTheyFollow)
 
 TEST(PressedFaces, FrictionShiftsThePressureToTheLeadingEdge)
 {
-  // Moments about the back, where springs hold the pad: F e = μ F h
+  // Moment balance about the back, where springs hold the pad: F e = μ F h
   for (const PadCase &c : pad_cases)
     for (const double mu : {0.2, 0.5})
       {
@@ -181,7 +181,7 @@ TEST(PressedFaces, FrictionShiftsThePressureToTheLeadingEdge)
 
 TEST(PressedFaces, SpringsTakeTheirShareOfTheLoad)
 {
-  // Springs along the load as well: nothing moves freely, the state is certified as the only one
+  // Springs along the load as well: no free motion, and the state is shown to be unique
   std::vector<Mount> mounts = guided;
   mounts[1].axial           = 1e9;
   const PadScene     s(pad_cases[2], 0.3, materials(mounts));
@@ -220,7 +220,7 @@ TEST(PressedFaces, RatesOfReactionsAgreeWithDifferences)
 
 TEST(PressedFaces, ADiscThatFloatsBetweenPads)
 {
-  // Pins on both sides of a disc that nothing holds along its axis, each with a back of its own
+  // Pins on both sides of an axially free disc, each with its own back
   Mesh mesh = extrude(
     polar_plan(
       0.15, 0.3, 3, 12,

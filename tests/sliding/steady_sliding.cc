@@ -68,7 +68,7 @@ namespace
     return std::count(state.closed.begin(), state.closed.end(), false);
   }
 
-  /// Everything that must hold of any state.
+  /// Checks that apply to every state.
   void check(const SlidingScene &s, const SlidingState &state)
   {
     EXPECT_LT(state.certificate.residual, 1e-10);
@@ -125,8 +125,7 @@ TEST(SteadySliding, ReactionsBalanceTheLoadOfBothSides)
 
 TEST(SteadySliding, CompressionOfColumnsBetweenPlates)
 {
-  // Poisson's ratio zero, a pin of the same cross-section on both sides of a ring sector: far from bending the travel of a
-  // backplate is that of a pin in compression, F h / (E A), plus the disc's share. A stiff disc on a stiff mount leaves the pin.
+  // Zero Poisson's ratio and a stiff disc on a stiff mount: the travel of a backplate is the compression F h / (E A) of the pins.
   auto materials               = mounted({{"disc_bore", 1e18, 1e18, 1e18}});
   materials.pin.poisson_ratio  = 0.;
   materials.disc.young_modulus = 1e18;
@@ -141,7 +140,7 @@ TEST(SteadySliding, CompressionOfColumnsBetweenPlates)
 
 TEST(SteadySliding, WithoutFrictionItIsThePunchOfLeastEnergy)
 {
-  // ½ rᵀ F_nn r − gᵀ r over Σ r = −load, r ≤ 0, by projected gradients: another algorithm altogether
+  // Independent check: ½ rᵀ F_nn r + gᵀ r over r ≤ 0 by projected Gauss-Seidel
   SlidingScene s;
   s.operation.friction_coefficient = 0.;
   SlidingParameters sliding        = steady(BackplateControl::displacement, 2e-6);
@@ -153,24 +152,23 @@ TEST(SteadySliding, WithoutFrictionItIsThePunchOfLeastEnergy)
   const int         n = s.interface.size();
   const DenseMatrix F_nn =
     replicate(*s.contact.normal * s.sliding.response.solve(transpose_times(*s.contact.normal, unit_vectors(s.contact.normal->rows()))));
-  // What the state says of the gap, minus the elastic part
+  // Gap without the elastic part
   const DenseMatrix reactions = as_column(state.reactions), gap = as_column(state.gaps) - F_nn * reactions;
-  // Gauss-Seidel with projection converges for a symmetric positive definite matrix
+  // Projected Gauss-Seidel converges for a symmetric positive definite matrix
   DenseMatrix r = DenseMatrix::Zero(n, 1);
   for (int sweep = 0; sweep < 20000; ++sweep)
     for (int c = 0; c < n; ++c)
       r(c, 0) = std::min(0., r(c, 0) - (gap(c, 0) + F_nn.row(c).dot(r.col(0))) / F_nn(c, c));
   EXPECT_LT(max_norm(r - reactions), 1e-6 * side_load(s, state, 1));
 
-  // And friction comes in continuously
+  // Continuous in friction
   s.operation.friction_coefficient = 1e-7;
   EXPECT_LT(max_norm(as_column(s.solve(sliding).reactions) - reactions), 1e-5 * side_load(s, state, 1));
 }
 
 TEST(SteadySliding, EqualPinsCarryEqualLoadsOnlyWhereTheLayoutSaysSo)
 {
-  // Without friction the two pins of a side are mirror images; friction along e_theta breaks that symmetry, and the pins opposite
-  // each other stay alike.
+  // Without friction the two pins of a side are mirror images; friction breaks this symmetry, but opposite pins stay alike.
   SlidingScene s;
   s.operation.friction_coefficient = 0.;
   const auto without               = s.pins(s.solve());
@@ -180,11 +178,11 @@ TEST(SteadySliding, EqualPinsCarryEqualLoadsOnlyWhereTheLayoutSaysSo)
   EXPECT_GT(std::abs(with[0].load - with[1].load), 1e-6 * with[0].load);
   EXPECT_NEAR(with[0].load, with[2].load, 1e-8 * with[0].load);
   EXPECT_NEAR(with[1].load, with[3].load, 1e-8 * with[1].load);
-  // Friction presses the leading edge, where disc material enters
+  // Friction shifts the pressure to the leading edge
   for (const PinContact &pin : with)
     EXPECT_LT(pin.sliding_offset, 0.);
 
-  // The other sense of rotation is the mirror image
+  // The opposite rotation gives the mirror image
   const SlidingScene reversed(four_pins(), mounted(held), Element::trilinear, Rotation::negative);
   const auto         mirrored_pins = reversed.pins(reversed.solve());
   EXPECT_NEAR(mirrored_pins[1].load, with[0].load, 1e-8 * with[0].load);
@@ -196,7 +194,7 @@ TEST(SteadySliding, LoadsOfSinglePinsGapsAndDisplacements)
   const SlidingScene s;
   SlidingParameters  sliding = steady(BackplateControl::load_per_pin);
   sliding.pin_loads          = {{s.pin_names[0], 300.}, {s.pin_names[3], 50.}};
-  sliding.gaps               = {{s.pin_names[1], 2e-6}}; // an actuator follows
+  sliding.gaps               = {{s.pin_names[1], 2e-6}}; // taken up by the actuator
   const SlidingState by_load = s.solve(sliding);
   check(s, by_load);
   const auto   pins    = s.pins(by_load);
@@ -215,7 +213,7 @@ TEST(SteadySliding, LoadsOfSinglePinsGapsAndDisplacements)
   EXPECT_NEAR(others[1].load, 1000., 1e-6);
   EXPECT_EQ(n_open(short_pin), others[0].n_nodes);
 
-  // Moved as far as the load moved it, a side carries that load.
+  // Prescribing the travel found under load reproduces the load.
   const SlidingState loaded = s.solve();
   ASSERT_NEAR(loaded.approach[1], loaded.approach[3], 1e-12 * loaded.approach[1]); // both sides alike
   const SlidingState moved = s.solve(steady(BackplateControl::displacement, loaded.approach[1]));
@@ -308,8 +306,8 @@ TEST(SteadySliding, ShoesOutsideAndInsideOfARing)
 
 TEST(SteadySliding, ADiscThatMovesFreely)
 {
-  // Free along its axis, a disc floats between the pins, where equal loads hold it, and along the axis of a ring no force acts.
-  // Turning freely, a drive takes the moment, although turning changes gaps at the ends of shoes on a polygon.
+  // An axially free disc floats between equally loaded pins, and no force acts along the axis of a ring. A drive takes the
+  // moment of a freely rotating disc, although rotation changes gaps at the ends of shoes on a polygon.
   const Mount turns = {"disc_bore", 1e10, 0., 1e10};
   for (const auto &[mesh, mount] : {std::make_pair(four_pins(), Mount{"disc_bore", 0., 7.80e10, 0.}),
                                     {four_pins(), turns},
@@ -329,7 +327,7 @@ TEST(SteadySliding, ADiscThatMovesFreely)
       EXPECT_LT(found.force_balance, 1e-9);
       if (mount.radial == 0.)
         {
-          // Without friction the floating disc is as far from both backplates
+          // Without friction the floating disc is centred between the backplates
           s.operation.friction_coefficient = 0.;
           const SlidingState state         = s.solve();
           EXPECT_NEAR(state.approach[1] / state.approach[3], 1., 1e-6);
@@ -339,7 +337,7 @@ TEST(SteadySliding, ADiscThatMovesFreely)
 
 TEST(SteadySliding, RatesOfReactionsAgreeWithDifferences)
 {
-  // A stiffer disc, a narrower ring, a steeper gap, with open nodes: of a disc that is held, that floats, that turns freely
+  // Changes of disc stiffness, ring width and gap slope with open nodes, for a disc that is held, floats or rotates freely
   struct Change
   {
     double young_modulus, bore, taper;
@@ -350,7 +348,7 @@ TEST(SteadySliding, RatesOfReactionsAgreeWithDifferences)
     return SlidingScene(mapped(four_pins(),
                                [&](const Point3 &p) {
                                  const double r      = std::hypot(p[0], p[1]),
-                                              factor = 1. + change.bore * std::max(0., 0.2 - r) / r; // pins stand outside
+                                              factor = 1. + change.bore * std::max(0., 0.2 - r) / r; // pins stay in place
                                  return Point3{{factor * p[0], factor * p[1], p[2]}};
                                }),
                         materials);
@@ -361,8 +359,7 @@ TEST(SteadySliding, RatesOfReactionsAgreeWithDifferences)
     return result;
   };
 
-  // Central differences over one step and over two, extrapolated: what they leave falls with the fourth power of the step, and what
-  // rounding adds with its inverse
+  // Extrapolated central differences over one and two steps: truncation error ~ step⁴, rounding error ~ 1 / step
   const double step = 2e-4;
   for (const Mount &mount : {held.front(), Mount{"disc_bore", 1e9, 7.80e10, 0.}, Mount{"disc_bore", 1e10, 0., 1e10}})
     {
@@ -389,7 +386,7 @@ TEST(SteadySliding, RatesOfReactionsAgreeWithDifferences)
               }
           const DenseMatrix rates = reaction_rates(here.sliding, here.operation, parameters, state, f, gaps);
           EXPECT_GT(max_norm(quotient), 1e-3);
-          // Attachment modes of a floating disc are those of a nearly singular matrix: rates are known to 3e-8 of the load of 1000 N
+          // Attachment modes of a floating disc come from a nearly singular matrix: rates are accurate to 3e-8 of the 1000 N load
           EXPECT_LT(max_norm(rates - quotient), 1e-7 * max_norm(quotient) + (mount.axial > 0. ? 0. : 3e-5));
         }
     }
@@ -412,7 +409,7 @@ TEST(SteadySliding, Refusals)
 
 TEST(ContactMotions, OfALevelDisc)
 {
-  // Three motions press the pins, three slide past them, whatever the basis in which they are given
+  // Three motions press the pins and three slide past them, in any basis
   const Scene s(four_pins(), mounted({}), operating());
   const auto  N = free_motions(s.model, s.system, 0);
   ASSERT_TRUE(N);
@@ -431,7 +428,7 @@ TEST(ContactMotions, OfALevelDisc)
       EXPECT_LT(max_norm(gram(*sliding, *s.system.mass * *sliding) - DenseMatrix::Identity(3, 3)), 1e-12);
     }
 
-  // If it only turns, nothing but rounding is left along the normals
+  // A pure rotation leaves only rounding errors along the normals
   const auto turning = free_motions(s.model, assemble(s.model, mounted({{"disc_bore", 1e10, 0., 1e10}})), 0);
   ASSERT_TRUE(turning);
   ASSERT_EQ(turning->n_columns(), 1);

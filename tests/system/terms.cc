@@ -14,7 +14,7 @@ using namespace Squeal::Testing;
 
 namespace
 {
-  /// θ = 2 a b² of a symmetric matrix, −3 a of a skew one, and terms of low rank with and without weights, all with λ.
+  /// Terms in λ: θ = 2 a b² of a symmetric matrix, −3 a of a skew one, and low-rank terms with and without weights.
   struct Terms
   {
     RowMap                               map = rows(4), short_map = rows(2);
@@ -31,7 +31,7 @@ namespace
                                                    low_rank_term("of low rank", 1, {}, left, right), low_rank_term("weighted", 1, {0.5, {}}, left, right, "d"),
                                                    sparse_term("of another power", 2, {}, S)};
 
-    /// The sum of those with λ.
+    /// The sum of the terms in λ.
     DenseMatrix expected() const
     {
       DenseMatrix weighted = to_dense(*R);
@@ -56,7 +56,7 @@ TEST(Terms, SumOnVectorsAndAsASparseMatrix)
   EXPECT_LT(deviation(replicate(times(t.terms, t.values, 1, unit_vectors(t.map))), t.expected()), 1e-15);
   EXPECT_LT(deviation(replicate(times(t.terms, t.values, 1, unit_vectors(t.map), true)), t.expected().transpose()), 1e-15);
   EXPECT_LT(deviation(to_dense(*matrices.damping), t.expected()), 1e-15);
-  EXPECT_EQ(matrices.mass, t.S); // what is not changed is not copied
+  EXPECT_EQ(matrices.mass, t.S); // unchanged matrices are not copied
   EXPECT_EQ(matrices.stiffness, nullptr);
 
   t.terms.push_back(low_rank_term("full columns", 1, {}, std::make_shared<LowRankFactor>(unit_vectors(t.map)),

@@ -31,7 +31,7 @@ namespace
     std::function<DenseMatrix(double)> stiffness;
     std::function<DenseMatrix(double)> damping = nullptr;
 
-    double                                                last        = std::numeric_limits<double>::infinity(); ///< frequency in the list
+    double                                                last        = std::numeric_limits<double>::infinity(); ///< end of the list
     std::function<ComplexDenseMatrix(const ChartPoint &)> corrections = nullptr;
     std::function<void(ChartPoint &)>                     disturb     = nullptr;
 
@@ -100,7 +100,7 @@ namespace
     return chart.points[k].lambda.at(chart.branches[branch].modes[k]);
   }
 
-  /// |φᴴφ'| of a branch at the first and the last point.
+  /// |φᴴφ'| of a branch between the first and the last point.
   double overlap(const StabilityChart &chart, const int branch)
   {
     const std::vector<int> &modes = chart.branches[branch].modes;
@@ -115,7 +115,7 @@ namespace
       EXPECT_EQ(count.n_modes, count.n_expected) << "at " << count.friction_coefficient;
   }
 
-  /// The chart of a family that has these thresholds, alternately of onset and of restabilisation or else of one branch each.
+  /// The chart of a family, checked for these thresholds: onset and restabilisation of a window, or onsets of one branch each.
   StabilityChart expect_thresholds(Family                     family,
                                    const std::vector<double> &grid,
                                    const ThresholdMechanism   mechanism,
@@ -139,7 +139,7 @@ namespace
     return chart;
   }
 
-  /// Whether two charts of the same family agree at the points of the grid of the first, and on thresholds.
+  /// Expects two charts of a family to agree in thresholds, crossings and at the grid points of the first.
   void expect_same(const StabilityChart &coarse, const StabilityChart &fine, const double tolerance)
   {
     ASSERT_EQ(coarse.thresholds.size(), fine.thresholds.size());
@@ -159,7 +159,7 @@ namespace
         EXPECT_EQ(one.enters, other.enters);
       }
 
-    // Modes of a multiple λ at the first point may be numbered anyhow: branches are compared as sets of curves
+    // Modes of a multiple λ at the first point have an arbitrary order, so that branches are compared as sets of curves
     const auto curves = [&coarse](const StabilityChart &chart) {
       std::vector<Eigen::VectorXcd> result;
       for (std::size_t b = 0; b < chart.branches.size(); ++b)
@@ -188,7 +188,7 @@ namespace
   {
     double d1 = 0., d2 = 0.;
 
-    /// a1 (a3 a2 - a1) = a3² a0 (Hurwitz) of λ⁴ + a3 λ³ + a2 λ² + a1 λ + a0.
+    /// Hurwitz criterion a1 (a3 a2 - a1) = a3² a0 of λ⁴ + a3 λ³ + a2 λ² + a1 λ + a0.
     double threshold() const
     {
       const double a3 = d1 + d2, a2 = k11 + k22 + d1 * d2, a1 = d1 * k22 + d2 * k11;
@@ -205,7 +205,7 @@ namespace
     }
   };
 
-  /// Modes that do not interact, each with its λ(μ); what is found of them is off by an error [rad/s] of which the size is known.
+  /// Modes that do not interact, each with its λ(μ); computed values have an error [rad/s] of known size.
   Family given_modes(const std::vector<std::function<Complex(double)>> &lambda, const Complex error = 0.)
   {
     const auto entries = [lambda](const double mu, double (*const entry)(const Complex &)) {
@@ -235,12 +235,12 @@ namespace
     return [=](const double mu) { return Complex(omega * slope * (mu - begin), omega); };
   }
 
-  /// Where modes below 10 rad/s begin to grow, and where faster than weakly.
+  /// Onset of growth below 10 rad/s, and onset of growth beyond the weak level.
   std::vector<std::optional<GrowthOnset>> onsets(const Family &modes, const StabilityChart &chart, const double before = 0.)
   {
     const std::vector<std::optional<GrowthOnset>> result = {first_onset(chart, 10., before),
                                                             onset_beyond(weak_divergence, chart, modes, precise(10., 1e-10), before)};
-    // The first branches to begin are those of all modes
+    // The earliest onset of all branches is the overall onset
     std::vector<std::optional<GrowthOnset>> of_branches(2);
     for (int b = 0; b < static_cast<int>(chart.branches.size()); ++b)
       {
@@ -270,7 +270,7 @@ TEST(Branches, ThresholdsInClosedForm)
       ASSERT_EQ(chart.thresholds.size(), 1u);
       const Threshold &threshold = chart.thresholds.front();
       EXPECT_LT(std::abs(threshold.lambda - Complex(0., std::sqrt(0.5 * (flutter.k11 + k22)))), 1e-6);
-      // The lower branch goes on as the growing one
+      // The lower branch continues as the growing one
       EXPECT_LT(value(chart, threshold.branch, 0).imag(), value(chart, threshold.partner, 0).imag());
       EXPECT_GT(value(chart, threshold.branch, chart.points.size() - 1).real(), 0.);
     }
@@ -289,7 +289,7 @@ TEST(Branches, WindowsOfInstabilityAreFound)
       const auto K = [c](const double mu) { return DenseMatrix{{4. + mu, c}, {-c, 6. - mu}}; };
       expect_thresholds({K}, uniform_grid(0., 2., 7), coalescence, {1. - c, 1. + c}, true);
     }
-  // Nothing of the window is seen at 0, 0.2, 0.4, ...: κ = 5 ± i s, s² = (μ − 0.43) (0.57 − μ), grows from s² = 5 d² on
+  // A window that the coarse grid misses: κ = 5 ± i s, s² = (μ − 0.43) (0.57 − μ), unstable for s² > 5 d²
   for (const int n_steps : {5, 20})
     for (const double d : {0., 0.001, 0.01})
       {
@@ -322,12 +322,12 @@ TEST(Branches, GrowthAtOnce)
 TEST(Branches, CrossingsWithoutInteractionGoStraightThrough)
 {
   Family family{[](const double mu) { return DenseMatrix{{4. + mu, 0.2, 0.}, {0.2, 5. + mu, 0.}, {0., 0., 6. - mu}}; }};
-  // The last grid meets a crossing exactly: vectors are arbitrary there
+  // The last grid contains a crossing, where vectors are arbitrary
   const double crossing = (6. - (4.5 - std::sqrt(0.29))) / 2.;
   for (const auto &grid : {uniform_grid(0., 2., 4), uniform_grid(0., 2., 37), std::vector<double>{0., crossing, 2.}})
     {
       const StabilityChart chart = expect_thresholds(family, grid, coalescence, {});
-      EXPECT_EQ(chart.points.size(), grid.size()); // no reason to refine
+      EXPECT_EQ(chart.points.size(), grid.size()); // no refinement
       for (int branch = 0; branch < 3; ++branch)
         EXPECT_NEAR(overlap(chart, branch), 1., 1e-10);
       EXPECT_EQ(chart.branches.at(2).modes.back(), 0);
@@ -336,7 +336,7 @@ TEST(Branches, CrossingsWithoutInteractionGoStraightThrough)
 
 TEST(Branches, VeeringsAreRefined)
 {
-  // Branches keep their order and exchange vectors, within |μ − 1| ~ the coupling
+  // Branches keep their order and exchange vectors within |μ − 1| of the order of the coupling
   for (const double coupling : {1e-1, 1e-4})
     {
       const auto K     = [=](const double mu) { return DenseMatrix{{4. + mu, coupling}, {coupling, 6. - mu}}; };
@@ -349,7 +349,7 @@ TEST(Branches, VeeringsAreRefined)
 
 TEST(Branches, MultipleModesAreFollowedAcrossOthers)
 {
-  // A twelvefold λ² = −5 whose vectors are mixed anew at each point; two others cross it, one of them veering with a third
+  // A twelvefold λ² = −5 with randomly mixed vectors at each point; two modes cross it, one of which veers with a third
   std::mt19937 generator(7);
   Family       family{[](const double mu) {
     DenseMatrix K             = 5. * DenseMatrix::Identity(15, 15);
@@ -366,7 +366,7 @@ TEST(Branches, MultipleModesAreFollowedAcrossOthers)
       (*vectors)(Eigen::placeholders::all, multiple) =
         (*vectors)(Eigen::placeholders::all, multiple) * orthonormal_columns(random(generator, n, n));
   };
-  // One of the grids meets the crossing of the twelve by a thirteenth
+  // One grid contains the crossing of the twelve modes with a thirteenth
   for (const int n_steps : {3, 10, 33})
     {
       const StabilityChart chart = expect_thresholds(family, uniform_grid(0., 1., n_steps), coalescence, {});
@@ -413,7 +413,7 @@ TEST(Branches, BandCrossingsInClosedForm)
 
 TEST(Branches, UncertaintyCoversThePerturbation)
 {
-  // D = ψᵀ δK φ / (−ψᵀQ'φ): what first order says of the system with K + δK
+  // D = ψᵀ δK φ / (−ψᵀQ'φ): the first-order change of λ due to δK
   for (const double size : {1e-6, 1e-3})
     for (const bool damped : {false, true})
       {
@@ -507,7 +507,7 @@ TEST(Branches, Refusals)
 
 TEST(GrowthOnset, LiesBetweenTheValuesOfTheChart)
 {
-  // At 0.6 the second mode grows faster, but the first one has reached the level before it, and grows from 0.33 on
+  // At 0.6 the second mode grows faster, but the first one, which grows from 0.33 on, has reached the level earlier
   const Family         modes = given_modes({growing(5., 1e-3, 0.33), growing(7., 4e-3, 0.41)});
   const StabilityChart chart = modes.chart({0., 0.3, 0.6}, precise(10., 1e-10));
   const auto           found = onsets(modes, chart);
@@ -549,7 +549,7 @@ TEST(GrowthOnset, GrowthAtTheFirstValueBeganBefore)
 
 TEST(GrowthOnset, ModesThatEnterTheBandCountFromThereOn)
 {
-  // Grows from 0.05 on and reaches the band at 0.25; another mode grows beyond the band only
+  // Grows from 0.05 on and enters the band at 0.25; another mode grows only above the band
   const auto   entering = [](const double mu) { return Complex(0.1 * (mu - 0.05), 12. - 8. * mu); };
   const Family modes    = given_modes({entering, growing(13., 1e-2, 0.01)});
   for (const auto &onset : onsets(modes, modes.chart({0., 0.2, 0.4, 0.6}, precise(10., 1e-10))))

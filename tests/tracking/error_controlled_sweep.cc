@@ -14,7 +14,7 @@ using namespace Squeal::Testing;
 
 namespace
 {
-  /// A scene with all that a sweep needs.
+  /// A model with everything a sweep needs.
   struct Chart
   {
     explicit Chart(const double c_b, const double c_t = 0., const std::vector<PolarPin> &pins = skewed_pins)
@@ -35,7 +35,7 @@ namespace
       return ChartModel(system, inverse, 0., *real.vectors, omega_max);
     }
 
-    /// Damping in proportion to the friction coefficient.
+    /// Damping proportional to the friction coefficient.
     OperatingPoint at(const double friction) const
     {
       OperatingPoint point{friction, damping.values()};
@@ -84,7 +84,7 @@ namespace
     return result;
   }
 
-  /// A model that is accurate everywhere, with contact damping 0.8 c_b [N s/m] at most, in proportion to the friction coefficient.
+  /// A model that is accurate everywhere, with contact damping c_b [N s/m] times the friction coefficient.
   struct Predicted : Chart
   {
     explicit Predicted(const double c_b)
@@ -173,7 +173,7 @@ TEST(ErrorControlledSweep, StopsAtWhatItProved)
   EXPECT_FALSE(result.points.back().has_value());
   EXPECT_LE(result.worst_error, options.tolerance);
 
-  // Errors that rounding makes up do not fall, or the residuals leave no direction: not until the basis takes all of the space
+  // Stops because of rounding errors before the basis spans the whole space
   options.tolerance     = 1e-16;
   options.maximum_basis = static_cast<int>(chart.s.coupled.map().n());
   ChartModel rounded    = chart.model();
@@ -201,7 +201,7 @@ TEST(PredictedZeros, FindTheSameThresholdsWithFewerPoints)
   expect_fewer(scene.chart(true), scene.chart(false));
   expect_fewer(damped.chart(true), damped.chart(false));
 
-  // No sign changes where there is no threshold
+  // No predicted zero without a threshold
   const ChartPoint first = scene.accurate.evaluate(scene.at(0.)), second = scene.accurate.evaluate(scene.at(0.001));
   EXPECT_FALSE(scene.predicted_zero({ModeFunction::frequency, omega_max, {&first, {0}}, {&second, {0}}, {}}).has_value());
 }
