@@ -34,7 +34,7 @@ namespace
     return result;
   }
 
-  /// Triangles about the first corner of a polygon, as normals of twice their lengths.
+  /// Normals of the triangle fan about the first corner of a polygon; their length is twice the area.
   std::vector<Vector3> fan(const std::vector<Vector3> &x)
   {
     std::vector<Vector3> result;
@@ -43,7 +43,7 @@ namespace
     return result;
   }
 
-  /// Of the cone from the origin to a polygon whose normal points away from it.
+  /// Volume of the cone from the origin to a polygon with outward normal.
   double cone(const std::vector<Vector3> &x)
   {
     double result = 0.;
@@ -52,12 +52,12 @@ namespace
     return result;
   }
 
-  /// Of a cell in the order of VTK; negative where it is inside out.
+  /// Volume of a cell in VTK order, negative if inverted.
   double volume(const FieldMesh &mesh, const unsigned int cell)
   {
     const std::map<int, Shape> shapes = {{10, Shape::tetrahedron}, {12, Shape::hexahedron}, {13, Shape::wedge}, {14, Shape::pyramid}};
     std::vector<Vector3>       x      = corners(mesh, cell);
-    if (mesh.types[cell] == 13) // its first triangle looks outwards
+    if (mesh.types[cell] == 13) // in VTK the first triangle faces outwards
       {
         std::swap(x[1], x[2]);
         std::swap(x[4], x[5]);
@@ -81,13 +81,13 @@ namespace
     return sum.norm();
   }
 
-  /// Area or volume with two chords for each edge that is a parabola: they leave a quarter of what a single chord does.
+  /// Area or volume with two chords per parabolic edge, whose error is a quarter of that of one chord.
   double of_half_edges(const double with_chords, const double with_parabolas)
   {
     return with_parabolas + (with_chords - with_parabolas) / 4.;
   }
 
-  /// Volume of what faces enclose whose normals point outwards.
+  /// Volume enclosed by faces with outward normals.
   double enclosed(const FieldMesh &mesh)
   {
     double result = 0.;
@@ -110,7 +110,7 @@ namespace
     return numbers;
   }
 
-  /// The folder of results once @p action(folder) has written into it.
+  /// A result folder with the files written by @p action(folder).
   template <typename Action>
   fs::path results(const TemporaryFolder &place, const Action &action)
   {
@@ -136,7 +136,7 @@ namespace
       result.reactions.assign(interface.size(), {-1., 2.});
       return result;
     }
-    /// The folder in which fields are once @p action(writer) has written them.
+    /// A result folder with the fields written by @p action(writer).
     template <typename Action>
     fs::path written(const TemporaryFolder &place, const Action &action) const
     {
@@ -147,7 +147,7 @@ namespace
     }
   };
 
-  /// The values of an array of a file of one piece, which a single block holds.
+  /// Values of an array in a file with one piece and a single block.
   template <typename Number = float>
   std::vector<Number> values_of(const std::string &text, const std::string &name)
   {
@@ -165,7 +165,7 @@ namespace
     return result;
   }
 
-  /// Times of a .pvd with the files that it lists.
+  /// Times and files listed in a .pvd.
   std::vector<std::pair<double, std::string>> listed(const fs::path &file)
   {
     std::vector<std::pair<double, std::string>> result;
@@ -190,7 +190,7 @@ TEST(FieldMeshes, CellsFillTheBodiesAndShareVertices)
       EXPECT_EQ(on_all(disc.components.size()), 24 * p * p * p);
       EXPECT_EQ(disc.components.size() + pins.components.size(), all.components.size());
       EXPECT_EQ(disc.nodes.size() + pins.nodes.size(), all.nodes.size());
-      EXPECT_EQ(numbers_of(all.nodes).size(), all.nodes.size()) << "vertices are shared";
+      EXPECT_EQ(numbers_of(all.nodes).size(), all.nodes.size()) << "vertices must be shared";
 
       double sum = 0., straight = 0., parabolic = 0.;
       for (unsigned int cell = 0; cell < all.components.size(); ++cell)
@@ -244,7 +244,7 @@ TEST(FieldMeshes, ContactFacesHaveTheAreaOfThePairs)
 
 TEST(Fields, OfMixedCellsAreThoseOfLinearParts)
 {
-  // A cube, on it a pyramid and beside it a wedge, between these a tetrahedron of another volume
+  // A cube with a pyramid on top and a wedge next to it, with a tetrahedron of another volume between them
   Mesh mesh;
   mesh.points         = {{0., 0., 0.}, {1., 0., 0.}, {1., 1., 0.}, {0., 1., 0.},  {0., 0., 1.},  {1., 0., 1.},
                          {1., 1., 1.}, {0., 1., 1.}, {.5, .5, 2.}, {2., .5, 1.5}, {1.5, .5, 0.}, {1.5, .5, 1.}};
@@ -265,7 +265,7 @@ TEST(Fields, OfMixedCellsAreThoseOfLinearParts)
         VtuPiece(bodies).write(into, "mixed.vtu", {}, MPI_COMM_WORLD);
         VtuPiece(surface).write(into, "surface.vtu", {}, MPI_COMM_WORLD);
       });
-      // Each type, and how many there are
+      // Number of cells of each type
       const auto check_file = [&](const char *name, const FieldMesh &written, const std::map<int, unsigned int> &expected) {
         const std::string text  = content(folder / name);
         const auto        types = values_of<std::uint8_t>(text, "types");
@@ -348,7 +348,7 @@ TEST(Fields, OfAnimationsWithGrowthAreLargestWhereTheModeIs)
       const auto folder = s.written(place, [&](FieldWriter &writer) {
         writer.write_animation("all", {s.mode({50., 1000.}, "grows"), s.mode({-50., 1000.}, "decays")}, {4, 3, grows});
       });
-      // With growth the last picture is that of the end; without it that would be the first one again
+      // With growth there is a final frame, which would repeat the first one without growth
       const auto frames = listed(folder / "animations" / "all.pvd");
       ASSERT_EQ(frames.size(), grows ? 13u : 12u);
       EXPECT_EQ(frames.back().first, (frames.size() - 1) / 4.);
@@ -356,7 +356,7 @@ TEST(Fields, OfAnimationsWithGrowthAreLargestWhereTheModeIs)
                  last  = content(folder / "animations" / frames.back().second);
       if (!grows)
         without = values_of(first, "grows");
-      // The largest amplitude is that without growth
+      // The largest amplitude equals that without growth
       EXPECT_EQ(values_of(first, "decays"), without);
       EXPECT_EQ(values_of(first, "grows") == without, !grows);
       EXPECT_EQ(values_of(last, "grows") == without, grows);
@@ -368,7 +368,7 @@ TEST(Fields, AreListedWithATimeForEachMode)
 {
   const TemporaryFolder place;
   const DiscWithPin     s(Element::trilinear);
-  // Rigid-body modes, doublets equal to rounding, and one that is farther away
+  // Rigid-body modes, modes that differ by rounding only, and distinct ones
   const std::vector<double> frequencies = {0., 0., 500., 500., 500. * (1. + 1e-14), 500.1, 4999.};
   std::vector<ListedMode>   modes;
   for (const double frequency : frequencies)

@@ -22,7 +22,7 @@ namespace
   class ResultFolders : public ::testing::Test
   {
   protected:
-    /// What is said when something is refused; empty: nothing is.
+    /// Error message of the action, empty if it succeeds.
     static std::string refusal(const std::function<void()> &action)
     {
       try
@@ -43,7 +43,7 @@ namespace
     {
       folder.write(name, [&](std::ostream &stream) { stream << text; });
     }
-    /// Leaves a result of two files and its record; returns what is to be said.
+    /// Writes two result files and their record; returns the remarks.
     std::vector<std::string> make_results(const std::string &text) const
     {
       ResultFolder folder(results, true);
@@ -84,7 +84,7 @@ TEST_F(ResultFolders, OfOthersAreNotTouched)
     EXPECT_THROW(ResultFolder(results + name, true), FileError);
   EXPECT_EQ(content(results + "/thesis.tex"), "years of work");
   EXPECT_EQ(files(), (Names{"results/thesis.tex"}));
-  // An empty folder is as good as none
+  // An empty folder is accepted
   fs::remove(results + "/thesis.tex");
   EXPECT_NO_THROW(make_results("new"));
 }
@@ -100,7 +100,7 @@ TEST_F(ResultFolders, KeepFilesOfTheUser)
                             "results/table.csv"}));
   EXPECT_EQ(content(results + "/notes.txt"), "mine");
   EXPECT_EQ(content(results + "/table.csv"), "two");
-  // They stay files of the user in the next run, too.
+  // The next run keeps them as well.
   make_results("three");
   EXPECT_EQ(content(results + "/modes/own.vtu"), "mine too");
 }
@@ -117,7 +117,7 @@ TEST_F(ResultFolders, RenameFilesOfTheUserThatAreInTheWay)
   EXPECT_EQ(content(results + "/modes/two.vtu"), "two");
   EXPECT_EQ(content(results + "/modes/two.vtu.kept"), "mine as well");
   EXPECT_EQ(content(results + "/modes/two.vtu.kept-2"), "mine");
-  // A folder of the user where the results have a file
+  // A user folder with the name of a result file
   fs::remove(results + "/table.csv");
   put(results + "/table.csv/a", "a");
   EXPECT_EQ(make_results("two").size(), 1u);
@@ -131,7 +131,7 @@ TEST_F(ResultFolders, AreForOneRunAtATime)
   fs::create_symlink("results", place / "link");
   for (const std::string &name : {results, results + "/", (place / "link").string()})
     EXPECT_TRUE(contains(refusal([&] { ResultFolder(name, true); }), "another run")) << name;
-  // The first one goes on undisturbed
+  // The first run continues undisturbed
   write(running, "table.csv", "here");
   EXPECT_EQ(content(results + "/.unfinished/table.csv"), "here");
 }
@@ -161,7 +161,7 @@ TEST_F(ResultFolders, LeaveFormerOnesWhereARunFails)
     const ResultFolder running(results, true);
     write(running, "modes/one.txt", "half");
   }
-  EXPECT_FALSE(fs::exists(results)) << "nothing was there";
+  EXPECT_FALSE(fs::exists(results)) << "a failed run must not create results";
 
   make_results("one");
   const auto lose = [&](const std::string &name, const std::function<void()> &loss) {
@@ -182,7 +182,7 @@ TEST_F(ResultFolders, LeaveFormerOnesWhereARunFails)
     write(running, "matrices", "a file where a folder is needed");
     const std::string message = refusal([&] { write(running, "matrices/K.mtx", "1"); });
     EXPECT_TRUE(contains(message, "file " + results + "/matrices/K.mtx")) << message;
-    // What failed is not promised, and what could not be put together is not written.
+    // Files that failed or could not be generated are not listed.
     EXPECT_TRUE(contains(refusal([&] { running.write("mesh.msh", [](std::ostream &s) { s.setstate(std::ios::badbit); }); }), "mesh.msh"));
     EXPECT_THROW(running.write("table.csv", [](std::ostream &) { throw FileError("a number is not finite", "column", "report"); }),
                  FileError);
@@ -196,7 +196,7 @@ TEST_F(ResultFolders, SettleWhatAKilledRunHasLeft)
 {
   put(results + "/.unfinished/half", "half");
   make_results("one");
-  // Killed while files were moved: there is no record that would list files of two runs.
+  // Killed while files were moved: no record may list files of two runs.
   put(results + "/.unfinished/half", "half");
   fs::remove(results + "/run.json");
   make_results("two");

@@ -29,7 +29,7 @@ TEST(AccuracyGoal, MeshesAreFinerAndToleranceSmallerFromGoalToGoal)
       const Parameters fine = with_goal(goal(goals[g])), coarse = with_coarser_mesh(goal(goals[g]));
       fine.check();
       coarse.check();
-      // Twice is once: a run repeats itself from the parameters that it leaves
+      // Idempotent, so that a run can be repeated from the parameters it writes
       EXPECT_EQ(printed(with_goal(fine)), printed(fine));
       EXPECT_GT(coarse.discretization.maximum_frequency, fine.discretization.maximum_frequency);
       EXPECT_GE(coarse.geometry.element_size, fine.geometry.element_size);
@@ -49,7 +49,7 @@ TEST(AccuracyGoal, MeshesFollowTheScene)
 {
   const Parameters reference = with_goal(goal(AccuracyGoal::one_percent));
 
-  // Bending waves: ∝ 1/√f, and no longer than the plate is wide allows
+  // Bending wavelength ∝ 1/√f, limited by the plate width
   Parameters fast                       = goal(AccuracyGoal::one_percent);
   fast.discretization.maximum_frequency = 4. * reference.discretization.maximum_frequency;
   fast                                  = with_goal(fast);
@@ -60,7 +60,7 @@ TEST(AccuracyGoal, MeshesFollowTheScene)
   slow                                  = with_goal(slow);
   slow.check();
 
-  // Everything in another unit of length and time
+  // The same model in other units of length and time
   Parameters small = goal(AccuracyGoal::one_percent);
   small.discretization.maximum_frequency *= 1000.;
   for (double *length : {&small.geometry.disc_inner_radius, &small.geometry.disc_outer_radius, &small.geometry.disc_thickness,
@@ -76,7 +76,7 @@ TEST(AccuracyGoal, MeshesFollowTheScene)
   tall.geometry.pin_height = 4. * reference.geometry.pin_height;
   EXPECT_NEAR(with_goal(tall).geometry.pin_layers, 4. * reference.geometry.pin_layers, 1.);
 
-  // Meshes of the user's own do not follow
+  // User-defined meshes cannot be adapted
   Parameters own    = goal(AccuracyGoal::one_percent);
   own.geometry.file = SQUEAL_SOURCE_DIRECTORY "/tests/no.msh";
   EXPECT_THROW(with_goal(own), Error);
@@ -114,7 +114,7 @@ TEST(MeshFamily, ScalesElementsLayersAndPinFaces)
       result.check();
     }
 
-  // Bodies stay; outlines are smooth by polygons: the volume differs by those alone
+  // The bodies are the same; volumes differ only by the polygonal outlines
   const Mesh coarse = generate_mesh(one_pin()), fine = generate_mesh(refined(one_pin(), 2.));
   EXPECT_EQ(coarse.volume_names, fine.volume_names);
   EXPECT_GT(fine.cells.size(), 6 * coarse.cells.size());

@@ -37,7 +37,7 @@ namespace
     return result;
   }
 
-  /// Parameters of the plan that a file holds.
+  /// Parameters with the plan of a file.
   Parameters reading(const File &file)
   {
     Parameters parameters;
@@ -70,7 +70,7 @@ TEST(DesignPlan, GridsAndOneAtATime)
   const DesignPlan lists = plan_of(DesignChoice::full_grid, "Geometry/Top pin angles = -10, 0, 10 | -20, 0, 20");
   EXPECT_EQ(lists.names, Values{"Geometry/Top pin angles"});
   EXPECT_EQ(lists.designs, (Designs{{"-10, 0, 10"}, {"-20, 0, 20"}}));
-  // It begins with the scene as it is
+  // The first design is the unchanged model
   EXPECT_EQ(plan_of(DesignChoice::one_at_a_time, "A/x = 1, 2; B/y = 3").designs, (Designs{{"", ""}, {"1", ""}, {"2", ""}, {"", "3"}}));
   for (const char *variables : {"A/x[1] = 1, 2; A/x[2] = 3, 4", "A/x = 1, 2; B/y = 1, 2"})
     EXPECT_EQ(plan_of(DesignChoice::full_grid, variables).designs.size(), 4u) << variables;
@@ -91,7 +91,7 @@ TEST(DesignPlan, LatinHypercubeMeetsEveryPartOnce)
   EXPECT_EQ(parts_y.size(), n);
   EXPECT_EQ(std::count_if(plan.designs.begin(), plan.designs.end(), [](const Values &design) { return design[2] == "red"; }), n / 2);
 
-  // Equal seeds give equal designs, other seeds others
+  // Equal seeds give equal designs, different seeds different ones
   EXPECT_EQ(plan_of(DesignChoice::latin_hypercube, "A/x = 2 to 6", n, 7).designs,
             plan_of(DesignChoice::latin_hypercube, "A/x = 2 to 6", n, 7).designs);
   EXPECT_NE(plan_of(DesignChoice::latin_hypercube, "A/x = 2 to 6", n, 7).designs,
@@ -103,7 +103,7 @@ TEST(DesignPlan, SobolSequenceFillsTheRanges)
   // The first points of the sequence in two dimensions, without the origin
   EXPECT_EQ(plan_of(DesignChoice::sobol, "A/x = 0 to 1; B/y = 0 to 1", 3, 0).designs,
             (std::vector<Values>{{"0.5", "0.5"}, {"0.75", "0.25"}, {"0.25", "0.75"}}));
-  // Shifted ones are as even: every sixteenth of the range has two to six of 64
+  // Shifted sequences are as uniform: every sixteenth of the range has two to six of 64 points
   for (const unsigned int seed : {1u, 2u})
     {
       const DesignPlan plan = plan_of(DesignChoice::sobol, "A/x = 0 to 1; B/y = 0 to 1", 64, seed);
@@ -163,7 +163,7 @@ TEST(DesignPlan, ReadsAFile)
                                              "A/x,\"B/y\"\r\n1,\"-10, 10\"\n\n2,\"-20, 20\"\n1,\"-10, 10\"");
   const DesignPlan plan = design_plan(reading(file));
   EXPECT_EQ(plan.names, (Values{"A/x", "B/y"}));
-  EXPECT_EQ(plan.designs, (std::vector<Values>{{"1", "-10, 10"}, {"2", "-20, 20"}, {"1", "-10, 10"}})); // equal ones as well
+  EXPECT_EQ(plan.designs, (std::vector<Values>{{"1", "-10, 10"}, {"2", "-20, 20"}, {"1", "-10, 10"}})); // duplicates are kept
   EXPECT_EQ(plan.where.back(), "file " + file.string() + ", line 5");
 
   Parameters parameters;

@@ -51,17 +51,17 @@ TEST_F(ParameterFile, StatementsComeInTheirOrder)
   EXPECT_EQ(statements(write("no_end_of_line.prm", "set a = b=c")), Statements{"a=b=c"});
   const auto read = read_parameter_file((folder.path / "a.prm").string());
   EXPECT_NE(read[2].where.find("a.prm, line 4"), std::string::npos) << read[2].where;
-  // A byte order mark and line ends of other systems
+  // Byte order mark and CRLF line ends
   EXPECT_EQ(statements(write("a.prm", "\xEF\xBB\xBFset a = 1\r\nset b = 2\r\n")), (Statements{"a=1", "b=2"}));
 }
 
 TEST_F(ParameterFile, IncludesAreFollowed)
 {
   write("below/inner.prm", "subsection C\nset d = 2\nend\n");
-  write("below/outer.prm", "include inner.prm\n"); // beside the file that includes it
+  write("below/outer.prm", "include inner.prm\n"); // next to the including file
   EXPECT_EQ(statements(write("a.prm", "subsection B\ninclude below/outer.prm\nset e = 3\nend\n")),
             (Statements{"B/", "B/C/", "B/C/d=2", "B/e=3"}));
-  // Twice is no cycle
+  // Including a file twice is not a cycle
   EXPECT_EQ(statements(write("twice.prm", "include below/inner.prm\ninclude below/inner.prm\n")).size(), 4u);
   expect_refusal(write("missing.prm", "\ninclude nothing.prm\n"), {"cannot be read", "missing.prm, line 2, which includes `nothing.prm`"});
   write("below/open.prm", "subsection A\n");
@@ -74,13 +74,13 @@ TEST_F(ParameterFile, FilesThatIncludeThemselvesAreNamed)
 {
   expect_refusal(write("self.prm", "include self.prm\n"), {"a parameter file includes itself: ", "self.prm, line 1"});
   const std::string a = write("a.prm", "include b.prm\n"), b = write("b.prm", "\ninclude c.prm\n"), c = write("c.prm", "include ./b.prm\n");
-  // Only b and c turn in a circle
+  // The cycle consists of b and c only
   expect_refusal(a, {"includes itself: " + b + " -> " + c + " -> " + b, "c.prm, line 1"});
 }
 
 TEST_F(ParameterFile, FilesThatMultiplyEndSoon)
 {
-  // Each includes the next one twice
+  // Each file includes the next one twice
   for (int i = 0; i < 40; ++i)
     {
       const std::string next = "include " + std::to_string(i + 1) + ".prm\n";
@@ -125,7 +125,7 @@ TEST_F(ParameterFile, ValuesBetweenQuotesAreTakenAsTheyAre)
 
 TEST_F(ParameterFile, WrittenValuesReadBackUnchanged)
 {
-  EXPECT_EQ(written_value("disc_bore: 0, 7.8e10; \"b\" \\x"), "disc_bore: 0, 7.8e10; \"b\" \\x"); // quotes only where they are needed
+  EXPECT_EQ(written_value("disc_bore: 0, 7.8e10; \"b\" \\x"), "disc_bore: 0, 7.8e10; \"b\" \\x"); // quotes only where needed
   const std::vector<std::string> parts = {
     "", " ", "\t", "#", "\"", "\\", "\n", "\r", "\"\"", "\\n", "\\\"", "set a = 1\nend", "\xC3\xBC", "\xFF", "$(x)", "a = b"};
   std::vector<std::string> values = parts;

@@ -32,7 +32,7 @@ namespace
 
   using Refusals = std::vector<std::pair<std::string, std::vector<std::string>>>;
 
-  /// Overrides that are refused in their names.
+  /// Expects rejection of overrides with messages that name the parameter.
   void expect_refused(const Refusals &refusals)
   {
     for (const auto &[setting, mentions] : refusals)
@@ -160,7 +160,7 @@ TEST(Declarations, SayWhatEveryKindAccepts)
   EXPECT_EQ(accepted, (std::vector<std::string>{"a number in m", "a number <= 2.5", "a number in 1e-14 ... 1e-04", "an integer",
                                                 "numbers in -2 ... 7, separated by commas", ""}));
 
-  // Those of the program: all but texts with formats of their own
+  // Parameters of the program; only texts with a custom format have no description
   Declarations             all;
   Parameters               parameters;
   std::vector<std::string> free_texts;
@@ -295,14 +295,14 @@ TEST(ParameterChecks, RefuseWithNameAndReason)
                                                                        {"pad: 1, 0", "not the axes of a volume"}})
     expect_mentions(refusal("", {given, "Materials/Axes=" + axes}), {reason, "Materials/Axes"});
   EXPECT_EQ(refusal("", {given, "Materials/Axes=pad: 1, 2, 0, 0, 3, 1"}), "accepted");
-  // Without dissipation neither matters
+  // Neither is used without dissipation
   for (const std::string name : {"Operation/Rotation speed", "Operation/Load per side"})
     {
       expect_mentions(refusal("", {damped, name + "=0"}), {"parameter " + name});
       EXPECT_EQ(refusal("", {name + "=0"}), "accepted");
     }
   EXPECT_EQ(refusal("", {ratios + "=0: 0, 1000: 0.999"}), "accepted");
-  // Values that were not read
+  // Values set in code
   MaterialParameters infinite, negative;
   infinite.disc.rayleigh_alpha = std::numeric_limits<double>::infinity();
   negative.pin.rayleigh_beta   = -1e-9;

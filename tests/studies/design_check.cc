@@ -10,7 +10,7 @@ using namespace Squeal::Testing;
 
 namespace
 {
-  /// The message with which a study is refused.
+  /// Error message of a study.
   std::string refusal(const std::string &variables, std::vector<std::string> settings = {})
   {
     settings.insert(settings.begin(), {"Study=geometry", "Designs/Variables=" + variables});
@@ -54,7 +54,7 @@ TEST(DesignChecks, VariablesThatChangeNothingAreRefused)
   expect_refusal({changes_nothing, "Geometry/Pin layers", "Accuracy"}, "Geometry/Pin layers = 3, 4", {"Accuracy=1 %"});
   EXPECT_EQ(refusal("Geometry/Pin height = 0.03, 0.034", {"Accuracy=1 %"}), "accepted");
 
-  // One that acts is enough where several take the same value
+  // One effective parameter is enough if several share a value
   EXPECT_EQ(refusal("Geometry/Pin height + Operation/Load per side = 0.03, 0.034"), "accepted");
 }
 
@@ -84,16 +84,16 @@ TEST(DesignChecks, ValuesAreHeldAgainstTheirBoundsFirst)
   expect_refusal({"must be >= 0 m, not -0.01", "Geometry/Pin height = -0.01"},
                  "Disc material/Density = 1, 2; Geometry/Pin height = 0.03, -0.01");
   expect_refusal({"integer", "Geometry/Disc layers = 1.5"}, "Geometry/Disc layers = 1 to 3 in 5");
-  // With parameters that do not vary
+  // Together with parameters that do not vary
   expect_refusal({"beyond the inner radius", "Geometry/Pin diameter = 0.2"}, "Geometry/Pin diameter = 0.05, 0.2");
   // Samples of a range
   expect_refusal({"Poisson", "Pin material/Poisson ratio = 0."}, "Pin material/Poisson ratio = 0.2 to 0.8",
                  {"Designs/Plan=Latin hypercube"});
   expect_refusal({"Pin material/Poisson ratio must lie in -1 ... 0.5, not 0.8"}, "Pin material/Poisson ratio = 0.2 to 0.8",
                  {"Study=search"});
-  // Values that only together make no sense are told in their rows
+  // Combinations that make no sense are reported per design
   EXPECT_EQ(refusal("Operation/Load per side = 0, 1000; Operation/Radial dissipation = none, consistent"), "accepted");
-  // In a file the line is named
+  // The message names the line of a file
   expect_mentions(refusal_of_file("Geometry/Pin height\n0.03\n\n-1\n"), {"line 4", "not -1"});
   expect_mentions(refusal_of_file("Pin height\n0.03\n"), {"line 1", "`Geometry/Pin height`"});
 }

@@ -16,7 +16,7 @@ using namespace Squeal::Testing;
 
 namespace
 {
-  /// The default scene with values to try.
+  /// The default model with trial values.
   Parameters plain_scene()
   {
     Parameters result;
@@ -25,7 +25,7 @@ namespace
     return result;
   }
 
-  /// A scene that has every ingredient.
+  /// A model with every ingredient.
   Parameters rich_scene()
   {
     Parameters result;
@@ -70,7 +70,7 @@ TEST(Ingredients, ChangesAreMadeAndNothingElseInEveryScene)
             {
               EXPECT_FALSE(changed.without_lift_off || !changed.basis.empty()) << ingredient->name;
               EXPECT_NE(printed(changed.parameters), printed(scene)) << ingredient->name;
-              // Once made it is not made again
+              // A second application changes nothing
               const Variation twice = combined(changed.parameters, {ingredient});
               EXPECT_EQ(printed(twice.parameters), printed(changed.parameters)) << ingredient->name;
             }
@@ -133,7 +133,7 @@ TEST(IngredientEffects, GrowingModesButWeakOnesDecideAVerdict)
   EXPECT_FALSE(change(0.009, -0.1)); // weak: below 0.01 %
   EXPECT_TRUE(change(0.011, -0.1));
   EXPECT_TRUE(change(-0.1, 0.011));
-  EXPECT_FALSE(change(0.5, 0.005)); // it grows in both
+  EXPECT_FALSE(change(0.5, 0.005)); // grows in both
 
   Effect divergence                 = effect({}); // static
   divergence.n_growing_real_variant = 1;
@@ -143,7 +143,7 @@ TEST(IngredientEffects, GrowingModesButWeakOnesDecideAVerdict)
 
 TEST(IngredientEffects, ModesWithoutCounterpartCount)
 {
-  // A mode that leaves the band has moved at least to its end
+  // A mode that leaves the band has moved at least to the band end
   const Effect lost = effect({{{}, eigenvalue(4900., 0.), std::nullopt}});
   EXPECT_NEAR(lost.frequency().amount, 100. * (5000. / 4900. - 1.), 1e-12);
   EXPECT_EQ(lost.n_lost(), 1u);
@@ -151,7 +151,7 @@ TEST(IngredientEffects, ModesWithoutCounterpartCount)
   EXPECT_FALSE(lost.changes_verdict());
   EXPECT_TRUE(effect({{{}, eigenvalue(4900., 0.2), std::nullopt, true}}).changes_verdict());
   EXPECT_TRUE(effect({{{}, std::nullopt, eigenvalue(4900., 0.2), false, true}}).changes_verdict());
-  // One that lies beyond the end of a shorter band is not there to be compared
+  // A mode above the end of a shorter band is not compared
   Effect shorter   = lost;
   shorter.band_end = circular_frequency(2500.);
   EXPECT_EQ(shorter.frequency().amount, 0.);
@@ -176,18 +176,18 @@ TEST(IngredientSelection, CheapestChangesThatKeepTheAccuracyTogether)
     return std::accumulate(chosen.begin(), chosen.end(), 0., [&](const double s, const int i) { return s + unlike[i].severity; });
   };
   for (const auto &[changes, severity_of, expected] :
-       std::vector<Case>{// All that keep it
+       std::vector<Case>{// All changes that keep the accuracy
                          {{{"a", 0.2}, {"b", 1.5}, {"c", 0.9}}, always(0.95), {{0, 2}, {}, 1, 0.95}},
-                         // The most important one is put back
+                         // The most important change is put back
                          {unlike, sum, {{0, 2}, {1}, 2, 0.8}},
-                         // Of one ingredient the simplest that serves; where it is too much together, the next one
+                         // The simplest sufficient change of an ingredient; the next one if the combination is too inaccurate
                          {of_one, always(0.9), {{1, 3}, {}, 1, 0.9}},
                          {of_one, [](const Numbers &chosen) { return chosen.front() == 1 ? 1.2 : 0.4; }, {{2, 3}, {1}, 2, 0.4}},
-                         // One alone and none are not solved again
+                         // A single change or none needs no further solve
                          {{{"a", 0.3}, {"b", INFINITY}}, nullptr, {{0}, {}, 0, 0.3}},
                          {{{"a", 1.1}}, nullptr, {{}, {}, 0, 0.}},
                          {{}, nullptr, {{}, {}, 0, 0.}},
-                         // Two that contradict each other: the smaller one is left
+                         // Two incompatible changes: the smaller one remains
                          {{{"a", 0.3}, {"b", 0.4}}, always(INFINITY), {{0}, {1}, 1, 0.3}}})
     {
       const ChangesTogether found = cheapest_changes(changes, severity_of);

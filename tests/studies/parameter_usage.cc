@@ -59,7 +59,7 @@ namespace
     return {"Study=updating", "Updating/Measured modes=" + measured.string(), "Designs/Variables=Pin material/Density = 3000 to 3200"};
   }
 
-  /// A run, the sections of studies of which it uses something, and beginnings of the paths that it does not use beside the other sections.
+  /// A run, the study sections that it uses, and prefixes of further paths that it does not use.
   struct Usage
   {
     Paths              run, sections;
@@ -157,7 +157,7 @@ TEST(ParameterUsage, OfEveryStudy)
      {"Accuracy study/"},
      {no_shapes, no_sliding, own_meshes, {"Complex modes/Maximum", "Accuracy study/Grown"}}},
 
-    // The study goes through contact states, dissipations, solvers and rotation on its own: what they need is of use
+    // The study varies contact state, dissipation, solver and rotation itself, so that their parameters are used
     {{"Study=ingredients"}, {"Ingredients/"}, {{"Output/"}}},
 
     {{"Study=reduction"}, {"Reduction/"}, {no_shapes, no_sliding, undamped}},
@@ -199,7 +199,7 @@ TEST(ParameterUsage, OfEveryStudy)
     {joined(design, {"Designs/Plan=Sobol sequence", steady}),
      {"Designs/", "Sweep/"},
      {reduced, no_rate, no_sweep, one_mu, {"Designs/File", "Operation/Rotation speed"}}},
-    // A search has ranges in the place of a plan
+    // A search has ranges instead of a plan
     {{"Study=search", "Designs/Variables=Geometry/Pin height=0.03 to 0.04"},
      {"Designs/", "Search/", "Sweep/"},
      {reduced, no_sweep, no_sliding, undamped, one_mu, {"Designs/Plan", "Designs/Number", "Designs/File", "Search/Quantile"}}},
@@ -229,7 +229,7 @@ TEST(ParameterUsage, OfEveryStudy)
       conditional.insert(found.begin(), found.end());
     }
 
-  // Every parameter is accounted for: of these sections every run uses everything, others some run of the table does not use.
+  // Every parameter is covered: it is used by every run, or unused by some run of the table.
   const std::set<std::string> always       = {"Geometry", "Mounts", "Discretization", "Band", "Real modes", "Linear algebra", "Contact"};
   const std::set<std::string> of_materials = {"Young modulus", "Poisson ratio", "Density", "Volumes", "Orthotropic", "Axes"};
   for (const std::string &path : all_paths())
@@ -237,9 +237,9 @@ TEST(ParameterUsage, OfEveryStudy)
       const auto slash          = path.find('/');
       const bool is_always_used = path == "Study" || path == "Accuracy" || path == "System" || path == "Steady sliding/Contact state" ||
                                   always.count(path.substr(0, slash)) > 0 || of_materials.count(path.substr(slash + 1)) > 0;
-      EXPECT_TRUE(is_always_used || conditional.count(path) > 0) << path << " has no rule of when it is used";
+      EXPECT_TRUE(is_always_used || conditional.count(path) > 0) << path << " has no usage rule";
     }
-  // What studies name exists; a general rule of a parameter that does not exist leaves the one that was meant without a rule above.
+  // Paths in study rules exist; a misspelt path in a general rule leaves a parameter without a rule above.
   for (const Study *study : studies())
     {
       std::vector<std::string> beginnings(study->own_parameters.begin(), study->own_parameters.end());

@@ -48,7 +48,7 @@ TEST(LeastSquares, FindsTheMinimumOfALinearProblem)
 
 TEST(LeastSquares, EndsAtALimitAndAvoidsPointsWithoutResiduals)
 {
-  // The minimum of (3 x − 6)² + (4 y − 2)² is at x = 2; nothing is known for x > 0.95 at first
+  // The minimum of (3 x − 6)² + (4 y − 2)² is at x = 2, beyond the limit; at first there are no residuals for x > 0.95
   int        n_refused = 0;
   const auto at        = [&](const std::vector<double> &x) -> std::optional<Residuals> {
     if (x[0] > 0.95 && n_refused++ < 2)
@@ -88,7 +88,7 @@ TEST(FitStatistics, AreThoseOfTheNormalEquations)
 
 TEST(FitStatistics, NamesWhatTheDataDoNotDetermine)
 {
-  // x0 and x2 act alike, x3 does nothing, x1 is determined, and x4 worse than its range
+  // x0 and x2 are collinear, x3 has no effect, x1 is determined, x4 is less certain than its range
   DenseMatrix J(6, 5);
   J.setZero();
   J.col(0) << 0., 10., 10., 10., 10., 10.;
@@ -100,7 +100,7 @@ TEST(FitStatistics, NamesWhatTheDataDoNotDetermine)
   EXPECT_TRUE(statistics.deviations[1]);
   for (const int i : {0, 2, 3, 4})
     EXPECT_FALSE(statistics.deviations[i]);
-  // Fewer numbers than parameters
+  // Fewer data than parameters
   const FitStatistics few = fit_statistics({Eigen::VectorXd::Zero(1), J.topRows(1)}, std::vector<double>(5, 0.5), true);
   EXPECT_FALSE(few.undetermined.empty());
 }
@@ -118,7 +118,7 @@ TEST(MeasuredModes, HaveTheirCounterparts)
   EXPECT_NEAR(counterpart_of(measured_mode(MeasuredState::coupled, "A0-4"), {}, computed_modes).frequency, 60. / (2. * M_PI), 1e-12);
   EXPECT_NEAR(counterpart_of(measured_mode(MeasuredState::coupled, "A0-4 +"), {}, computed_modes).frequency, 70. / (2. * M_PI), 1e-12);
 
-  // d(3/5) for λ = −3 + 4i and λ' = 1 + 2i: −(16 · 1 + 3 · 4 · 2)/125
+  // Derivative of ζ = 3/5 for λ = −3 + 4i and λ' = 1 + 2i: −(16 · 1 + 3 · 4 · 2)/125
   const Counterpart damped = counterpart_of(measured_mode(MeasuredState::complex, "A0-4 -"), {}, computed_modes);
   EXPECT_NEAR(damped.damping_ratio, 0.6, 1e-12);
   const auto ratio = [](const double t) {
