@@ -5,20 +5,21 @@
     results = squeal.run("x.prm", {"Operation/Friction coefficient": 0.3})
     system = squeal.System.read("folder")
 
-What a name needs is imported when it is first used: reading tables needs no NumPy.
+Names are imported on first use, so that reading tables does not require NumPy.
 """
 
 import importlib
 
 from squeal.errors import Error
 
-PLACES = {"Results": "squeal.results", "run": "squeal.program", "System": "squeal.system", "Parameter": "squeal.system", "Term": "squeal.system"}
+MODULES = {"Results": "squeal.results", "run": "squeal.program",
+           "System": "squeal.system", "Parameter": "squeal.system", "Term": "squeal.system"}
 
 
 def __getattr__(name):
-    if name not in PLACES:
+    if name not in MODULES:
         raise AttributeError(f"module `squeal` has no attribute `{name}`")
-    return getattr(importlib.import_module(PLACES[name]), name)
+    return getattr(importlib.import_module(MODULES[name]), name)
 
 
-__all__ = ["Error", *PLACES]
+__all__ = ["Error", *MODULES]

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What scripts share: how they read their command line and how they end."""
+"""Command line, error messages and virtual display of the scripts."""
 
 import argparse
 import contextlib
@@ -12,7 +12,7 @@ from squeal.errors import Error
 
 
 class Parser(argparse.ArgumentParser):
-    """A parser whose description is printed as it is, and whose errors look like all others."""
+    """An argument parser that prints its description verbatim and reports errors as Error."""
 
     def __init__(self, description, **more):
         super().__init__(description=description, formatter_class=argparse.RawDescriptionHelpFormatter, **more)
@@ -21,33 +21,33 @@ class Parser(argparse.ArgumentParser):
         raise Error(message, "command line", "see --help")
 
 
-# Debian's packages, where a module has another name
+# Debian packages whose name differs from that of the module
 PACKAGES = {"PIL": "python3-pil", "netCDF4": "python3-netcdf4", "paraview": "paraview python3-paraview (or scripts/setup.sh paraview)",
             "vtk": "python3-vtk9 (or scripts/setup.sh pictures)"}
 
 
 @contextlib.contextmanager
 def exit_on_error():
-    """Turns an error into a message and the exit status 1."""
+    """Prints an error and exits with status 1."""
     try:
         yield
     except Error as error:
         sys.exit(f"error: {error}")
     except OSError as error:
-        sys.exit(f"error: {error.strerror}\n  where:  {error.filename}\n  change: check the file and its folder, and who may read and write there")
+        sys.exit(f"error: {error.strerror}\n  where:  {error.filename}\n  change: check the path and its permissions")
     except ModuleNotFoundError as missing:
         package = PACKAGES.get(missing.name, f"python3-{missing.name}")
-        sys.exit(f"error: Python has no {missing.name}\n  where:  {sys.argv[0]}\n  change: apt-get install {package}")
+        sys.exit(f"error: the Python module {missing.name} is missing\n  where:  {sys.argv[0]}\n  change: apt-get install {package}")
 
 
 def make_of_results(what, parser, make):
-    """Reads the rest of the command line, with the folder of the results, makes `what` of them and ends the script.
+    """Creates `what`, such as plots, from the results folder RESULTS of the command line, and prints the files written.
 
-    make(results, arguments) returns a file or a list of files, and remarks.
+    make(results, arguments) returns a file or a list of files, and notes to print.
     """
     from squeal.results import Results
 
-    parser.add_argument("results", metavar="RESULTS", help="folder that a run has left")
+    parser.add_argument("results", metavar="RESULTS", help="results folder of a run")
     arguments = parser.parse_args()
     try:
         found, remarks = make(Results(arguments.results), arguments)
@@ -58,7 +58,7 @@ def make_of_results(what, parser, make):
 
 
 def ensure_display(packages, command=(sys.executable,), screen="1280x1024x24"):
-    """Without a screen, starts the script again under a virtual one; for libraries that draw through X."""
+    """Restarts the script under Xvfb if there is no display, for libraries that render through X."""
     if os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"):
         return
     if os.environ.get("SQUEAL_RENDER_UNDER_XVFB") or not shutil.which("xvfb-run") or not shutil.which("xauth"):

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The error of the module and of the scripts."""
+"""The exception of the module and the scripts."""
 
 
 class Error(Exception):
-    """What is wrong, where, and what to change."""
+    """An error in three parts: what happened, where, and what to change."""
 
     def __init__(self, what, where, change):
         super().__init__(what, where, change)

@@ -2,26 +2,26 @@
 
 """Reads the matrices that a run of squeal has exported and forms the quadratic eigenproblem from them.
 
-The files of DIRECTORY/matrices, in Matrix Market form, are
+DIRECTORY/matrices contains, in Matrix Market format,
 
-    M, K            n x n    mass and stiffness of disc and pins, not yet coupled, clamped dofs gone
-    C               n x n    damping of the materials
-    G               n x n    gyroscopic forces of the disc, skew-symmetric; missing without them
-    C_b             n x n    damping of the contact, along the radius and along the sliding
-    P_n, P_t, P_b   n_c x n  relative displacement disc minus pin, normal, along the sliding times the friction factor f of the pair of
-                             surfaces (rows f t), along the radius
-    K_n             n_c x n_c  springs of the contact, diagonal; zero where it is rigid, missing if all of it is
+    M, K            n x n    mass and stiffness of disc and pins before coupling, without clamped dofs
+    C               n x n    material damping
+    G               n x n    gyroscopic matrix of the disc, skew-symmetric; no file if it is zero
+    C_b             n x n    contact damping, radial and along the sliding direction
+    P_n, P_t, P_b   n_c x n  relative displacement disc minus pin: normal, along the sliding direction times the friction factor f of the
+                             pair of surfaces (rows f t), radial
+    K_n             n_c x n_c  contact stiffness, diagonal; zero at rigid contact nodes, no file if all are rigid
     T_c             n x n_k  basis of the kernel of the rigid rows of P_n
 
-and the problem is (lambda^2 M~_c + lambda C_c + K~_c) phi = 0 with
+The coupled problem is (lambda^2 M~_c + lambda C_c + K~_c) phi = 0 with
 
     K~ = K - mu P_t^T S K + (P_n + mu P_t)^T K_n P_n,  M~ = M - mu P_t^T S M,  C~ = C + G - mu P_t^T S (C + G) + C_b,
     K~_c = T_c^T K~ T_c, M~_c and C_c likewise.
 
-S reads the reactions of the rigid contact nodes from forces, S [P_n; P_t; P_b]^T = [I, 0, 0]: the pseudo-inverse, which is 1/2 P_n between
-pairs of coincident nodes; the program uses another left inverse where faces do not match.
+S extracts the reactions of the rigid contact nodes from nodal forces, S [P_n; P_t; P_b]^T = [I, 0, 0]: the pseudo-inverse, which is 1/2 P_n
+for pairs of coincident nodes. For nonmatching faces the program uses another left inverse.
 
-Nothing here is taken from the program but these matrices, so that what follows is independent of it.
+Only these matrices come from the program, so that results based on them are an independent check.
 """
 
 import dataclasses
@@ -40,7 +40,7 @@ from squeal.parameter_file import read_parameters
 
 @dataclasses.dataclass
 class QuadraticProblem:
-    """The coupled matrices of lambda^2 mass + lambda damping + stiffness, as scipy's csr matrices."""
+    """The coupled matrices of lambda^2 mass + lambda damping + stiffness in SciPy's CSR format."""
 
     mass: sparse.csr_matrix
     damping: sparse.csr_matrix
@@ -56,7 +56,7 @@ class QuadraticProblem:
 
 
 def read_matrices(directory):
-    """A dictionary name -> csr matrix of the exported matrices."""
+    """The exported matrices: name -> CSR matrix."""
     matrices = {}
     for name in ("M", "C", "K", "G", "C_b", "P_n", "P_t", "P_b", "K_n", "T_c"):
         path = pathlib.Path(directory) / "matrices" / f"{name}.mtx"
@@ -71,15 +71,15 @@ def read_matrices(directory):
 
 
 def rigid_rows(matrices):
-    """Numbers of the contact nodes without springs."""
+    """Indices of the contact nodes without springs."""
     return np.flatnonzero(matrices["K_n"].diagonal() == 0)
 
 
 def reactions(matrices):
-    """S, n_c x n, with zero rows at contact nodes with springs."""
+    """S (n_c x n); rows of contact nodes with springs are zero."""
     rigid, P_n = rigid_rows(matrices), matrices["P_n"]
     if len(rigid) == P_n.shape[0] and (abs(P_n @ P_n.T - 2 * sparse.identity(len(rigid))) > 1e-12).nnz == 0:
-        return 0.5 * P_n  # pairs of nodes, in the precision of the matrices
+        return 0.5 * P_n  # coincident nodes
     select = sparse.csr_matrix((np.ones(len(rigid)), (rigid, np.arange(len(rigid)))), (P_n.shape[0], len(rigid)))
     B = sparse.vstack([matrices[name][rigid] for name in ("P_n", "P_t", "P_b")]).tocsr()
     normal = sparse.identity(len(rigid), format="csc")
@@ -109,7 +109,7 @@ def couple(matrices, friction_coefficient):
 
 
 def structure_errors(matrices):
-    """What must vanish in exported matrices, each relative to the size of what it is made of: description -> value."""
+    """Quantities that must vanish, relative to the matrices that they are computed from: description -> value."""
 
     def largest(matrix):
         return abs(matrix).max() if matrix.nnz else 0.0
@@ -132,7 +132,7 @@ def structure_errors(matrices):
 
 
 def run_parameter(directory, name, given=None):
-    """A number of the run: the one given on the command line, else the one in DIRECTORY/parameters.prm."""
+    """A numerical parameter of the run: `given`, or its value in DIRECTORY/parameters.prm if that is None."""
     if given is not None:
         return given
     path = pathlib.Path(directory) / "parameters.prm"
@@ -143,6 +143,6 @@ def run_parameter(directory, name, given=None):
 
 
 def in_band(eigenvalues, band):
-    """Which eigenvalues have a frequency in (0, band], band in Hz; real ones and rigid-body modes do not count."""
+    """Mask of the eigenvalues with a frequency in (0, band] [Hz], without real ones and rigid-body modes."""
     frequencies = eigenvalues.imag / (2 * math.pi)
     return (frequencies > 1e-5 * band) & (frequencies <= band)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Coefficients: expressions of muParser in named parameters.
+"""Coefficients: muParser expressions in named parameters.
 
 Operators are + - * / ^, functions sin, cos, tan, exp, log and ln (natural), sqrt and abs; _pi is pi.
 """
@@ -18,15 +18,15 @@ CONSTANTS = {"_pi": math.pi}
 TOKEN = re.compile(r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(?P<name>[A-Za-z_]\w*)|(?P<operator>[-+*/^()]))", re.ASCII)
 NAME = re.compile(r"[A-Za-z_]\w*", re.ASCII)
 CHANGE = "write + - * / ^, sin, cos, tan, exp, log, sqrt, abs, _pi, numbers and names of parameters"
-# Boxes of parameters are halved this often before a denominator counts as zero somewhere in them
+# Bisections per parameter after which a divisor that may vanish counts as zero
 HALVINGS = 40
 
 
 class Expression:
-    """An expression that has been parsed: `text`, and the `names` of parameters in it."""
+    """A parsed expression: its `text`, and the sorted `names` of its parameters."""
 
     def __init__(self, text, names, where):
-        """Throws Error where the text does not parse or names a parameter that is not among `names`."""
+        """Raises Error if the text cannot be parsed or contains a parameter that is not in `names`."""
         self.text, self.where = text, where
         try:
             self._tree = ast.parse(python_text(text), mode="eval").body
@@ -38,7 +38,7 @@ class Expression:
                         f"declare it under `parameters`, or name one of: {', '.join(names) or '(none)'}")
 
     def __call__(self, values):
-        """The value at the values of parameters, a dictionary. Throws Error where it is not a finite number."""
+        """The value for a dictionary of parameter values. Raises Error if it is not a finite number."""
         try:
             result = evaluate(self._tree, values)
         except ZeroDivisionError:
@@ -52,7 +52,7 @@ class Expression:
         raise Error(f"`{self.text}` {what}" + (f" at {place}" if place else ""), self.where, "change the expression or the values of its parameters")
 
     def check_range(self, ranges):
-        """Throws Error where the expression divides by zero for parameters in their ranges, a dictionary name -> (lower, upper)."""
+        """Raises Error if a divisor vanishes within the ranges of the parameters, name -> (lower, upper)."""
         for node in ast.walk(self._tree):
             if is_division(node) and (zero := find_zero(divisor(node), {name: ranges[name] for name in self.names})) is not None:
                 place = ", ".join(f"{name} = {value:.6g}" for name, value in zero.items())
@@ -61,7 +61,7 @@ class Expression:
 
 
 def python_text(text):
-    """The expression as Python writes it, parameters with a prefix that keeps them apart from Python's keywords."""
+    """The expression in Python's syntax; a prefix distinguishes parameters from keywords."""
     words, at = [], 0
     while at < len(text.rstrip()):
         match = TOKEN.match(text, at)
@@ -74,7 +74,7 @@ def python_text(text):
 
 
 def names_in(node):
-    """Names of the parameters in a tree. Throws ValueError where it is more than an expression may be."""
+    """Names of the parameters in a tree. Raises ValueError if it contains anything but the allowed operations."""
     if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id[2:] in FUNCTIONS and len(node.args) == 1:
         return names_in(node.args[0])
     if isinstance(node, ast.Name):
@@ -89,7 +89,7 @@ def names_in(node):
 
 
 def evaluate(node, values, functions=FUNCTIONS, number=float):
-    """The value of a tree, of floats or of intervals, which `number` makes of constants."""
+    """The value of a tree for floats or intervals; `number` converts the constants."""
     if isinstance(node, ast.Constant):
         return number(node.value)
     if isinstance(node, ast.Name):
@@ -108,12 +108,12 @@ def is_division(node):
 
 
 def divisor(node):
-    """What a division divides by; a power divides by its base if its exponent is negative."""
+    """The divisor; that of a power is its base if the exponent is negative."""
     return node.right if isinstance(node.op, ast.Div) else ast.IfExp(test=node.right, body=node.left, orelse=ast.Constant(1.0))
 
 
 class Interval:
-    """All numbers from `lower` to `upper`; results of operations contain all results for numbers of the operands."""
+    """The interval [lower, upper]; operations return intervals that contain all results for numbers in the operands."""
 
     def __init__(self, lower, upper=None):
         self.lower, self.upper = lower, lower if upper is None else upper
@@ -161,7 +161,7 @@ EVERYTHING = Interval(-math.inf, math.inf)
 
 
 def bounded(function, *values):
-    """The value of a function, infinite where it is too large."""
+    """The value of a function, infinite on overflow."""
     try:
         return function(*values)
     except OverflowError:
@@ -169,12 +169,12 @@ def bounded(function, *values):
 
 
 def monotonic(function, least):
-    """An increasing function of intervals, unknown for numbers up to `least`."""
+    """An increasing function of intervals, undefined for numbers up to `least`."""
     return lambda x: EVERYTHING if x.lower <= least else Interval(*(bounded(function, end) for end in x.ends))
 
 
 def wave(function, top):
-    """Sine or cosine of intervals, 1 at `top`."""
+    """Sine or cosine of intervals, with its maximum at `top`."""
     def of(x):
         if not x.upper - x.lower < 2 * math.pi:
             return Interval(-1.0, 1.0)
@@ -191,12 +191,12 @@ OF_INTERVALS = {"sin": SIN, "cos": COS, "tan": lambda x: SIN(x) / COS(x), "exp":
 
 
 def interval_of(node, ranges):
-    """An interval that contains all values of a tree for parameters in ranges."""
+    """An interval that contains all values of a tree for parameters within ranges."""
     return evaluate(node, {name: Interval(*ends) for name, ends in ranges.items()}, OF_INTERVALS, Interval)
 
 
 def find_zero(node, ranges):
-    """Parameters near which a tree vanishes, None where it vanishes nowhere in the ranges. Ranges are halved until an interval excludes zero."""
+    """Parameters near a zero of a tree, None if it has none; bisects the ranges until every interval excludes zero."""
     if isinstance(node, ast.IfExp):
         return find_zero(node.body, ranges) if interval_of(node.test, ranges).lower < 0 else None
     boxes = [(0, {name: ranges[name] for name in names_in(node)})]

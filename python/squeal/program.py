@@ -18,7 +18,7 @@ PLACES = (PACKAGE.parents[3] / "bin" / "squeal", SOURCE / "build" / "release" / 
 
 
 def find_program():
-    """The executable: SQUEAL of the environment, that of the installation or of the checkout, or one in PATH. Throws Error if there is none."""
+    """The executable: SQUEAL of the environment, that of the installation or of the checkout, or one in PATH. Raises Error if there is none."""
     if given := os.environ.get("SQUEAL"):
         if not pathlib.Path(given).is_file():
             raise Error(f"there is no program {given}", "environment variable SQUEAL", "name the executable")
@@ -46,7 +46,7 @@ def words_of(settings):
 def run(prm, overrides=None, output=None, n_processes=1):
     """Results of a parameter file with parameters "Section/Name" -> value that differ from it.
 
-    The results are in the folder `output`, otherwise in results/ with the name of the file. Throws Error with what the program says.
+    The results are in the folder `output`, otherwise in results/ with the name of the file. Raises Error with what the program says.
     """
     output = pathlib.Path(output) if output else pathlib.Path("results") / pathlib.Path(prm).stem
     launcher = ["mpirun", "-np", str(n_processes)] if n_processes > 1 else []

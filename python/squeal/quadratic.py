@@ -89,7 +89,7 @@ def linearise(M, C, K):
 
 
 def solve_dense(M, C, K, where):
-    """All finite eigenvalues and vectors by QZ. Throws Error where the pencil is singular."""
+    """All finite eigenvalues and vectors by QZ. Raises Error if the pencil is singular."""
     n, (gamma, delta) = M.shape[0], scaling(M, C, K)
     A, B = (matrix.toarray() for matrix in linearise(gamma**2 * delta * M, gamma * delta * C, delta * K))
     pairs, vectors = scipy.linalg.eig(A, B, homogeneous_eigvals=True)
@@ -116,7 +116,7 @@ class ShiftInvert:
         self.gamma, _ = scaling(M, C, K)
 
     def check(self):
-        """Throws Error where Q(σ) is singular to working precision at an arbitrary σ.
+        """Raises Error if Q(σ) is singular to working precision at an arbitrary σ.
 
         By Oettli and Prager, changes of the entries by max |Q x| / (|Q| |x|) make it singular; x comes from inverse iteration.
         """
@@ -266,7 +266,7 @@ def solve(M, C, K, number=None, largest=None, region=None, shift=None, where="sy
     """Eigenpairs of a quadratic pencil of real sparse matrices: those selected, or all of a small system.
 
     region: ((lower, upper) real part, (lower, upper) imaginary part) [1/s]; largest: those with |λ| up to it; number: so many that are closest
-    to `shift` (0). Throws Error where M = 0, where the pencil is singular or where nothing is selected from a large system.
+    to `shift` (0). Raises Error if M = 0, where the pencil is singular or where nothing is selected from a large system.
     """
     n = M.shape[0]
     if M.nnz == 0 or not abs(M.data).max(initial=0.0):

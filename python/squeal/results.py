@@ -31,7 +31,7 @@ class Table:
     """The rows of a CSV table, by the names of its columns. Lines that begin with # are comments."""
 
     def __init__(self, path):
-        """Throws Error where it cannot be read."""
+        """Raises Error if it cannot be read."""
         self.path = path
         try:
             with open(path, newline="", encoding="utf-8") as file:
@@ -53,13 +53,13 @@ class Table:
         return self.columns[0]
 
     def texts(self, column):
-        """Cells of a column. Throws Error if there is no such column."""
+        """Cells of a column. Raises Error if there is no such column."""
         if column not in self.columns:
             raise Error(f"there is no column `{column}`", f"file {self.path}", "run squeal again: it writes this column now")
         return [row[column] for row in self.rows]
 
     def numbers(self, column):
-        """Numbers of a column, NaN for an empty cell. Throws Error if a cell holds something else."""
+        """Numbers of a column, NaN for an empty cell. Raises Error if a cell holds something else."""
         result = []
         for line, text in enumerate(self.texts(column), start=2):
             try:
@@ -117,7 +117,7 @@ def shape_files(folder):
 
 
 class Results:
-    """A folder of results. Throws Error if it is none."""
+    """A folder of results. Raises Error if it is none."""
 
     def __init__(self, folder):
         self.folder = pathlib.Path(folder)
@@ -148,7 +148,7 @@ class Results:
         return sorted(path.stem for path in self.folder.glob("*.csv"))
 
     def frame(self, name):
-        """A table as a data frame of pandas, see Table.frame(). Throws Error where the run has no such table."""
+        """A table as a data frame of pandas, see Table.frame(). Raises Error if the run has no such table."""
         if not self.has(name):
             raise Error(f"there is no table `{name}`", f"folder {self.folder}", f"name one of: {', '.join(self.names()) or '(none)'}")
         return self.table(name).frame()
@@ -173,7 +173,7 @@ class Results:
         return VtuFile(path).as_meshio()
 
     def system(self):
-        """The system of matrices that the run has written. Throws Error if there is none."""
+        """The system of matrices that the run has written. Raises Error if there is none."""
         from squeal.system import FILE, System
 
         path = self.folder / "system" / FILE

@@ -80,7 +80,7 @@ class System:
     """
 
     def __init__(self, parameters, terms, groups=None, positions=None, displacements=None, reduction=None, description="", measured_modes=None, where=FILE):
-        """Throws Error where something is wrong; `where` names the file for it."""
+        """Raises Error if something is wrong; `where` names the file for it."""
         self.parameters = {name: parameter if isinstance(parameter, Parameter) else Parameter(parameter) for name, parameter in parameters.items()}
         self.terms, self.groups, self.reduction = list(terms), dict(groups or {}), reduction
         self.positions, self.displacements = positions, displacements
@@ -173,7 +173,7 @@ class System:
 
     @classmethod
     def read(cls, path):
-        """The system of a folder, or of its system.json. Throws Error where a file is missing or wrong."""
+        """The system of a folder, or of its system.json. Raises Error if a file is missing or wrong."""
         path = pathlib.Path(path)
         path = path / FILE if path.is_dir() else path
         data = read_json(path)
@@ -249,7 +249,7 @@ class System:
         (folder / FILE).write_text(json.dumps(data, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
 
     def values(self, p=None):
-        """Values of all parameters as a dictionary. Throws Error for an unknown name and for a value outside the range, if the file has one."""
+        """Values of all parameters as a dictionary. Raises Error for an unknown name and for a value outside the range, if the file has one."""
         values = {name: parameter.value for name, parameter in self.parameters.items()}
         for name, value in (p or {}).items():
             if name not in values:

@@ -55,7 +55,7 @@ class VtuFile:
         return list(zip(values[0::3], values[1::3], values[2::3])) if data.get("NumberOfComponents") == "3" else values
 
     def field(self, name):
-        """A point field as an array. Throws Error if there is none."""
+        """A point field as an array. Raises Error if there is none."""
         import numpy
 
         if name not in self.fields:

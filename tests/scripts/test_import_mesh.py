@@ -137,11 +137,11 @@ class ImportMesh(unittest.TestCase):
                                  ("brake.msh", '(0 "Fluent")\n(2 3)\n', "Fluent"), ("brake.dato", "$ENTER COMPONENT NAME=DFLT_COMP\n$STRUCTURE\n$COOR\n", "Permas")):
             (self.folder / file).write_text(text, encoding="utf-8")
             process = self.imports(file)
-            self.assertEqual(process.stderr, f"error: meshes of {what} are not read\n  where:  {file}\n"
+            self.assertEqual(process.stderr, f"error: {what} meshes are not supported\n  where:  {file}\n"
                              "  change: export .inp (Abaqus) or .bdf (Nastran) in the pre-processor\n")
         for file in ("broken.exo", "broken.med", "broken.vtk"):
             (self.folder / file).write_text("no mesh", encoding="utf-8")
-            self.assertIn("  change: write it anew", self.imports(file).stderr)
+            self.assertIn("  change: export it again", self.imports(file).stderr)
 
 
 if __name__ == "__main__":

@@ -8,19 +8,19 @@ import re
 from squeal.errors import Error
 from squeal.importing.mesh_shapes import faces_of, read_text, shape_of
 
-# Keywords that make or move nodes and elements in ways that are not read
+# Unsupported keywords that generate or move nodes and elements
 GENERATORS = ("NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY", "SYSTEM", "IMPORT", "SYMMETRIC MODEL GENERATION", "IMPERFECTION")
 WITHOUT_PARTS = "write the input file with `Do not use parts and assemblies in input files`"
 
 
 def split(line):
-    """Words between commas that stand in no quotes."""
+    """Words separated by commas outside quotes."""
     words = re.split(r',(?=(?:[^"]*"[^"]*")*[^"]*$)', line) if '"' in line else line.split(",")
     return [word.strip() for word in words]
 
 
 def axes_of(options, rows):
-    """A vector along axis 1 and one in the plane of axes 1 and 2, () of cylindrical axes about z, None of others."""
+    """Vectors along axis 1 and in the plane of axes 1 and 2; () for cylindrical axes about z, None for unsupported axes."""
     points, angles = [float(word or 0) for word in rows[0]], [float(word or 0) for row in rows[1:] for word in row[1:]]
     a, b, c = ((points + [0.0] * 9)[i:i + 3] for i in (0, 3, 6))
     if options.get("DEFINITION", "COORDINATES") == "COORDINATES" and not any(angles):
@@ -32,9 +32,10 @@ def axes_of(options, rows):
 
 
 class AbaqusInput:
-    """points: label -> coordinates; elements: label -> (shape, labels of nodes); element_sets, node_sets: name -> labels;
-    surfaces: name -> [(label of an element, number of its face from 0)]; materials: label of an element -> (constants, rho, axes), as they stand
-    there, or None if that is not all; constants: E, nu, or nine engineering constants; axes: of axes_of(); dropped: what was not read. Names are in capitals, as Abaqus takes them."""
+    """points: label -> coordinates; elements: label -> (shape, node labels); element_sets, node_sets: name -> labels; surfaces: name ->
+    [(element label, face index)]; materials: element label -> (constants, rho, axes) in the units of the file, None if incomplete;
+    constants: E, nu, or nine engineering constants; axes: as returned by axes_of(); dropped: descriptions of what was not imported. Names
+    are in capitals, since Abaqus ignores case."""
 
     def __init__(self, path):
         self.points, self.elements, self.element_sets, self.node_sets = {}, {}, {}, {}
@@ -47,7 +48,7 @@ class AbaqusInput:
             sets.update({name: self._labels(sets, known, name) for name in sets})
         faces = {name: [face for entry in entries for face in self._faces(name, *entry)] for name, entries in self.surfaces.items()}
         self.surfaces = {name: members for name, members in faces.items() if None not in members}
-        self.dropped += [f"surface {name}, which has edges, or faces of elements that are not read" for name in faces if name not in self.surfaces]
+        self.dropped += [f"surface {name}, which has edges or faces of unsupported elements" for name in faces if name not in self.surfaces]
         for elements, material, orientation in self._sections:
             properties = self._properties.get(material, {})
             is_isotropic = len(properties.get("constants", ())) == 2
@@ -60,17 +61,17 @@ class AbaqusInput:
         return Error(what, where or self._path, change)
 
     def _lines(self, path, above=()):
-        """(where, line) of a file and of those that it includes, without comments; a keyword line that ends in a comma goes on in the next."""
+        """(where, line) of a file and its includes, without comments; joins keyword lines that end in a comma with the next line."""
         if path in above or not path.is_file():
-            what = "includes itself" if path in above else "is not there"
-            raise self._refused(f"{path}, which is to be included, {what}", "put it beside the file")
+            what = "includes itself" if path in above else "is missing"
+            raise self._refused(f"the included file {path} {what}", "correct the INPUT parameter, or put the file there")
         begun = ""
         for number, line in enumerate(read_text(path).split("\n"), 1):
             line = line.strip()
             if line.startswith("**") or not line:
                 continue
             if begun and line.startswith("*"):
-                raise self._refused("the keyword line before ends in a comma", "take the comma away", f"{path}, line {number}")
+                raise self._refused("the previous keyword line ends in a comma", "remove the comma", f"{path}, line {number}")
             begun += line
             if line.endswith(",") and begun.startswith("*"):
                 continue
@@ -117,27 +118,27 @@ class AbaqusInput:
             if "GENERATE" in options:
                 members = [range(int(row[0]), int(row[1]) + 1, *map(int, filter(None, row[2:]))) for row in rows]
                 if any(not member or member.step < 0 for member in members):
-                    raise ValueError("a range runs backwards")
+                    raise ValueError("a range is descending")
             else:
                 members = [self._member(word) for row in rows for word in row if word]
-            # A node set may be that of the nodes of a set of elements
+            # A node set may be defined by an element set
             members += [(options["ELSET"],)] if keyword == "NSET" and "ELSET" in options else []
             self._add(self.node_sets if keyword == "NSET" else self.element_sets, options[keyword], members)
         elif keyword == "SURFACE" and options.get("TYPE", "ELEMENT") in ("ELEMENT", "NODE") and not {"COMBINE", "CROP"} & options.keys():
             sets = self.node_sets if options.get("TYPE") == "NODE" else self.surfaces
             new = [self._member(row[0]) for row in rows] if sets is self.node_sets else [(self._member(row[0]), *row[1:2]) for row in rows]
             if options["NAME"] in sets and not (sets is self.node_sets and new == [options["NAME"]]):
-                raise self._refused(f"surface {options['NAME']} is there twice, or is also a set of nodes", "rename one of them")
+                raise self._refused(f"surface {options['NAME']} is defined twice, or is also a node set", "rename one of them")
             sets.setdefault(options["NAME"], new)
         elif keyword == "SURFACE":
-            self.dropped.append(f"surface {options['NAME']}, which is neither of faces nor of nodes")
+            self.dropped.append(f"surface {options['NAME']}, which consists neither of faces nor of nodes")
         elif keyword == "SOLID SECTION":
             self._sections.append((options["ELSET"], options.get("MATERIAL"), options.get("ORIENTATION")))
         elif keyword == "ORIENTATION":
             self._axes[options["NAME"]] = axes_of(options, rows)
         elif keyword == "MATERIAL":
             if options["NAME"] in self._properties:
-                raise ValueError(f"{options['NAME']} is there twice")
+                raise ValueError(f"{options['NAME']} is defined twice")
             self._material = options["NAME"]
             self._properties[self._material] = {}
         elif keyword == "ELASTIC" and options.get("TYPE", "ISOTROPIC") in ("ISOTROPIC", "ISO") and len(rows) == 1:
@@ -164,7 +165,7 @@ class AbaqusInput:
     def _add_unique(self, known, new, what, sets, name):
         for label, value in new:
             if label in known:
-                raise self._refused(f"{what} {label} is there twice, as in parts with numbers of their own", WITHOUT_PARTS)
+                raise self._refused(f"{what} {label} is defined twice, as in parts with separate numbering", WITHOUT_PARTS)
             known[label] = value
         if name:
             self._add(sets, name, [label for label, _ in new])
@@ -175,22 +176,22 @@ class AbaqusInput:
         sets.setdefault(name, []).extend(members)
 
     def _member(self, word):
-        """A label or the name of a set, without that of the instance."""
+        """A label or a set name, without the instance name."""
         word = word.upper().removeprefix(self._instance)
         return int(word) if word.isdigit() else word
 
     def _known(self, sets, name, where):
         if name not in sets:
-            raise self._refused(f"{where} names `{name}`, which is not in the file", "write it out, or take the name away")
+            raise self._refused(f"{where} names `{name}`, which is not in the file", "define it, or remove the reference")
         return sets[name]
 
     def _labels(self, sets, known, name, above=()):
-        """Labels of a set, of the sets that it names, and of its ranges, in which numbers may be missing."""
+        """Labels of a set, including its member sets and its ranges, which may have gaps."""
         labels = {}
         for member in self._known(sets, name, f"set {above[-1] if above else name}"):
             if isinstance(member, str):
                 if member in above or member == name:
-                    raise self._refused(f"set {name} is part of itself", "write its members out")
+                    raise self._refused(f"set {name} contains itself", "list its members")
                 member = self._labels(sets, known, member, (*above, name))
             elif isinstance(member, tuple):
                 member = [node for element in self._known(self.element_sets, member[0], f"set {name}") for node in self.elements[element][1]]

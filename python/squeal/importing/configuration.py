@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Reads what the user writes about an import, in YAML or JSON."""
+"""Reads the configuration of an import from YAML or JSON."""
 
 import json
 import pathlib
@@ -9,7 +9,7 @@ from squeal.errors import Error
 
 
 def read_json(path):
-    """The content of a JSON file, in which no name of an object may appear twice."""
+    """The content of a JSON file; duplicate names in an object are rejected."""
     def without_repetition(pairs):
         names = [name for name, _ in pairs]
         if repeated := next((name for name in names if names.count(name) > 1), None):
@@ -25,13 +25,13 @@ def read_json(path):
 
 
 def read_yaml(path, what):
-    """The content of a YAML or JSON file; keys that appear twice are rejected, yaml would take the last."""
+    """The content of a YAML or JSON file; duplicate keys, of which yaml would keep the last, are rejected."""
     import yaml
 
     class Loader(yaml.SafeLoader):
         def construct_mapping(self, node, deep=False):
             if len({key.value for key, _ in node.value}) < len(node.value):
-                raise ValueError(f"a name stands there twice{node.start_mark}")
+                raise ValueError(f"a name appears twice{node.start_mark}")
             return super().construct_mapping(node, deep)
 
     try:

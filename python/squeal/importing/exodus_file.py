@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Reads nodes, element blocks, side sets and node sets of an Exodus II file, of which meshio reads neither names of blocks nor side sets."""
+"""Reads nodes, element blocks, side sets and node sets of an Exodus II file; meshio reads neither block names nor side sets."""
 
 import re
 
@@ -14,20 +14,20 @@ SHAPES = {"HEX": SOLIDS, "TET": SOLIDS, "WED": SOLIDS, "PYR": SOLIDS, "QUA": SHE
 
 
 def face_number(shape, side):
-    """Number of a face in faces_of(), for a side from 1 of a solid: sides begin with those that stand on the base."""
+    """Index in faces_of() of side 1, 2, ... of a solid; Exodus numbers the lateral sides first."""
     return (side - 1 + (2 if shape.startswith(("hexahedron", "wedge")) else 1)) % len(faces_of(shape))
 
 
 class ExodusFile:
-    """points, elements, element_sets, node_sets, surfaces, materials and dropped as of AbaqusInput; elements by their place in the file. Sets
-    without a name are called block_3, sideset_3, nodeset_3 by their ID."""
+    """Attributes as in AbaqusInput; elements are numbered in the order of the file. Unnamed sets are called block_3, sideset_3 or nodeset_3
+    after their ID."""
 
     def __init__(self, path):
         self.elements, self.element_sets, self.surfaces, self.materials, self.dropped = {}, {}, {}, {}, []
         try:
             self._read(path)
         except (OSError, RuntimeError, AttributeError, LookupError, ValueError) as error:
-            raise Error(f"this Exodus file cannot be read ({error!r})", path, "write it anew") from error
+            raise Error(f"this Exodus file cannot be read ({error!r})", path, "export it again") from error
 
     def _read(self, path):
         import netCDF4
@@ -52,7 +52,7 @@ class ExodusFile:
             self.surfaces[name] = [(element, face_number(self.elements[element][0], side)) for element, side in solids]
 
     def _sets(self, kind, what, variable):
-        """(name, variable of its members) of the sets that have some."""
+        """(name, variable of the members) of the nonempty sets."""
         names = [b"".join(row).decode("utf-8", "replace").strip("\0 ") for row in self._variables.get(f"{kind}_names", [])]
         for number, identity in enumerate(self._variables.get(f"{kind}_prop1", []), 1):
             if f"{variable}{number}" in self._variables:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""A mesh of another pre-processor, from its own input file or from what meshio reads."""
+"""A mesh of another pre-processor, read from its input file or by meshio."""
 
 import contextlib
 import io
@@ -16,16 +16,16 @@ from squeal.importing.nastran_input import NastranInput
 
 UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "in": 0.0254}
 READERS = {".inp": AbaqusInput, **dict.fromkeys((".bdf", ".nas", ".fem", ".dat"), NastranInput), **dict.fromkeys((".e", ".exo", ".ex2"), ExodusFile)}
-# How files of Ansys, Fluent and Permas begin, whatever they are called
+# First lines of Ansys, Fluent and Permas files, whose suffixes vary
 NOT_READ = rb"(?im)^\s*(?P<Ansys>/prep7|/com\b|nblock,)|\A\s*(?P<Fluent>\()|^\s*(?P<Permas>\$enter component|\$coor\b)"
-# meshio leaves these in Gmsh's order; their middle nodes of faces are left out, squeal adds them
+# meshio keeps Gmsh's node order for these; mid-face nodes are dropped, since squeal adds them
 GMSH_ORDER = {"wedge18": ("wedge15", (0, 1, 2, 3, 4, 5, 6, 9, 7, 12, 14, 13, 8, 10, 11)),
               "pyramid14": ("pyramid13", (0, 1, 2, 3, 4, 5, 8, 10, 6, 7, 9, 11, 12))}
 
 
 class ForeignMesh:
-    """points (n x 3); elements: [(shape, nodes)], shells and what is not read among them; element_sets, node_sets: name -> numbers; faces: name ->
-    tuples of nodes; materials: number of an element -> as of AbaqusInput; dropped: what was not understood."""
+    """points (n x 3); elements: [(shape, nodes)], including shells and unsupported types; element_sets, node_sets: name -> indices;
+    faces: name -> tuples of nodes; materials: element index -> as in AbaqusInput; dropped: descriptions of what was not imported."""
 
     def __init__(self):
         self.points, self.elements, self.dropped = np.empty((0, 3)), [], []
@@ -35,7 +35,7 @@ class ForeignMesh:
         return len(faces_of(self.elements[number][0])) > 1
 
     def shells(self, name):
-        """Their corners, of those in a set of elements."""
+        """Corner nodes of the shells in a set of elements."""
         elements = (self.elements[number] for number in self.element_sets.get(name, []))
         return [tuple(nodes[i] for i in faces_of(shape)[0]) for shape, nodes in elements if len(faces_of(shape)) == 1]
 
@@ -44,7 +44,7 @@ def from_input_file(source, path):
     for what, label, nodes in [*(("element", label, nodes) for label, (_, nodes) in source.elements.items()),
                                *(("node set", name, nodes) for name, nodes in source.node_sets.items())]:
         if unknown := next((node for node in nodes if node not in source.points), None):
-            raise Error(f"{what} {label} has node {unknown}, which is not in the file", path, "write all nodes into one file")
+            raise Error(f"{what} {label} has node {unknown}, which is not in the file", path, "write all nodes to one file")
     mesh = ForeignMesh()
     mesh.points = np.array(list(source.points.values()))
     node = {label: number for number, label in enumerate(source.points)}
@@ -61,17 +61,17 @@ def from_input_file(source, path):
 
 
 def with_meshio(action, path):
-    """What meshio returns, and what it says meanwhile."""
+    """Return value and printed output of a call to meshio."""
     said = io.StringIO()
     try:
         with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said), np.errstate(all="ignore"):
             import meshio
             return action(meshio), said.getvalue().strip()
     except ImportError as error:
-        raise Error(f"{error.name} is missing", path, "apt-get install python3-meshio, or what is missing") from error
-    except (Exception, SystemExit) as error:  # of a broken file its readers raise whatever comes
+        raise Error(f"{error.name} is missing", path, "apt-get install python3-meshio, or the missing module") from error
+    except (Exception, SystemExit) as error:  # meshio's readers raise arbitrary exceptions for broken files
         what = " ".join(f"{said.getvalue()} {error!r}".split())
-        raise Error(f"meshio fails: {what}", path, "write it anew, or in another format") from error
+        raise Error(f"meshio fails: {what}", path, "export it again, or in another format") from error
 
 
 def from_meshio(path):
@@ -79,7 +79,7 @@ def from_meshio(path):
     mesh = ForeignMesh()
     mesh.points = np.asarray(source.points, dtype=float)
     mesh.dropped = [" ".join(said.split())] if said else []
-    # Of Gmsh's names: tag, dimension
+    # Gmsh's field_data: name -> (tag, dimension)
     names = {(int(value[1]), int(value[0])): [name] for name, value in source.field_data.items() if np.size(value) == 2}
     for index, block in enumerate(source.cells):
         first = len(mesh.elements)
@@ -96,12 +96,12 @@ def from_meshio(path):
                 for value in np.unique(values):
                     alone = [str(value) if is_set else f"{key}:{value}"]
                     for name in names.get((block.dim, value)) or getattr(source, "cell_tags", {}).get(value) or alone:
-                        # A group of MED is that of several values
+                        # A MED group may have several tags
                         members[name] = np.union1d(members.get(name, []), np.flatnonzero(values == value))
         for name, numbers in members.items():
             mesh.element_sets.setdefault(name, []).extend(first + int(number) for number in numbers)
     if any(not 0 <= node < len(mesh.points) for _, nodes in mesh.elements for node in nodes):
-        raise Error("elements have nodes that are not in the file", path, "write all nodes out")
+        raise Error("elements have nodes that are not in the file", path, "export all nodes")
     mesh.node_sets = {name: [int(node) for node in nodes] for name, nodes in source.point_sets.items()}
     for value, names in getattr(source, "point_tags", {}).items():
         for name in names:
@@ -112,6 +112,6 @@ def from_meshio(path):
 def read(path):
     with path.open("rb") as file:
         if begin := re.search(NOT_READ, file.read(100_000)):
-            raise Error(f"meshes of {begin.lastgroup} are not read", path, "export .inp (Abaqus) or .bdf (Nastran) in the pre-processor")
+            raise Error(f"{begin.lastgroup} meshes are not supported", path, "export .inp (Abaqus) or .bdf (Nastran) in the pre-processor")
     reader = READERS.get(path.suffix.lower())
     return from_input_file(reader(path), path) if reader else from_meshio(path)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Reads matrices from files of other programs: entries by row and column, or by the nodes and their dofs."""
+"""Reads matrices from files of other programs, with entries by row and column or by node and dof."""
 
 import dataclasses
 
@@ -12,14 +12,14 @@ from squeal.errors import Error
 from squeal.importing import nastran_input
 from squeal.importing.mesh_shapes import read_text
 
-# Stiffness that Abaqus adds on the diagonal where a dof is held
+# Diagonal stiffness by which Abaqus fixes a dof
 HELD = 1e36
 
 
 @dataclasses.dataclass
 class Entries:
-    """Entries of a matrix: rows and columns from 0 and the `shape`, or labels (node, dof) where `shape` is None; is_half: the other triangle of
-    the symmetric matrix is not in the file, None if unknown."""
+    """Entries of a matrix: rows and columns from 0 with the `shape`, or labels (node, dof) if `shape` is None; is_half: the file has only one
+    triangle of the symmetric matrix, None if unknown."""
 
     rows: np.ndarray
     columns: np.ndarray
@@ -30,13 +30,13 @@ class Entries:
     @classmethod
     def of(cls, matrix, path):
         if not sparse.issparse(matrix) and np.ndim(matrix) != 2 or matrix.dtype.kind not in "fiub":
-            raise Error(f"this is no real matrix, but {np.ndim(matrix)}-dimensional of type {matrix.dtype}", path, "write a real matrix")
+            raise Error(f"this is not a real matrix but {np.ndim(matrix)}-dimensional of type {matrix.dtype}", path, "write a real matrix")
         matrix = sparse.coo_matrix(matrix)
         return cls(matrix.row, matrix.col, matrix.data.astype(float), matrix.shape, False)
 
 
 def choose(found, variable, path):
-    """The matrix of a name, or the only one."""
+    """The matrix called `variable`, or the only one if that is None."""
     if variable is None and len(found) == 1:
         return next(iter(found.values()))
     if variable not in found:
@@ -54,18 +54,18 @@ def read_matlab(path, variable):
 
 
 def read_hdf5(path, variable):
-    """A matrix of a .mat file of version 7.3: dense ones are stored by columns, sparse ones as a group."""
+    """A matrix of a .mat file of version 7.3, which stores dense matrices by columns and sparse ones as a group."""
     try:
         import h5py
     except ImportError as error:
-        raise Error("this is a .mat file of version 7.3 (HDF5), and Python has no h5py", path,
+        raise Error("this is a .mat file of version 7.3 (HDF5), and h5py is not installed", path,
                     "apt-get install python3-h5py, or write save(..., '-v7') in MATLAB") from error
     with h5py.File(path) as file:
         found = choose({name: value for name, value in file.items() if not name.startswith("#")}, variable, path)
         if isinstance(found, h5py.Dataset):
             return found[()].T
         if not {"data", "ir", "jc"} <= found.keys():
-            raise Error(f"`{variable}` is no matrix", path, "write a numeric matrix")
+            raise Error(f"`{variable}` is not a matrix", path, "write a numeric matrix")
         columns = found["jc"][()].astype(int)
         return sparse.csc_matrix((found["data"][()], found["ir"][()].astype(int), columns), (int(found.attrs["MATLAB_sparse"]), len(columns) - 1))
 
@@ -78,13 +78,13 @@ def read_numpy(path, variable):
 
 
 def read_text_matrix(path, variable):
-    """Matrix Market, or the text of Abaqus' *MATRIX OUTPUT."""
+    """A Matrix Market file or the text of Abaqus' *MATRIX OUTPUT."""
     text = read_text(path)
     return Entries.of(scipy.io.mmread(path), path) if text.startswith("%%MatrixMarket") else read_abaqus(path, text)
 
 
 def read_abaqus(path, text):
-    """Lines of node, dof, node, dof, value, or of row, column, value. A symmetric matrix has one triangle in the first form."""
+    """Lines `node, dof, node, dof, value` or `row, column, value`; the first form has one triangle of a symmetric matrix."""
     places = [number for number, line in enumerate(text.split("\n"), 1) if line.strip() and not line.lstrip().startswith(("*", "%", "#"))]
     lines = text.replace(",", " ").replace("D", "E").split("\n")
     width = len(lines[places[0] - 1].split()) if places else 0
@@ -92,19 +92,19 @@ def read_abaqus(path, text):
         raise Error("this is neither node, dof, node, dof, value nor row, column, value", path,
                     "write *MATRIX OUTPUT, FORMAT=MATRIX INPUT or FORMAT=COORDINATE in Abaqus")
     if bad := next((number for number in places if not is_entry(lines[number - 1].split(), width)), None):
-        raise Error(f"`{lines[bad - 1].strip()}` is not as in the lines above", f"{path}, line {bad}", "write the matrix anew")
+        raise Error(f"`{lines[bad - 1].strip()}` differs from the form of the lines above", f"{path}, line {bad}", "export it again")
     table = np.loadtxt([lines[number - 1] for number in places], ndmin=2, comments=None)
     numbers, values = table[:, :-1].astype(int), table[:, -1]
     if width == 5:
         return Entries(numbers[:, :2], numbers[:, 2:], values)
-    if (numbers <= 0).any():  # of internal nodes
+    if (numbers <= 0).any():  # internal nodes
         labels = [np.column_stack([column, np.zeros(len(column), dtype=int)]) for column in numbers.T]
         return Entries(*labels, values)
     return Entries(numbers[:, 0] - 1, numbers[:, 1] - 1, values, (numbers.max(), numbers.max()))
 
 
 def is_entry(words, width):
-    """Whether these are so many integers and a number."""
+    """Whether these are `width` - 1 integers and a number."""
     try:
         return len(words) == width and bool([*map(int, words[:-1]), float(words[-1])])
     except ValueError:
@@ -112,7 +112,7 @@ def is_entry(words, width):
 
 
 def read_dmig(path, variable):
-    """A real square matrix of DMIG cards. Form 6 is symmetric with one triangle in the file."""
+    """A real square matrix from DMIG cards; form 6 is symmetric, with one triangle in the file."""
     headers, found = {}, {}
     for line, (card, name, *fields) in nastran_input.cards(path):
         if card != "DMIG":
@@ -142,7 +142,7 @@ def read_output4(path, variable):
     try:
         from pyNastran.op4.op4 import OP4
     except ImportError as error:
-        raise Error("reading OUTPUT4 needs pyNastran, which Python does not have", path,
+        raise Error("reading OUTPUT4 requires pyNastran, which is not installed", path,
                     "pip install pyNastran, or write the matrix as DMIG (PARAM,EXTOUT,DMIGPCH)") from error
     found = OP4(log=None, debug=False).read_op4(str(path))
     form_and_matrix = choose(found, variable, path)
@@ -161,7 +161,7 @@ ENDINGS = {".mat": "matlab", ".npy": "numpy", ".npz": "numpy", ".mtx": "text", "
 
 
 def read(path, variable=None, form=None):
-    """The entries of a matrix; its format follows from the ending of the file or is given. Throws Error."""
+    """Entries of a matrix in the format `form`, by default that of the file's suffix. Raises Error."""
     if not path.is_file():
         raise Error("the file is missing", path, "check its name")
     form = form or ENDINGS.get(path.suffix.lower())
@@ -171,16 +171,16 @@ def read(path, variable=None, form=None):
         return READERS[form](path, variable)
     except (Error, OSError):
         raise
-    except Exception as problem:  # of a broken file its readers raise whatever comes
+    except Exception as problem:  # readers raise arbitrary exceptions for broken files
         raise Error(f"the file cannot be read: {' '.join(str(problem).split()) or type(problem).__name__}", path,
-                    f"write it anew, or give its `format`, one of: {', '.join(READERS)}") from problem
+                    f"export it again, or give its `format`, one of: {', '.join(READERS)}") from problem
 
 
 class Numbering:
-    """Rows of the labels (node, dof) of all matrices, by node and dof, internal (negative) nodes last; none where matrices have rows."""
+    """Numbers the labels (node, dof) of all matrices by node and dof, internal (negative) nodes last; `labels` is None without any."""
 
     def __init__(self, matrices):
-        """matrices: pairs of where and Entries, whose labels become rows, -1 for held dofs. Throws Error where only some have labels or sizes differ."""
+        """matrices: pairs (source, Entries), whose labels become rows, -1 for fixed dofs. Raises Error if only some have labels."""
         self.labels, self.held = None, []
         with_labels = [where for where, entries in matrices if entries.shape is None]
         if with_labels and len(with_labels) < len(matrices):
@@ -207,13 +207,13 @@ class Numbering:
             entries.rows, entries.columns = new[own], new[other]
 
     def matrix(self, entries, symmetry, where):
-        """The sparse matrix, with both triangles. Throws Error where one is missing and no symmetry says what it is."""
+        """The sparse matrix with both triangles. Raises Error if one is missing and no symmetry is given."""
         rows, columns, values = entries.rows, entries.columns, entries.values
         if self.labels is not None:
             kept = (rows >= 0) & (columns >= 0)
             rows, columns, values = rows[kept], columns[kept], values[kept]
         shape = (self.size, self.size)
-        # Coordinates end with the last row that has entries
+        # In the form row, column, value, trailing rows without entries are unknown
         shape = shape if self.labels is not None or entries.is_half is None else entries.shape
         matrix = sparse.csr_matrix((values, (rows, columns)), shape)
         other = sparse.csr_matrix((np.ones(len(rows)), (columns, rows)), shape)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""A mesh of another pre-processor as a .msh of squeal: which sets become volumes and faces, and a parameter file."""
+"""Converts a mesh of another pre-processor to a .msh with named volumes and faces, and writes a parameter file."""
 
 import collections
 import os
@@ -15,7 +15,7 @@ from squeal.importing.configuration import read_yaml
 from squeal.importing.foreign_mesh import UNITS, read, with_meshio
 from squeal.importing.mesh_shapes import faces_of, middle_nodes
 
-STRESS_AND_DENSITY = {"m": (1.0, 1.0), "mm": (1e6, 1e12)}  # Pa and kg/m^3 of the unit systems N, m, kg, s and N, mm, t, s
+STRESS_AND_DENSITY = {"m": (1.0, 1.0), "mm": (1e6, 1e12)}  # factors to Pa and kg/m^3 from N, m, kg, s and N, mm, t, s
 FACES = {3: "triangle", 4: "quad", 6: "triangle6", 8: "quad8"}  # by the number of nodes
 SURFACES = ("disc_contact", "pin_contact", "pin_clamp", "pin_side", "disc_bore", "disc_rim")
 PLAUSIBLE = (0.05, 1.5)  # extent of a brake [m]
@@ -33,7 +33,7 @@ def is_of_disc(name):
 
 
 def is_volume(name):
-    """Of sets that are volumes without being named by the user."""
+    """Whether a set of this name becomes a volume by default."""
     return name.lower() == "disc" or name.lower().startswith("pin_") and not is_surface(name)
 
 
@@ -42,14 +42,14 @@ def is_surface(name):
 
 
 def chosen(given, sets, what, is_known, path):
-    """name of squeal -> names of the file: those given, and those that are called so already."""
+    """Name in squeal -> names in the file: those given, and those that need no renaming."""
     result = {}
     for name, members in given.items():
         for member in members:
             found = [member] if member in sets else [other for other in sets if other.lower() == member.lower()]
             if len(found) != 1:
-                raise Error(f"there is no {what} `{member}`" if not found else f"`{member}` may be {' or '.join(found)}", path,
-                            f"name some of: {', '.join(sorted(sets)) or '(none)'}")
+                raise Error(f"there is no {what} `{member}`" if not found else f"`{member}` is ambiguous: {' or '.join(found)}", path,
+                            f"choose from: {', '.join(sorted(sets)) or '(none)'}")
             result.setdefault(name, []).extend(found)
     used = {member for members in result.values() for member in members}
     for name in sorted(sets):
@@ -59,7 +59,7 @@ def chosen(given, sets, what, is_known, path):
 
 
 class Import:
-    """The volumes and faces that were asked for, of one mesh."""
+    """The requested volumes and faces of a mesh."""
 
     def __init__(self, mesh, volumes, surfaces, path):
         self.mesh, self.path, self.volume_of, self.left = mesh, path, {}, list(mesh.dropped)
@@ -67,11 +67,11 @@ class Import:
         self.volumes = chosen(volumes, solids, "set of solids", is_volume, path)
         if not any(map(is_of_disc, self.volumes)):
             raise Error("no set of elements becomes the disc", path,
-                        f"say --volume disc=SET with some of: {', '.join(sorted(solids)) or '(none)'}")
+                        f"use --volume disc=SET with sets from: {', '.join(sorted(solids)) or '(none)'}")
         for name, member in ((name, member) for name, members in self.volumes.items() for member in members):
             for number in mesh.element_sets[member]:
                 if not faces_of(mesh.elements[number][0]):
-                    raise Error(f"`{member}` has elements of type {mesh.elements[number][0]}, which are not read", path,
+                    raise Error(f"`{member}` has elements of type {mesh.elements[number][0]}, which are not supported", path,
                                 "name sets without them")
                 if mesh.is_solid(number) and self.volume_of.setdefault(number, name) != name:
                     raise Error(f"elements of `{member}` are in volumes {self.volume_of[number]} and {name}", path,
@@ -86,7 +86,7 @@ class Import:
         self.is_quadratic = any(middle_nodes(*mesh.elements[number]) for number in self.volume_of)
 
     def _outer_faces(self):
-        """Corners in ascending order -> corners and middle nodes, of faces that belong to one element only."""
+        """Sorted corners -> corners and mid-side nodes, of the faces that belong to one element only."""
         found = collections.defaultdict(list)
         for number in self.volume_of:
             shape, nodes = self.mesh.elements[number]
@@ -96,27 +96,27 @@ class Import:
                 edges = zip(corners, (*corners[1:], corners[0])) if middle else ()
                 found[tuple(sorted(corners))].append(corners + tuple(middle[frozenset(edge)] for edge in edges))
         if any(len(faces) > 2 for faces in found.values()):
-            raise Error("more than two elements share a face", self.path, "take away elements that are there twice")
+            raise Error("more than two elements share a face", self.path, "remove duplicate elements")
         return {key: faces[0] for key, faces in found.items() if len(faces) == 1}
 
     def _faces_of(self, name, member):
-        """Those on the outside, as keys of `outer`."""
+        """Faces of a set on the boundary, as keys of `outer`."""
         found = [{tuple(sorted(face)) for face in faces} for faces in (self.mesh.faces.get(member), self.mesh.shells(member)) if faces]
         if nodes := set(self.mesh.node_sets.get(member, ())):
             found.append({key for key in self.outer if nodes.issuperset(key)})
             if len(found) == 1 and (alone := len(nodes & {node for key in self.outer for node in key} - {node for key in found[0] for node in key})):
-                self.left.append(f"{alone} nodes of {member} on the outside, where not all corners of a face are in the set")
+                self.left.append(f"{alone} boundary nodes of {member} that do not form a complete face")
         outside = [sorted(keys & self.outer.keys()) for keys in found] or [[]]
         if any(other != outside[0] for other in outside):
             raise Error(f"`{member}` names different faces as a surface and as a set", self.path, "rename one of them")
         if not outside[0]:
-            raise Error(f"`{member}` has no face on the outside of the volumes", self.path, f"name faces of these for {name}")
+            raise Error(f"`{member}` has no face on the boundary of the volumes", self.path, f"choose boundary faces for {name}")
         if inside := len(found[0]) - len(outside[0]):
-            self.left.append(f"{inside} faces of {member} that are not on the outside of a volume")
+            self.left.append(f"{inside} faces of {member} that are not on the boundary of a volume")
         return outside[0]
 
     def write(self, path, scale):
-        """Gmsh's format 2.2, where an element that bears several names stands several times."""
+        """Writes Gmsh's format 2.2; an element with several names is written once for each."""
         order = sorted(self.volume_of)
         used = sorted({node for number in order for node in self.mesh.elements[number][1]})
         new = {node: number for number, node in enumerate(used)}
@@ -152,7 +152,7 @@ class Import:
         return "\n".join(lines + [f"  left out: {what}" for what in self.left])
 
     def materials(self, unit):
-        """Volume -> constants, rho, axes in SI, of volumes all of whose elements have the same, in units that are known."""
+        """Volume -> (constants, rho, axes) in SI units, for volumes of one material in known units."""
         found, (stress, density) = {}, STRESS_AND_DENSITY.get(unit, (0.0, 0.0))
         for name in self.volumes:
             known = {self.mesh.materials.get(number) for number, volume in self.volume_of.items() if volume == name}
@@ -161,13 +161,13 @@ class Import:
                 is_modulus = (1, 0) if axes is None else (1, 1, 1, 0, 0, 0, 1, 1, 1)
                 found[name] = tuple(x * stress if scaled else x for x, scaled in zip(constants, is_modulus)), rho * density, axes
             elif self.mesh.materials:
-                self.left.append(f"material of {name}: not one that is isotropic or of engineering constants in straight axes or cylindrical ones about z, "
-                                 "at one temperature, with a density in N, mm, t, s or SI")
+                self.left.append(f"material of {name}: not a single isotropic material, or engineering constants in Cartesian axes or in "
+                                 "cylindrical axes about z, at one temperature, with a density in SI or N, mm, t, s")
         return found
 
 
 def parameter_file(mesh_file, result, materials, contact, mounts):
-    """A study of the brake; what was not given and is not known by its name is a comment to fill in."""
+    """Parameter file of the brake; unknown contact pairs and mounts are comments to fill in."""
     def section(name, *lines):
         return f"subsection {name}\n" + "".join(f"  {line}\n" for line in lines) + "end\n"
 
@@ -203,12 +203,12 @@ def parameter_file(mesh_file, result, materials, contact, mounts):
 
 
 def names_of(arguments):
-    """Volumes, surfaces, contact, mounts and unit of the command line and of --names."""
+    """Volumes, surfaces, contact, mounts and unit from the command line and the file --names."""
     given = read_yaml(arguments.names, 'names') if arguments.names else {}
     if not (isinstance(given, dict) and given.keys() <= {"unit", "volumes", "surfaces", "contact", "mounts"} and
             all(isinstance(given.get(key, {}), dict) for key in ("volumes", "surfaces")) and
             all(isinstance(given.get(key, []), list) and all(isinstance(entry, str) for entry in given.get(key, [])) for key in ("contact", "mounts"))):
-        raise Error("the names are not those of unit, volumes, surfaces, contact and mounts", arguments.names,
+        raise Error("the file does not consist of unit, volumes, surfaces, contact and mounts", arguments.names,
                     'write {unit: mm, volumes: {disc: [ROTOR]}, surfaces: {}, contact: [disc_top / pad_face], mounts: ["pad_back: 0, 0, 1e10"]}')
     result = []
     for key, words, is_known in (("volumes", arguments.volume, is_volume), ("surfaces", arguments.surface, is_surface)):
@@ -227,13 +227,13 @@ def names_of(arguments):
 
 
 def check_entries(entries, parse, surfaces, what, path):
-    """Refuses entries of Contact/Pairs or Mounts/Elastic mounts that have other names than those of the surfaces."""
+    """Rejects entries of Contact/Pairs or Mounts/Elastic mounts with unknown surfaces."""
     for entry in entries:
         match = re.fullmatch(parse, entry)
         unknown = [name for name in match.groups() if name not in surfaces] if match else [""]
         if unknown:
-            raise Error(f"`{entry}` names no surface" + (f", there is no `{unknown[0]}`" if match else f" in the form `{what}`"), path,
-                        f"write, e.g., `{what}` with some of: {', '.join(surfaces) or '(none)'}")
+            fault = f"contains the unknown surface `{unknown[0]}`" if match else f"does not have the form `{what}`"
+            raise Error(f"`{entry}` {fault}", path, f"write, e.g., `{what}` with surfaces from: {', '.join(surfaces) or '(none)'}")
 
 
 def run(arguments):
@@ -245,7 +245,7 @@ def run(arguments):
     if not any(map(mesh.is_solid, range(len(mesh.elements)))):
         raise Error("the file has no solid elements", path, f"mesh the volumes; the file has {shapes or 'no elements'}")
     if not np.isfinite(mesh.points).all():
-        raise Error("coordinates are not finite", path, "write the mesh anew")
+        raise Error("coordinates are not finite", path, "export the mesh again")
     size, fitting = length_hint(mesh)
     summary = f"{path}: {len(mesh.points)} nodes, {shapes}; {size} in the file's unit"
     if not arguments.output:
@@ -257,11 +257,11 @@ def run(arguments):
         return
     output = pathlib.Path(arguments.output)
     if output.suffix != ".msh" or not output.parent.is_dir() or output.is_dir() or output.exists() and output.samefile(path):
-        raise Error("the mesh cannot be written to this file", output, "name another file that ends in .msh, in a folder that is there")
+        raise Error("the mesh cannot be written to this file", output, "name another .msh file in an existing folder")
     volumes, surfaces, contact, mounts, unit = names_of(arguments)
     if unit not in tuple(UNITS):
-        raise Error("no unit of length is given" if unit is None else f"`{unit}` is no unit of length", path,
-                    f"say --unit {' or '.join(UNITS)}; the mesh is {size}, which suits {fitting}")
+        raise Error("no unit of length is given" if unit is None else f"`{unit}` is not a unit of length", path,
+                    f"use --unit {' or '.join(UNITS)}; the mesh is {size}, which suits {fitting}")
     result = Import(mesh, volumes, surfaces, path)
     check_entries(contact, r"\s*([\w.-]+)\s*/\s*([\w.-]+)\s*(?::[^:;]+)?", result.surfaces, "disc_top / pad_face: 0.9", path)
     check_entries(mounts, r"\s*([\w.-]+)\s*:(?:[^:;,]+,){2}[^:;,]+", result.surfaces, "pad_back: 0, 0, 1e10", path)
@@ -275,4 +275,4 @@ def run(arguments):
             os.replace(written.with_suffix(".prm"), stub)
     print(summary, result.report(), f"written: {output}", sep="\n")
     known = f", with the materials of {', '.join(materials)}" if materials else ""
-    print(f"written: {stub}{known}" if is_new else f"kept: {stub}; delete it to have it written anew")
+    print(f"written: {stub}{known}" if is_new else f"kept: {stub}; delete it to create a new one")

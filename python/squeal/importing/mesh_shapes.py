@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What the readers of meshes share: shapes of elements and their faces."""
+"""Element shapes and their faces, shared by the mesh readers."""
 
 import functools
 import re
 
 SOLIDS = {4: "tetra", 10: "tetra10", 6: "wedge", 15: "wedge15", 5: "pyramid", 13: "pyramid13", 8: "hexahedron", 20: "hexahedron20"}
 SHELLS = {3: "triangle", 6: "triangle6", 4: "quad", 8: "quad8"}
-# Faces S1, S2, ... of a shape by the numbers of their corners; a shell has one
+# Corners of the faces S1, S2, ... of a shape; a shell has one face
 FACES = {
     "triangle": ((0, 1, 2),),
     "quad": ((0, 1, 2, 3),),
@@ -16,7 +16,7 @@ FACES = {
     "pyramid": ((0, 1, 2, 3), (0, 4, 1), (1, 4, 2), (2, 4, 3), (3, 4, 0)),
     "hexahedron": ((0, 1, 2, 3), (4, 7, 6, 5), (0, 4, 5, 1), (1, 5, 6, 2), (2, 6, 7, 3), (3, 7, 4, 0)),
 }
-# Edges by the order of their middle nodes
+# Edges in the order of their mid-side nodes
 EDGES = {
     "tetra": ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)),
     "wedge": ((0, 1), (1, 2), (2, 0), (3, 4), (4, 5), (5, 3), (0, 3), (1, 4), (2, 5)),
@@ -27,20 +27,20 @@ EDGES = {
 
 @functools.cache
 def faces_of(shape):
-    """Faces of an element by its corners, whatever its order; none of a shape that is not read."""
+    """Faces of an element of any order by its corners; none for unsupported shapes."""
     return FACES.get(re.sub(r"\d+$", "", shape), ())
 
 
 def middle_nodes(shape, nodes):
-    """Ends of an edge, as a frozenset -> its middle node; nothing for elements of first order."""
+    """Ends of an edge (frozenset) -> its mid-side node; empty for first-order elements."""
     edges = EDGES.get(re.sub(r"\d+$", "", shape), ())
     n_corners = len({corner for edge in edges for corner in edge})
     return {frozenset((nodes[a], nodes[b])): node for (a, b), node in zip(edges, nodes[n_corners:])}
 
 
 def shape_of(element_type):
-    """Shape of a type of Abaqus, and number of nodes: variants such as C3D8R and C3D10M have the nodes of the plain element, continuum shells
-    those of solids; a type that is not read is its own shape, without nodes."""
+    """Shape and number of nodes of an Abaqus element type: variants such as C3D8R and C3D10M have the nodes of the plain element, continuum
+    shells those of solids; an unsupported type is returned with 0 nodes."""
     if match := re.fullmatch(r"(?:C3D|SC)(\d+)[A-Z]*", element_type):
         shapes = SOLIDS
     elif match := re.fullmatch(r"(?:S|M3D|SFM3D|R3D)(\d)(?:R5?|RS|S|)", element_type):

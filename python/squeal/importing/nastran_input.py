@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Reads nodes and elements of Nastran bulk data in free, small and large fields; sets of elements are those of a property."""
+"""Reads nodes and elements of Nastran bulk data in free, small and large field format; properties become element sets."""
 
 import collections
 import re
@@ -10,18 +10,18 @@ from squeal.importing.mesh_shapes import SHELLS, SOLIDS, read_text
 
 ELEMENTS = {"CHEXA": SOLIDS, "CPENTA": SOLIDS, "CTETRA": SOLIDS, "CPYRA": SOLIDS, "CPYRAM": SOLIDS, "CQUAD4": SHELLS, "CQUAD8": SHELLS,
             "CQUADR": SHELLS, "CTRIA3": SHELLS, "CTRIA6": SHELLS, "CTRIAR": SHELLS}
-CORNERS = {"CQUAD4": 4, "CQUADR": 4, "CTRIA3": 3, "CTRIAR": 3}  # behind these stand angle and offsets
-# Nastran has the middle nodes of the upright edges before those of the top
+CORNERS = {"CQUAD4": 4, "CQUADR": 4, "CTRIA3": 3, "CTRIAR": 3}  # followed by angle and offsets
+# Nastran lists the mid-side nodes of the vertical edges before those of the top
 ORDER = {"hexahedron20": (*range(12), *range(16, 20), *range(12, 16)), "wedge15": (*range(9), *range(12, 15), *range(9, 12))}
 
 
 def number(word):
-    """1.5-3 is 1.5e-3, and nothing is zero."""
+    """A real number of Nastran: 1.5-3 is 1.5e-3, a blank is zero."""
     return float(re.sub(r"(?<=[\d.])([+-]\d+)$", r"e\1", word.upper().replace("D", "E")) if word else 0.0)
 
 
 def cards(path):
-    """(number of its line, fields) of every card, whose lines go on in those that begin with a blank field, + or *."""
+    """(line number, fields) of every card; continuation lines begin with a blank field, + or *."""
     text = read_text(path)
     has_control = re.search(r"^\s*BEGIN\s+BULK", text, re.IGNORECASE | re.MULTILINE)
     begun, card, first = not has_control, [], 0
@@ -47,13 +47,13 @@ def cards(path):
             yield first, card
         card, first = [fields[0].upper().rstrip("*").strip(), *data], count
     if has_control:
-        raise Error("the file ends without ENDDATA", path, "write it anew, it may not be whole")
+        raise Error("the file ends without ENDDATA", path, "export it again, it may be incomplete")
     if card:
         yield first, card
 
 
 class NastranInput:
-    """points, elements, element_sets and dropped as of AbaqusInput."""
+    """Attributes as in AbaqusInput; node sets, surfaces and materials are empty."""
 
     def __init__(self, path):
         self.points, self.elements, self.element_sets = {}, {}, {}
@@ -67,7 +67,7 @@ class NastranInput:
 
     def _take(self, name, *fields):
         if name.startswith("INCLUDE"):
-            raise ValueError("write all into one file")
+            raise ValueError("write all cards to one file")
         if name == "GRID":
             if fields[1] not in ("", "0"):
                 raise ValueError(f"node {fields[0]} is in coordinate system {fields[1]}; write nodes in the basic one")
@@ -90,5 +90,5 @@ class NastranInput:
     @staticmethod
     def _add_unique(known, what, label, value):
         if int(label) in known:
-            raise ValueError(f"{what} {label} is there twice")
+            raise ValueError(f"{what} {label} is defined twice")
         known[int(label)] = value

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""A system from matrices of other programs, as a configuration says."""
+"""Builds a system from matrices of other programs according to a configuration file."""
 
 import csv
 import pathlib
@@ -24,7 +24,7 @@ def number_of(value, where):
 
 
 def ranges_of(numbers):
-    """Inclusive ranges of increasing numbers."""
+    """Increasing numbers as inclusive ranges."""
     found = []
     for number in numbers:
         if found and number == found[-1][1] + 1:
@@ -35,7 +35,7 @@ def ranges_of(numbers):
 
 
 def groups_of(entries, numbering, where):
-    """Ranges of dofs as given, or of the nodes that `nodes` names in ranges."""
+    """Ranges of dofs, as given or of the nodes in the ranges `nodes`."""
     groups = {}
     for name, entry in entries.items():
         if isinstance(entry, dict):
@@ -48,15 +48,16 @@ def groups_of(entries, numbering, where):
 
 
 def points_of(config, folder, numbering, where):
-    """Positions and displacements of the nodes by the dofs 1 to 3, if the configuration names a file with the nodes."""
+    """Positions of the nodes and their displacements, dofs 1 to 3, if the configuration names a file with nodes."""
     if "nodes" not in config:
         return {}
     if numbering.labels is None or config.get("unit") not in foreign_mesh.UNITS:
-        raise Error("`nodes` needs matrices with nodes and dofs, and a unit of length", where, f"write `unit`, one of: {', '.join(foreign_mesh.UNITS)}")
+        raise Error("`nodes` requires matrices with nodes and dofs, and a unit of length", where,
+                    f"write `unit`, one of: {', '.join(foreign_mesh.UNITS)}")
     path = folder / config["nodes"]
     reader = foreign_mesh.READERS.get(path.suffix.lower())
     if reader is None or not path.is_file():
-        raise Error(f"`{path}` is no file with nodes", where, f"name a file that ends in one of: {', '.join(foreign_mesh.READERS)}")
+        raise Error(f"`{path}` is not a file with nodes", where, f"name a file that ends in one of: {', '.join(foreign_mesh.READERS)}")
     points, scale = reader(path).points, foreign_mesh.UNITS[config["unit"]]
     moves = [(node, dof, column) for column, (node, dof) in enumerate(numbering.labels) if node > 0 and dof in (1, 2, 3)]
     number = {node: i for i, node in enumerate(dict.fromkeys(node for node, *_ in moves))}
@@ -68,7 +69,7 @@ def points_of(config, folder, numbering, where):
 
 
 def import_system(path):
-    """The system of a configuration, remarks, and the numbering of its dofs. Throws Error."""
+    """The system of a configuration, notes to print, and the numbering of its dofs. Raises Error."""
     path = pathlib.Path(path)
     config = as_kind(read_yaml(path, "configuration"), dict, path)
     check_keys(config, KNOWN, path)
@@ -94,7 +95,7 @@ def import_system(path):
     numbering = matrices.Numbering([(str(file), found) for file, found, *_ in loaded])
     remarks = []
     if numbering.held:
-        remarks.append(f"{len(numbering.held)} dofs are held ({matrices.HELD:g} on the diagonal) and left out")
+        remarks.append(f"{len(numbering.held)} dofs are fixed ({matrices.HELD:g} on the diagonal) and omitted")
     for file, found, term, scale in loaded:
         term.matrix = scale * numbering.matrix(found, term.symmetry, file)
         if term.symmetry == "none" and term.matrix.nnz and term.matrix.shape[0] == term.matrix.shape[1]:
@@ -106,7 +107,7 @@ def import_system(path):
 
 
 def write_labels(path, labels):
-    """Node and dof of every row."""
+    """Writes node and dof of every row."""
     with open(path, "w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerows([("row", "node", "dof"), *((row, *label) for row, label in enumerate(labels, start=1))])

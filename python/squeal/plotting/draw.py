@@ -19,7 +19,7 @@ PLOTS = {"complex_plane": "complex_modes", "branches": "branches", "stability_ma
 
 
 def figures(results):
-    """All figures of a run by their names. Throws Error if its tables give none."""
+    """All figures of a run by their names. Raises Error if its tables give none."""
     found = {}
     for name, table in PLOTS.items():
         if results.has(table):

@@ -126,7 +126,7 @@ def body(content):
 
 
 def page(content):
-    """The whole file. Throws Error where libraries are missing."""
+    """The whole file. Raises Error if libraries are missing."""
     if missing := missing_packages():
         raise Error("libraries of the report are missing", "Results.report()", f"apt-get install {' '.join(missing)} (or scripts/setup.sh)")
     charts = [{part: entry[part] for part in ("id", "data", "layout", "choices", "chosen") if part in entry}
