@@ -13,12 +13,12 @@ from squeal.results import Results
 
 PACKAGE = pathlib.Path(__file__).resolve().parent
 SOURCE = PACKAGE.parents[1]
-# In the folder of an installation, and of a checkout
+# Executables of an installation and of a checkout
 PLACES = (PACKAGE.parents[3] / "bin" / "squeal", SOURCE / "build" / "release" / "squeal")
 
 
 def find_program():
-    """The executable: SQUEAL of the environment, that of the installation or of the checkout, or one in PATH. Raises Error if there is none."""
+    """The executable: from the environment variable SQUEAL, the installation, the checkout or PATH. Raises Error if there is none."""
     if given := os.environ.get("SQUEAL"):
         if not pathlib.Path(given).is_file():
             raise Error(f"there is no program {given}", "environment variable SQUEAL", "name the executable")
@@ -30,7 +30,7 @@ def find_program():
 
 
 def text_of(value):
-    """A value as a parameter file has it."""
+    """A value in the syntax of parameter files."""
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, (list, tuple)):
@@ -39,14 +39,14 @@ def text_of(value):
 
 
 def words_of(settings):
-    """Words of the command line for settings "Section/Name=value"."""
+    """Command-line arguments for settings "Section/Name=value"."""
     return [word for setting in settings for word in ("--set", setting)]
 
 
 def run(prm, overrides=None, output=None, n_processes=1):
-    """Results of a parameter file with parameters "Section/Name" -> value that differ from it.
+    """Runs a parameter file with overrides "Section/Name" -> value and returns the Results.
 
-    The results are in the folder `output`, otherwise in results/ with the name of the file. Raises Error with what the program says.
+    They are written to the folder `output`, by default results/NAME for NAME.prm. Raises Error with the message of the program.
     """
     output = pathlib.Path(output) if output else pathlib.Path("results") / pathlib.Path(prm).stem
     launcher = ["mpirun", "-np", str(n_processes)] if n_processes > 1 else []

@@ -2,8 +2,8 @@
 
 """Eigenvalues of quadratic pencils Q(λ) = λ² M + λ C + K.
 
-Matrices are scaled as by Fan, Lin and Van Dooren, λ = γ μ with γ² = |K| / |M|, before they are linearised. Small problems are solved by the QZ
-algorithm, others by ARPACK about shifts σ with a sparse LU decomposition of Q(σ) each.
+Matrices are scaled as proposed by Fan, Lin and Van Dooren, λ = γ μ with γ² = |K| / |M|, before linearisation. Small problems are solved by
+the QZ algorithm, others by shift-invert ARPACK with a sparse LU factorisation of Q(σ) for each shift σ.
 """
 
 import dataclasses
@@ -17,21 +17,21 @@ import scipy.sparse.linalg
 
 from squeal.errors import Error
 
-# Size up to which all eigenvalues are computed by dense matrices
+# Largest size for which all eigenvalues are computed by the dense QZ algorithm
 DENSE_SIZE = 200
-# Eigenvalues of one shift at first, and at most before the region is divided
+# Initial number of eigenvalues per shift, and the number above which the region is divided
 FIRST_NUMBER, LARGEST_NUMBER = 24, 160
-# Relative distance of eigenvalues that may be copies of one
+# Relative distance of eigenvalues that may be copies of the same one
 EQUAL = 1e-8
-# Smallest new component of a vector of length one that is independent of others
+# Smallest new component of a unit vector that counts as linearly independent of others
 INDEPENDENT = 1e-3
-# Relative change of the entries of Q(s) at an arbitrary s that makes it singular, up to which it counts as singular
+# The pencil counts as singular if relative changes of the entries of Q(s) up to this, at an arbitrary s, make Q(s) singular
 SINGULAR = 1e-13
 
 
 @dataclasses.dataclass
 class Eigenpairs:
-    """Eigenvalues λ (m) [1/s], right vectors (n x m) of length one, and two measures of error for each.
+    """Eigenvalues λ (m) [1/s], right unit vectors (n x m), and two error measures for each.
 
     residuals: |Q(λ) x| / (|λ² M x| + |λ C x| + |K x|); backward_errors: |Q(λ) x| / ((|λ|² |M| + |λ| |C| + |K|) |x|) with Frobenius norms.
     """
@@ -64,7 +64,7 @@ def errors(M, C, K, eigenvalues, vectors):
 
 
 def match(values, others):
-    """Which of two lists of eigenvalues belong together, one to one: numbers in both, and relative differences."""
+    """One-to-one pairs of two lists of eigenvalues with the least total distance: indices in both, and relative differences."""
     values, others = np.asarray(values, dtype=complex), np.asarray(others, dtype=complex)
     distances = abs(values[:, None] - others[None, :])
     pairs = scipy.optimize.linear_sum_assignment(distances)
@@ -109,7 +109,7 @@ def singular(where):
 
 
 class ShiftInvert:
-    """ARPACK about shifts: eigenvalues that are closest to a shift σ, by the largest 1 / (λ - σ) of the companion form."""
+    """Shift-invert ARPACK on the companion form: the eigenvalues nearest a shift σ are those of largest 1 / (λ - σ)."""
 
     def __init__(self, M, C, K, where):
         self.M, self.C, self.K, self.where = M, C, K, where
@@ -118,7 +118,7 @@ class ShiftInvert:
     def check(self):
         """Raises Error if Q(σ) is singular to working precision at an arbitrary σ.
 
-        By Oettli and Prager, changes of the entries by max |Q x| / (|Q| |x|) make it singular; x comes from inverse iteration.
+        By Oettli and Prager, relative changes of its entries by max |Q x| / (|Q| |x|) make it singular; x is from inverse iteration.
         """
         sigma, lu = self.factor(self.gamma * (0.6 + 0.7j))
         Q = self.K + sigma * self.C + sigma**2 * self.M
@@ -130,7 +130,7 @@ class ShiftInvert:
             raise singular(self.where)
 
     def factor(self, sigma):
-        """σ and the LU decomposition of Q(σ); σ is moved slightly where Q(σ) is singular."""
+        """σ and the LU factorisation of Q(σ); σ is moved slightly if Q(σ) is singular."""
         for step in range(4):
             moved = sigma + step * 1e-4 * (1 + 1j if np.iscomplex(sigma) else 1) * (abs(sigma) + 1e-2 * self.gamma)
             matrix = (self.K + moved * self.C + moved**2 * self.M).tocsc()
@@ -142,7 +142,7 @@ class ShiftInvert:
         raise singular(self.where)
 
     def nearest(self, sigma, number, seed, factor=None):
-        """At least `number` eigenvalues with their vectors, and the radius about the shift inside which there are no others."""
+        """At least `number` eigenvalues with their vectors, and the radius about the shift within which there are no others."""
         n, scale = self.M.shape[0], self.gamma
         if number >= n:
             return *solve_dense(self.M, self.C, self.K, self.where), math.inf
@@ -169,7 +169,7 @@ class ShiftInvert:
 
 
 class Rectangle:
-    """A region of the complex plane, `(lower, upper)` real and imaginary parts [1/s]."""
+    """A region of the complex plane, with (lower, upper) real and imaginary parts [1/s]."""
 
     def __init__(self, real, imaginary):
         self.real, self.imaginary = real, imaginary
@@ -194,7 +194,7 @@ class Rectangle:
 
 
 def solve_region(solver, region, seed):
-    """Eigenvalues and vectors in a rectangle; it is divided while one shift would need too many eigenvalues."""
+    """Eigenvalues and vectors in a rectangle, which is halved if one shift requires too many eigenvalues."""
     sigma = region.centre if region.centre.imag else region.centre.real
     factor, number = solver.factor(sigma), FIRST_NUMBER
     while True:
@@ -203,7 +203,7 @@ def solve_region(solver, region, seed):
         if radius > reach:
             inside = region.contains(eigenvalues, EQUAL * solver.gamma)
             return eigenvalues[inside], vectors[:, inside]
-        # Eigenvalues per area stay about equal
+        # Extrapolate to the number that reaches the corners
         number = max(2 * number, math.ceil(1.2 * number * (reach / radius)))
         if number > LARGEST_NUMBER:
             parts = [solve_region(solver, half, seed) for half in region.halves()]
@@ -213,10 +213,10 @@ def solve_region(solver, region, seed):
 
 
 def merge(eigenvalues, vectors, tolerance=EQUAL):
-    """Of pairs found in several runs each mode once: which to keep.
+    """Indices that keep each mode once among pairs found in several runs.
 
-    Pairs with the same eigenvalue are copies of one mode, or members of a multiple eigenvalue; a member is kept when its
-    vector does not depend on those kept before.
+    Pairs with the same eigenvalue are copies of one mode, or members of a multiple eigenvalue; a member is kept if its vector is linearly
+    independent of those kept before.
     """
     kept, left = [], list(np.argsort(eigenvalues.imag, kind="stable"))
     unit = vectors / np.linalg.norm(vectors, axis=0)
@@ -227,7 +227,7 @@ def merge(eigenvalues, vectors, tolerance=EQUAL):
                 break
             cluster.append(candidate)
         left = left[len(cluster):]
-        # Eigenvalues of equal frequency may still differ in growth rate: -R and R at least.
+        # Eigenvalues of equal frequency may differ in growth rate, such as -R and R
         while cluster:
             equal = [i for i in cluster if abs(eigenvalues[i] - eigenvalues[cluster[0]]) <= 10 * tolerance * abs(eigenvalues[i])]
             cluster = [i for i in cluster if i not in equal]
@@ -240,9 +240,8 @@ def merge(eigenvalues, vectors, tolerance=EQUAL):
 def collect(solve, n_agreeing=2, n_runs=8):
     """Eigenvalues and vectors from runs with different starting vectors.
 
-    A Krylov method that starts from one vector may miss members of multiple eigenvalues, so runs are repeated, and what
-    they find is merged, until `n_agreeing` runs in a row (the first one counts) bring nothing new. solve(seed) gives a
-    pair or, where it failed, None.
+    A Krylov method with a single starting vector may miss members of multiple eigenvalues. Runs are therefore repeated and merged until
+    `n_agreeing` runs in a row, including the first, find nothing new. solve(seed) returns eigenvalues and vectors, None on failure.
     """
     pairs, agreeing = None, 0
     for seed in range(1, n_runs + 1):
@@ -259,14 +258,14 @@ def collect(solve, n_agreeing=2, n_runs=8):
             return pairs
     if pairs is None:
         raise Error("the eigensolver fails with every starting vector", "eigensolver", "check the matrices")
-    raise Error("further starting vectors keep bringing new eigenvalues", "eigensolver", "select fewer eigenvalues")
+    raise Error("additional starting vectors keep finding new eigenvalues", "eigensolver", "select fewer eigenvalues")
 
 
 def solve(M, C, K, number=None, largest=None, region=None, shift=None, where="system"):
     """Eigenpairs of a quadratic pencil of real sparse matrices: those selected, or all of a small system.
 
-    region: ((lower, upper) real part, (lower, upper) imaginary part) [1/s]; largest: those with |λ| up to it; number: so many that are closest
-    to `shift` (0). Raises Error if M = 0, where the pencil is singular or where nothing is selected from a large system.
+    region: ((lower, upper) real part, (lower, upper) imaginary part) [1/s]; largest: those with |λ| up to it; number: that many nearest
+    to `shift` (default 0). Raises Error if M = 0, if the pencil is singular or if nothing is selected in a large system.
     """
     n = M.shape[0]
     if M.nnz == 0 or not abs(M.data).max(initial=0.0):

@@ -18,12 +18,12 @@ MU = "mu [-]"
 
 
 def axis_title(column):
-    """The column of a parameter as the title of an axis."""
+    """Axis title for the column of a parameter."""
     return "friction coefficient μ [-]" if column == MU else column
 
 
 def symbol(column):
-    """The same for a sentence: `μ = 0.4`."""
+    """Symbol of the parameter of a column, as in `μ = 0.4`."""
     return "μ" if column == MU else column.split(" [")[0]
 
 
@@ -42,7 +42,7 @@ class Table:
             raise Error(f"the table cannot be read: {problem}", f"file {path}", "run squeal again") from problem
         for number, row in enumerate(self.rows, start=2):
             if None in row or None in row.values():
-                raise Error("a row has not one cell for each column", f"file {path}, line {number}", "run squeal again")
+                raise Error("a row does not have one cell for each column", f"file {path}, line {number}", "run squeal again")
 
     def __len__(self):
         return len(self.rows)
@@ -55,7 +55,7 @@ class Table:
     def texts(self, column):
         """Cells of a column. Raises Error if there is no such column."""
         if column not in self.columns:
-            raise Error(f"there is no column `{column}`", f"file {self.path}", "run squeal again: it writes this column now")
+            raise Error(f"there is no column `{column}`", f"file {self.path}", "run squeal again; older versions omit this column")
         return [row[column] for row in self.rows]
 
     def numbers(self, column):
@@ -66,7 +66,7 @@ class Table:
                 result.append(float(text) if text else math.nan)
             except ValueError:
                 where = f"file {self.path}, line {line}, column `{column}`"
-                raise Error(f"`{text}` is no number", where, "run squeal again") from None
+                raise Error(f"`{text}` is not a number", where, "run squeal again") from None
         return result
 
     def flags(self, column):
@@ -85,8 +85,8 @@ class Table:
         return [complex(rate, 2 * math.pi * frequency) for rate, frequency in zip(self.numbers("growth rate [1/s]"), self.numbers("frequency [Hz]"))]
 
     def frame(self):
-        """A data frame of pandas. `attrs["units"]` has the unit of each column that has one; the names of columns are without units where these
-        tell no columns apart. Columns of numbers are numbers, NaN where a cell is empty."""
+        """A pandas data frame. Units move from the column names to `attrs["units"]`, except where they distinguish columns. Numeric columns
+        are converted to numbers, empty cells to NaN."""
         import pandas
 
         parts = [re.fullmatch(r"(.*?)(?: \[([^\]]*)\])?", column).groups() for column in self.columns]
@@ -111,21 +111,21 @@ def read_table(path):
 
 
 def shape_files(folder):
-    """Files of the shapes of complex modes by rows of complex_modes.csv."""
+    """Row of complex_modes.csv, from 1 -> file of the shape of this mode."""
     return {int(match[1]): path for path in sorted((pathlib.Path(folder) / "modes").glob("complex_*.vtu"))
             if (match := re.match(r"complex_(\d+)_", path.name)) and not path.stem.endswith("_contact")}
 
 
 class Results:
-    """A folder of results. Raises Error if it is none."""
+    """The results folder of a run. Raises Error if it is not one."""
 
     def __init__(self, folder):
         self.folder = pathlib.Path(folder)
         if not self.folder.is_dir():
-            raise Error(f"there is no folder `{folder}`", "RESULTS", "name the folder in which a run has left its results")
+            raise Error(f"there is no folder `{folder}`", "RESULTS", "name the results folder of a run")
         for name in ("run.json", "parameters.prm"):
             if not (self.folder / name).is_file():
-                raise Error(f"`{folder}` holds no results: {name} is missing", "RESULTS", "name the folder in which a run has left its results")
+                raise Error(f"`{folder}` contains no results: {name} is missing", "RESULTS", "name the results folder of a run")
         try:
             self.record = dict(json.loads(self.record_file.read_text(encoding="utf-8")))
             self.parameters = read_parameters(self.folder / "parameters.prm")
@@ -148,7 +148,7 @@ class Results:
         return sorted(path.stem for path in self.folder.glob("*.csv"))
 
     def frame(self, name):
-        """A table as a data frame of pandas, see Table.frame(). Raises Error if the run has no such table."""
+        """A table as a pandas data frame, see Table.frame(). Raises Error if the run has no such table."""
         if not self.has(name):
             raise Error(f"there is no table `{name}`", f"folder {self.folder}", f"name one of: {', '.join(self.names()) or '(none)'}")
         return self.table(name).frame()
@@ -197,10 +197,10 @@ class Results:
             return [float(word) for word in text.split(",")] if text.strip() else []
         except ValueError:
             where = f"file {self.folder / 'parameters.prm'}, parameter {name}"
-            raise Error(f"`{text}` is no list of numbers", where, "run squeal again") from None
+            raise Error(f"`{text}` is not a list of numbers", where, "run squeal again") from None
 
     def plot(self, ending="svg", output=None):
-        """Draws the plots of the tables; returns their files and remarks on files that were renamed."""
+        """Draws the plots of the tables; returns their files and notes on files that were renamed."""
         from squeal.plotting import draw
 
         folder = pathlib.Path(output) if output else self.folder / "plots"
@@ -208,14 +208,14 @@ class Results:
         return list(pictures), self.save(pictures, is_listed=not output)
 
     def report(self, output=None):
-        """Writes the report; returns its file and remarks on files that were renamed."""
+        """Writes the report; returns its file and notes on files that were renamed."""
         from squeal.reporting import content, page
 
         place = pathlib.Path(output) if output else self.folder / "report.html"
         return place, self.save({place: page.page(content.content(self)).encode()}, is_listed=not output)
 
     def save(self, files, is_listed):
-        """Writes files, path -> content, and adds them to those of the run if they are to be listed; returns remarks."""
+        """Writes files (path -> bytes), lists them in run.json if `is_listed`, and returns notes on files that were renamed."""
         try:
             for path in files:
                 path.parent.mkdir(parents=True, exist_ok=True)
@@ -223,12 +223,12 @@ class Results:
             for path, content in files.items():
                 replace(path, content)
         except OSError as problem:
-            change = "check permissions and free space, or name another place for them"
+            change = "check permissions and free space, or choose another folder"
             raise Error(f"the files cannot be written: {problem}", ", ".join(map(str, files)), change) from problem
         return remarks
 
     def enlist(self, files):
-        """Adds pictures, or a report, to the files of the run in run.json; returns what to say."""
+        """Lists files (name -> bytes) in run.json; returns notes on files that were renamed."""
         known = self.record[FILES]
         remarks = [make_way(self.folder / name) for name in files if name not in known and (self.folder / name).exists()]
         self.record[FILES] = dict(sorted({**known, **{name: len(content) for name, content in files.items()}}.items()))
@@ -237,18 +237,18 @@ class Results:
 
 
 def replace(path, content):
-    """Writes a file in one step."""
+    """Writes a file atomically."""
     temporary = path.with_name(path.name + ".unfinished")
     temporary.write_bytes(content)
     os.replace(temporary, path)
 
 
 def make_way(path):
-    """Renames a file of the user whose name is needed; returns what to say."""
+    """Renames a file of the user whose name is needed; returns a note."""
     kept = path.with_name(path.name + ".kept")
     number = 1
     while kept.exists():
         number += 1
         kept = path.with_name(f"{path.name}.kept-{number}")
     path.rename(kept)
-    return f"note: {path} is no file of this run and is {kept.name} now"
+    return f"note: {path} was not written by this run and is now {kept.name}"

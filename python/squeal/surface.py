@@ -1,22 +1,21 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Outer faces of the bodies in a file of fields, and their edges; points are numbers of those of the file."""
+"""Boundary faces of the bodies in a field file, and their edges, as indices of the points of the file."""
 
 import numpy as np
 
 from squeal.importing.mesh_shapes import faces_of
 from squeal.vtu_file import SHAPES
 
-# Of VTK's cells; triangles repeat their last corner
+# Faces of VTK cells; triangles repeat their last corner
 FACES = {kind: [(*face, face[-1])[:4] for face in faces_of(shape)] for kind, shape in SHAPES.items() if shape != "vertex"}
-SAME_PLACE = 1e-5  # of the size of the bodies: points of several processes
+SAME_PLACE = 1e-5  # of the size of the bodies, for points written by several processes
 
 
 def outer_faces(mesh, bodies=None):
-    """Faces that belong to one cell only (m x 4, a triangle repeats its last corner), of all bodies or of those chosen by their component;
-    none of points without cells.
+    """Faces that belong to one cell only (m x 4, triangles repeat their last corner), of all bodies or of the given components.
 
-    Coincident points of one body are one point, those of two bodies in contact stay apart.
+    Coincident points of one body are merged, those of two bodies in contact are not.
     """
     points, of_cells = np.array(mesh.points), mesh.cell_fields.get("component", [0] * len(mesh.cells))
     chosen = [cell for cell, body in enumerate(of_cells) if bodies is None or body in bodies]
@@ -36,23 +35,23 @@ def outer_faces(mesh, bodies=None):
 
 
 def sides_of(faces):
-    """Both ends (n x 2, ascending) of the sides of faces, and the number of the face of each."""
+    """Ends (n x 2, ascending) of the sides of faces, and the index of the face of each."""
     ends = np.sort(np.stack([faces, np.roll(faces, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
-    is_side = ends[:, 0] < ends[:, 1]  # of a repeated corner there is none
+    is_side = ends[:, 0] < ends[:, 1]  # a repeated corner has no side
     return ends[is_side], np.repeat(np.arange(len(faces)), 4)[is_side]
 
 
 def edges_of(faces):
-    """Both ends (n x 2) of the edges of faces, and how many faces meet there."""
+    """Ends (n x 2) of the edges of faces, and the number of faces that share each."""
     return np.unique(sides_of(faces)[0], axis=0, return_counts=True)
 
 
 def sharp_edges(points, faces, angle=50):
-    """Both ends (n x 2) of the edges of a closed surface where its normal turns by more than an angle [degree]."""
+    """Ends (n x 2) of the edges of a closed surface at which its normal turns by more than an angle [degree]."""
     corners = points[faces]
     normals = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
     normals /= np.linalg.norm(normals, axis=1)[:, None]
     ends, owners = sides_of(faces)
-    order = np.lexsort(ends.T)  # both faces of an edge follow each other
+    order = np.lexsort(ends.T)  # brings the two faces of an edge together
     one, other = owners[order].reshape(-1, 2).T
     return ends[order][::2][abs(np.sum(normals[one] * normals[other], axis=1)) < np.cos(np.radians(angle))]

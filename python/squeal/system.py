@@ -25,13 +25,13 @@ SYMMETRIES = {"none": 0, "symmetric": 1, "skew": -1}
 KINDS = ("body", "mount", "rotation", "friction", "circulatory", "contact damping", "modal damping")
 # Largest entry of A - A^T, or of A + A^T, relative to that of A
 SYMMETRY_TOLERANCE = 1e-12
-# Dofs up to which M(p), C(p) and K(p) are written out as dense matrices
+# Largest number of dofs for which M(p), C(p) and K(p) return dense matrices
 LARGEST_DENSE = 5000
 
 
 @dataclasses.dataclass
 class Parameter:
-    """The value of a parameter, and its range, unit and meaning where they are known."""
+    """The value of a parameter, and its range, unit and meaning if known."""
 
     value: float
     lower: float = None
@@ -71,16 +71,17 @@ class Term:
 
 
 class System:
-    """Parameters by their names, terms, groups of dofs (name -> ranges from 1), and of a reduced model its `reduction` with the basis.
+    """Parameters by name, terms, groups of dofs (name -> inclusive ranges from 1), and the `reduction` of a reduced model with its basis.
 
-    Shapes are shown on points with `positions` [m], n_points x 3, whose displacements are `displacements` (3 n_points x n, sparse; rows x, y
-    and z of point after point) times a vector; where these are None, dofs 3 i - 2 to 3 i are those of point i.
+    Mode shapes are drawn at points with `positions` [m] (n_points x 3), whose displacements are `displacements` (3 n_points x n, sparse;
+    rows x, y and z of point after point) times a vector; if `displacements` is None, dofs 3 i - 2 to 3 i are those of point i.
 
-    Wherever `p` is an argument, it is a dictionary of values that differ from those of the file.
+    Arguments `p` are dictionaries of parameter values that override those of the file.
     """
 
-    def __init__(self, parameters, terms, groups=None, positions=None, displacements=None, reduction=None, description="", measured_modes=None, where=FILE):
-        """Raises Error if something is wrong; `where` names the file for it."""
+    def __init__(self, parameters, terms, groups=None, positions=None, displacements=None, reduction=None, description="",
+                 measured_modes=None, where=FILE):
+        """Raises Error if the data are inconsistent; `where` is the file that it names."""
         self.parameters = {name: parameter if isinstance(parameter, Parameter) else Parameter(parameter) for name, parameter in parameters.items()}
         self.terms, self.groups, self.reduction = list(terms), dict(groups or {}), reduction
         self.positions, self.displacements = positions, displacements
@@ -130,12 +131,12 @@ class System:
                 raise Error(f"the value {parameter.value:g} is outside the range {lower:g} to {upper:g}", where, "change the value or the range")
 
     def range(self, name):
-        """Ends of the range of a parameter; without one, its value twice."""
+        """Limits of a parameter; a missing limit is its value."""
         parameter = self.parameters[name]
         return (parameter.value if parameter.lower is None else parameter.lower, parameter.value if parameter.upper is None else parameter.upper)
 
     def _checked_term(self, term, where):
-        """The coefficient of a term as an expression."""
+        """Checks a term and returns its coefficient as an Expression."""
         if not isinstance(term.power, int) or isinstance(term.power, bool) or not 0 <= term.power <= 2:
             raise Error(f"the power is {term.power!r}", where, "write 0, 1 or 2")
         if term.symmetry not in SYMMETRIES:
@@ -166,7 +167,7 @@ class System:
             raise Error(f"entry ({entries.row[first] + 1}, {entries.col[first] + 1}) is {entries.data[first]}", where, "write finite numbers")
         if sign := SYMMETRIES[term.symmetry]:
             if name != "matrix":
-                raise Error("symmetry is claimed for a product of factors", where, "leave `symmetry` out")
+                raise Error("symmetry is specified for a product of factors", where, "leave `symmetry` out")
             if (defect := symmetry_defect(matrix, sign)) > SYMMETRY_TOLERANCE:
                 raise Error(f"the matrix is not {term.symmetry}: the largest difference to its transpose is {defect:.1e} of the largest entry", where,
                             "write symmetry `none` or correct the matrix")
@@ -210,7 +211,7 @@ class System:
                    description=data.get("description", ""), measured_modes=measured, where=path, **points)
 
     def write(self, folder):
-        """Writes the folder, which is made if it is not there."""
+        """Writes the system to a folder, which is created if it does not exist."""
         folder = pathlib.Path(folder)
         folder.mkdir(parents=True, exist_ok=True)
         names, entries = set(), []
@@ -249,7 +250,7 @@ class System:
         (folder / FILE).write_text(json.dumps(data, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
 
     def values(self, p=None):
-        """Values of all parameters as a dictionary. Raises Error for an unknown name and for a value outside the range, if the file has one."""
+        """Values of all parameters as a dictionary. Raises Error for unknown names and for values outside the range, if there is one."""
         values = {name: parameter.value for name, parameter in self.parameters.items()}
         for name, value in (p or {}).items():
             if name not in values:
@@ -264,14 +265,14 @@ class System:
         return values
 
     def term(self, name):
-        """The term of a name."""
+        """The term called `name`."""
         found = [term for term in self.terms if term.name == name]
         if not found:
             raise Error(f"there is no term `{name}`", self.where, f"name one of: {', '.join(term.name for term in self.terms)}")
         return found[0]
 
     def coefficient(self, term, p=None):
-        """θ(p) of a term, given itself or by its name."""
+        """θ(p) of a Term or of the term with this name."""
         term = self.term(term) if isinstance(term, str) else term
         index = next(index for index, other in enumerate(self.terms) if other is term)
         return self._expressions[index](self.values(p))
@@ -322,7 +323,7 @@ class System:
             from pymor.operators.numpy import NumpyMatrixOperator
             from pymor.parameters.functionals import GenericParameterFunctional
         except ImportError as error:
-            raise Error(f"Python has no {error.name}", "System.to_pymor()", "install pyMOR: pip install pymor") from error
+            raise Error(f"the Python module {error.name} is missing", "System.to_pymor()", "install pyMOR: pip install pymor") from error
 
         def operator(power):
             terms = [(term, expression) for term, expression in zip(self.terms, self._expressions) if term.power == power]
@@ -370,7 +371,7 @@ def check_keys(entry, known, where):
 
 
 def read_entry(kind, entry, where, needed):
-    """A Parameter or a Term of an object of JSON."""
+    """A Parameter or a Term from a JSON object."""
     check_keys(as_kind(entry, dict, where), [field.name for field in dataclasses.fields(kind)], where)
     if missing := [key for key in needed if key not in entry]:
         raise Error(f"the entry `{missing[0]}` is missing", where, "add it")
@@ -396,7 +397,7 @@ def read_matrix(folder, name, where):
 
 
 def read_rows(folder, name, where):
-    """Rows of a CSV file as dictionaries, numbers as such, NaN for an empty cell."""
+    """Rows of a CSV file as dictionaries of numbers, NaN for empty cells."""
     path = inside(folder, name, where)
     try:
         table = Table(path)
@@ -418,7 +419,7 @@ def write_matrix(path, matrix, symmetry="none"):
         matrix = 0.5 * (matrix + sign * matrix.T)
     matrix = sparse.coo_matrix(matrix)
     matrix.eliminate_zeros()
-    with open(path, "wb") as file:  # a path would get an ending
+    with open(path, "wb") as file:  # mmwrite would append a suffix to a path
         scipy.io.mmwrite(file, matrix, precision=17, symmetry={0: "general", 1: "symmetric", -1: "skew-symmetric"}[sign])
 
 
@@ -428,7 +429,7 @@ def write_array(path, array):
 
 
 def unique(name, names):
-    """A name that is not among those taken, to which it is added."""
+    """The name, with a number if it is already in `names`, to which it is added."""
     found, number = name, 1
     while found.lower() in names:
         number += 1

@@ -9,16 +9,14 @@ import zlib
 
 from squeal.errors import Error
 
-# Names of VTK's types
+# Names of VTK cell types
 SHAPES = {1: "vertex", 5: "triangle", 9: "quad", 10: "tetra", 12: "hexahedron", 13: "wedge", 14: "pyramid"}
 TYPE_CODES = {"Float32": "f", "Int32": "i", "UInt8": "B"}
 
 
 class VtuFile:
-    """
-    Points and point fields, as tuples of three numbers and as numbers; cells as lists of their points, with their fields and VTK types: 1
-    is a vertex, 5 a triangle, 9 a quadrilateral, 10 a tetrahedron, 12 a hexahedron, 13 a wedge, 14 a pyramid. Coincident points of several pieces are repeated. The title, or None.
-    """
+    """Points and point fields (triples or numbers); cells as lists of their points, with fields and VTK types (see SHAPES); the title, or
+    None. Coincident points of several pieces are repeated."""
 
     def __init__(self, path):
         self.path = path
@@ -46,7 +44,7 @@ class VtuFile:
             assert all(0 <= vertex < n_points for vertex in cells["connectivity"]) and len(self.points) == first + n_points, path
 
     def values(self, data):
-        """Numbers, or triples, of an array: a single block compressed by zlib behind its sizes."""
+        """Numbers or triples of an array: the sizes, then a single block compressed by zlib."""
         offset = int(data.get("offset"))
         n_blocks, size, _, length = struct.unpack_from("<4Q", self.data, offset)
         plain = zlib.decompress(self.data[offset + 32:offset + 32 + length])

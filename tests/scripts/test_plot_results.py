@@ -250,7 +250,7 @@ class Refusals(PlotTest):
         file.write_text(text.replace("growing [-]", "other"), encoding="utf-8")
         self.refused("no column `growing [-]`", "branches.csv")
         file.write_text(text.replace("9.5,", "9.5x,", 1), encoding="utf-8")
-        self.refused("`9.5x` is no number", "line 2", "column `frequency [Hz]`")
+        self.refused("`9.5x` is not a number", "line 2", "column `frequency [Hz]`")
         file.write_text(text[:-4] + "\n", encoding="utf-8")
         self.refused("one cell for each column", f"line {len(text.splitlines())}")
         file.write_text(text, encoding="utf-8")

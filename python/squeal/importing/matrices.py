@@ -18,7 +18,7 @@ HELD = 1e36
 
 @dataclasses.dataclass
 class Entries:
-    """Entries of a matrix: rows and columns from 0 with the `shape`, or labels (node, dof) if `shape` is None; is_half: the file has only one
+    """Entries of a matrix: rows and columns from 0 with the `shape`, or labels (node, dof) if `shape` is None; is_half: the file has one
     triangle of the symmetric matrix, None if unknown."""
 
     rows: np.ndarray
