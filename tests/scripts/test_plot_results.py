@@ -190,8 +190,8 @@ class Maps(PlotTest):
             self.assertAlmostEqual(undecided, 0.1)
             self.assertEqual(self.patches(axes, "not computed"), [])
             self.assertEqual(len(self.patches(axes, "stable")), 5)
-            # The limit runs up beside one cell and along below two
-            self.assertEqual(points_and_parts(line_of(axes, "limit of stability")), (2 + 3, 2))
+            # The boundary runs along one vertical and two horizontal cell edges
+            self.assertEqual(points_and_parts(line_of(axes, "stability boundary")), (2 + 3, 2))
             self.assertEqual(line_of(axes, "change of the contact set"), [])
         self.assertEqual([text.get_text() for text in panel.texts], ["F1"])
         self.assertEqual([text.get_text() for text in counts.texts], ["2", "2"])

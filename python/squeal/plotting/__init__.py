@@ -1,3 +1,3 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Plots of the tables that a run has left; scripts/plot_results.py draws them all."""
+"""Plots of the tables of a run; scripts/plot_results.py draws all of them."""

@@ -1,20 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What accuracy costs: errors of meshes, elements and bases over time."""
+"""Accuracy versus cost: errors of meshes, elements and bases over CPU time."""
 
 from squeal.plotting import style
 from squeal.plotting.reduction import pareto_front
 
 FULL_ORDER = "full order"
 KINDS = ("discretisation", "reduction", "algebraic")
-FLOOR = 1e-12  # errors below it [%] are rounding; zero has no place on a logarithmic axis
-TIME = "processor time [s]"
+FLOOR = 1e-12  # [%], replaces zero and rounding errors on the logarithmic axis
+TIME = "CPU time [s]"
 FREQUENCY, DIVERGENCE = "frequency error [%]", "divergence error [percentage points]"
 TITLES = {FREQUENCY: "largest frequency error [%]", DIVERGENCE: "largest divergence error [points]"}
 
 
 class Solution:
-    """A mesh with an element, solved by a method."""
+    """Cost and errors of one mesh, element type and solution method."""
 
     def __init__(self, row):
         self.family = row["element"] + ("" if row["outlines"] == "curved" else f", {row['outlines']}")
@@ -25,18 +25,18 @@ class Solution:
 
 
 def cost_figure(solutions):
-    """A panel for frequencies and one for divergence rates; a line from mesh to mesh for each family at full order."""
-    picture = style.Picture("What accuracy costs", 2, 2, (5.6, 4.4))
+    """One panel for frequencies, one for divergence rates; lines join the meshes of each family at full order."""
+    picture = style.Picture("Accuracy versus cost", 2, 2, (5.6, 4.4))
     families = dict.fromkeys(solution.family for solution in solutions)
     for panel, column in zip(picture.panels, (FREQUENCY, DIVERGENCE)):
         style.prepare(panel, "", TIME, TITLES[column])
         if all(solution.errors[column] <= FLOOR for solution in solutions):
-            panel.text(0.5, 0.5, "none beyond rounding outside of clusters", transform=panel.transAxes, ha="center", color=style.GREY)
+            panel.text(0.5, 0.5, "rounding errors only, outside clusters", transform=panel.transAxes, ha="center", color=style.GREY)
             panel.set_xticks([])
             panel.set_yticks([])
             continue
         front = pareto_front((solution.seconds, solution.errors[column]) for solution in solutions if solution.is_complete)
-        style.draw_points(panel, front, linestyle="-", color=style.GREY, linewidth=1.6, label="Pareto front of those with all modes", zorder=1)
+        style.draw_points(panel, front, linestyle="-", color=style.GREY, linewidth=1.6, label="Pareto front (all modes found)", zorder=1)
         for number, family in enumerate(families):
             look = style.mark_of(number)
             own = sorted((s for s in solutions if s.family == family), key=lambda solution: solution.seconds)
@@ -48,9 +48,9 @@ def cost_figure(solutions):
 
 
 def kind_figure(solutions):
-    """A panel for each method and quantity, one mark for each kind of error of every mesh; rounding errors are left out."""
+    """A panel for each method and quantity, one mark for each kind of error and mesh; rounding errors are omitted."""
     methods = list(dict.fromkeys(solution.method for solution in solutions))
-    picture = style.Picture("Errors by their kinds", 2 * len(methods), len(methods), (4.4, 3.6))
+    picture = style.Picture("Errors by kind", 2 * len(methods), len(methods), (4.4, 3.6))
     panels = iter(picture.panels)
     for column in (FREQUENCY, DIVERGENCE):
         for method in methods:
@@ -65,6 +65,6 @@ def kind_figure(solutions):
 
 
 def figures(results):
-    """Of a study of accuracy."""
+    """Figures of an accuracy study."""
     solutions = [Solution(row) for row in results.table("accuracy").rows]
     return {"accuracy": cost_figure(solutions), "accuracy_kinds": kind_figure(solutions)}

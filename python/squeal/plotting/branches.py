@@ -8,10 +8,10 @@ from squeal.results import axis_title
 from squeal.plotting import charts, complex_plane, style
 
 FAMILIES_PER_PICTURE = 3
-NAME_LENGTH = 0.2  # of a panel, beside which a curve must not cross its name
-NAME_MARGIN = 0.1  # room for names above and below the frequencies of a family, in shares of their range
+NAME_LENGTH = 0.2  # share of the width over which a curve must not cross its label
+NAME_MARGIN = 0.1  # space for labels above and below the frequencies of a family, as a share of their range
 
-# Of the charts without and with dissipation; the first one lies on top, and the other one is wider, to be seen beside it
+# Charts without and with dissipation: the first is drawn on top, the second is wider so that it stays visible
 LOOKS = ({"color": style.BLACK, "linestyle": "-"}, {"color": style.GREY, "linestyle": (0, (4, 1.5))})
 GROWING_LOOKS = ({"color": style.VERMILLION, "linestyle": "-"}, {"color": style.ORANGE, "linestyle": (0, (3, 1))})
 WIDTHS, GROWING_WIDTHS = (0.9, 1.5), (2.4, 4.2)  # [points]
@@ -22,7 +22,7 @@ BREAK = (math.nan, math.nan)
 
 
 def lines_of(chart, branches, quantity):
-    """All points of branches, and those that grow with the thresholds beside them, as lines broken by NaN; none without points."""
+    """All points of branches, and their growing parts with the adjacent thresholds, as lines broken by NaN; empty without points."""
     everything, growing = [], []
     for branch in branches:
         points = chart.curve(branch)
@@ -39,11 +39,11 @@ def lines_of(chart, branches, quantity):
 
 
 def draw_curves(panel, all_charts, chosen, quantity, width):
-    """Chosen branches of each chart, their growing parts and their thresholds."""
+    """Draws the chosen branches of each chart, their growing parts and their thresholds."""
     titles = list(dict.fromkeys(chart.title for chart in all_charts))
     for chart, branches in zip(all_charts, chosen):
         number = titles.index(chart.title)
-        # A line needs two points
+        # A single point needs a mark to be visible
         marks = {"marker": "o", "markersize": 4} if len(chart.mus) == 1 else {}
         everything, growing = lines_of(chart, branches, quantity)
         style.draw_points(panel, everything, label=chart.title, linewidth=WIDTHS[number] * width, zorder=4 - number, **LOOKS[number], **marks)
@@ -59,12 +59,12 @@ def draw_curves(panel, all_charts, chosen, quantity, width):
 
 
 def add_names(panel, chart, branches):
-    """Names where branches begin, above their curves, the lowest one below."""
+    """Labels branches at their starts, above their curves; the lowest one of several below its curve."""
     labels = [chart.labels[branch] for branch in branches]
     length = NAME_LENGTH * (chart.mus[-1] - chart.mus[0])
     starts = []
     for branch in branches:
-        # A name that many branches share says no more than the title
+        # A label that several branches share only repeats the title
         if labels.count(chart.labels[branch]) == 1:
             points = [point for point in chart.curve(branch) if point.is_shown]
             beside = [point.frequency for point in points if point.mu <= points[0].mu + length]
@@ -76,7 +76,7 @@ def add_names(panel, chart, branches):
 
 
 def growing_families(all_charts):
-    """Families of which a branch grows somewhere, ascending by the lowest frequency [Hz] at which one begins to."""
+    """Families with a growing branch, by the lowest frequency [Hz] at which growth begins."""
     lowest = {}
     for chart in all_charts:
         for branch, label in chart.labels.items():
@@ -88,19 +88,19 @@ def growing_families(all_charts):
 
 
 def partners_of(all_charts, name):
-    """Labels of branches that those of a family coalesce with."""
+    """Labels of the branches with which those of a family coalesce."""
     return {chart.labels[threshold.partner] for chart in all_charts for threshold in chart.thresholds
             if threshold.partner in chart.labels and charts.family(chart.labels[threshold.branch]) == name}
 
 
 def members(chart, name, partners):
-    """Branches of a family, and those of other families that they meet in one of the charts."""
+    """Branches of a family, and those of other families with which they coalesce in one of the charts."""
     labels = list(chart.labels.values())
     result = []
     for branch, label in chart.labels.items():
-        # Of branches without a name only those that grow
+        # Only the growing ones of the unnamed branches
         is_member = charts.family(label) == name and (name != charts.NO_LABEL or chart.grows_somewhere(branch))
-        # Of many branches of one name it is not known which one it is that is met in the other chart
+        # A label that several branches share does not identify the partner in the other chart
         is_partner = label in partners and labels.count(label) == 1
         meets = any(threshold.partner == branch and charts.family(chart.labels[threshold.branch]) == name for threshold in chart.thresholds)
         if is_member or is_partner or meets:
@@ -109,7 +109,7 @@ def members(chart, name, partners):
 
 
 def leave_room(panel):
-    """Room for the names above the highest and below the lowest curve."""
+    """Extends the axis for labels above the highest and below the lowest curve."""
     values = [value for line in panel.get_lines() for value in line.get_ydata() if not math.isnan(value)]
     low, high = min(values), max(values)
     if low < high:
@@ -117,8 +117,8 @@ def leave_room(panel):
 
 
 def family_picture(all_charts, names):
-    """For each family its frequencies and below them, of a single one beside them, its divergence rates."""
-    picture = style.Picture("Branches that grow, with their families", 2 * len(names), len(names) if len(names) > 1 else 2)
+    """Frequencies of each family with the divergence rates below; next to them for a single family."""
+    picture = style.Picture("Growing branches and their families", 2 * len(names), len(names) if len(names) > 1 else 2)
     for name, upper, lower in zip(names, picture.panels, picture.panels[len(names):]):
         partners = partners_of(all_charts, name)
         chosen = [members(chart, name, partners) for chart in all_charts]
@@ -141,7 +141,7 @@ def set_friction_range(panels, all_charts):
 
 
 def family_figures(all_charts):
-    """Families that grow, three to a picture."""
+    """Growing families, three to a figure."""
     names = growing_families(all_charts)
     parts = [names[i:i + FAMILIES_PER_PICTURE] for i in range(0, len(names), FAMILIES_PER_PICTURE)]
     return {"sweep_families" + (f"_{number}" if len(parts) > 1 else ""): family_picture(all_charts, part)
@@ -149,8 +149,8 @@ def family_figures(all_charts):
 
 
 def overview_figure(all_charts, band_end):
-    """All modes of the band."""
-    picture = style.Picture("Modes of the band over " + axis_title(all_charts[0].parameter).split(" [")[0], 2, 2, (5.4, 5.2))
+    """All modes in the band."""
+    picture = style.Picture("Modes in the band over " + axis_title(all_charts[0].parameter).split(" [")[0], 2, 2, (5.4, 5.2))
     for panel, title, quantity, label in zip(picture.panels, ("Frequencies", "Divergence rates"), ("frequency", "divergence"),
                                              (style.FREQUENCY, style.DIVERGENCE)):
         style.prepare(panel, title, axis_title(all_charts[0].parameter), label)
@@ -162,7 +162,7 @@ def overview_figure(all_charts, band_end):
 
 
 def figures(results):
-    """Of a sweep."""
+    """Figures of a sweep."""
     all_charts = charts.read_charts(results)
     band_end = results.number("Band/Maximum frequency")
     return {**family_figures(all_charts), "complex_plane": complex_plane.sweep_figure(results, all_charts, band_end),

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Modes over the friction coefficient, as a sweep writes them: branches and their thresholds."""
+"""Branches and thresholds of a sweep over the friction coefficient."""
 
 import dataclasses
 import re
@@ -33,7 +33,7 @@ class Threshold:
 
 @dataclasses.dataclass
 class CurvePoint:
-    """A point of a branch with frequency [Hz] and divergence rate [%]; both None where the branch has no mode in the band."""
+    """A point of a branch with frequency [Hz] and divergence rate [%]; both None if the branch has no mode in the band."""
 
     mu: float
     frequency: float = None
@@ -67,7 +67,7 @@ class Chart:
                            for mu, event, branch, partner, frequency in zip(*columns) if frequency <= band_end]
 
     def curve(self, branch):
-        """Points of a branch, with the thresholds at which it begins or ceases to grow, or to decay."""
+        """Points of a branch, including its thresholds."""
         points = []
         events = [threshold for threshold in self.thresholds if branch in (threshold.branch, threshold.partner)]
         for mu in self.mus:
@@ -91,7 +91,7 @@ def family(label):
 
 
 def read_charts(results):
-    """The charts of a sweep: without radial dissipation first, each in stretches with one contact set."""
+    """Charts of a sweep, without radial dissipation first, one for each interval with a constant contact set."""
     band_end = results.number("Band/Maximum frequency")
     is_damped = results.parameter("Operation/Radial dissipation") != "none"
     charts = []

@@ -7,20 +7,20 @@ import dataclasses
 from squeal.plotting import charts, style
 from squeal.results import symbol
 
-ROUNDING = 1e-6  # largest divergence rate [%] that is no reason to cut the axis
-SAME_PLACE = 0.05  # share of the width within which a name serves modes of two series
+ROUNDING = 1e-6  # divergence rates [%] up to this are treated as zero
+SAME_PLACE = 0.05  # share of the width within which modes of two series share a label
 
 
 @dataclasses.dataclass
 class Series:
-    """Modes of one reading of the dissipation."""
+    """Modes with one form of the dissipation."""
 
     title: str
     modes: list
 
 
 class NameRoom:
-    """Places for names beside marks such that none covers another or a mark; in points of the panel."""
+    """Finds positions for labels next to marks without overlaps, in points of the panel."""
 
     LETTER, LINE, GAP = 0.58 * style.SMALL, 1.25 * style.SMALL, 5.0
 
@@ -32,7 +32,7 @@ class NameRoom:
         self.boxes.append((x - self.GAP, x + self.GAP, y - self.GAP, y + self.GAP))
 
     def find(self, x, y, text):
-        """Offset and horizontal alignment of a text beside a point, or None if there is no room."""
+        """Offset and horizontal alignment of a text next to a point, None if there is no space."""
         length = self.LETTER * len(text)
         for below in (False, True):
             for alignment in ("left", "right"):
@@ -50,7 +50,7 @@ class NameRoom:
 
 
 class Limits:
-    """Of divergence rates; modes that decay much faster than any grows would squeeze the others and lie at the lower edge."""
+    """Limits of the divergence rate; modes that decay much faster than any mode grows are drawn at the lower edge."""
 
     def __init__(self, series):
         rates = [mode.divergence for one in series for mode in one.modes] + [0.0]
@@ -74,11 +74,11 @@ class Plane:
         self.panel, self.series, self.edge = panel, series, limits.edge
         panel.set_ylim(*limits.ends)
         panel.set_xlim(0, 1e-3 * band_end)
-        # What labels and title take of the panel
+        # Size of the axes without labels and title
         self.points = ((size[0] - 0.9) * style.INCH, (size[1] - 0.9) * style.INCH)
 
     def place(self, mode):
-        """Where a mode is drawn [kHz, %]."""
+        """Position of a mode [kHz, %]."""
         return 1e-3 * mode.frequency, max(mode.divergence, self.edge)
 
     def in_points(self, mode):
@@ -96,7 +96,7 @@ class Plane:
                               markersize=6, clip_on=False)
 
     def draw_marks(self):
-        """Rings about growing modes, squares about undecided ones."""
+        """Draws rings around growing modes, squares around undecided ones."""
         growing = [self.place(mode) for one in self.series for mode in one.modes if mode.grows and not mode.is_undecided]
         undecided = [self.place(mode) for one in self.series for mode in one.modes if mode.is_undecided]
         for places, label, marker, colour in ((growing, "growing", "o", style.VERMILLION), (undecided, "undecided", "s", style.BLUE)):
@@ -104,7 +104,7 @@ class Plane:
                               markeredgewidth=1.3, zorder=5)
 
     def draw_names(self):
-        """Names of growing modes, where there is room, those that grow most first."""
+        """Labels growing modes where there is space, the fastest growing first."""
         room = NameRoom(self.points[0])
         for one in self.series:
             for mode in one.modes:
@@ -113,7 +113,7 @@ class Plane:
         for one in self.series:
             for mode in sorted((mode for mode in one.modes if mode.grows and not mode.is_undecided), key=lambda mode: -mode.divergence):
                 x, y = self.in_points(mode)
-                # The name beside the mode of another series serves both
+                # One label serves nearby modes of both series
                 serves = any(other is not one and name == mode.label and abs(x - place) < SAME_PLACE * self.points[0]
                              for other, name, place in named)
                 if not serves and (found := room.find(x, y, mode.label)):
@@ -124,7 +124,7 @@ class Plane:
 
 
 def draw(panel, size, title, series, band_end, limits=None):
-    """Draws modes up to `band_end` [Hz] into a panel of a picture; `limits` that it shares with others."""
+    """Draws modes up to `band_end` [Hz] into a panel of a picture; `limits` may be shared with other panels."""
     style.prepare(panel, title, "frequency [kHz]", style.DIVERGENCE)
     style.zero_line(panel)
     plane = Plane(panel, size, series, band_end, limits or Limits(series))
@@ -134,7 +134,7 @@ def draw(panel, size, title, series, band_end, limits=None):
 
 
 def planes_of_table(table):
-    """Series by friction coefficient, in the order of a table complex_plane, without radial dissipation first."""
+    """Friction coefficient -> series, in the order of the table complex_plane, without radial dissipation first."""
     planes = {}
     columns = (table.numbers(table.parameter), table.texts("radial dissipation"), table.texts("label"), table.numbers("frequency [Hz]"),
                table.numbers("divergence rate [%]"), table.texts("verdict"))
@@ -152,7 +152,7 @@ def last_plane(all_charts):
 
 
 def sweep_figure(results, all_charts, band_end):
-    """A panel for each friction coefficient of the complex plane; where none is asked for, one for the last of the sweep."""
+    """A panel for each friction coefficient in the table complex_plane; without this table, one for the last of the sweep."""
     planes = planes_of_table(results.table("complex_plane")) if results.has("complex_plane") else last_plane(all_charts)
     picture = style.Picture("Modes in the complex plane", len(planes), 2, (5.2, 3.6))
     for panel, (mu, series) in zip(picture.panels, planes.items()):
@@ -190,5 +190,5 @@ def run_figure(results):
 
 
 def figures(results):
-    """Of a run at one friction coefficient."""
+    """Figures of a run at one friction coefficient."""
     return {"complex_plane": run_figure(results)}

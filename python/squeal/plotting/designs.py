@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What each variable of a study of designs does to the onset of squeal and to the largest divergence rate."""
+"""Onset of squeal and largest divergence rate over each variable of a design study."""
 
 import math
 
@@ -11,7 +11,7 @@ MOST_VARIABLES, MOST_LABELS = 8, 10
 
 
 def figures(results):
-    """Of a study of designs."""
+    """Figures of a design study."""
     table = results.table("designs")
     variables = variables_of(table)[:MOST_VARIABLES]
     solved = [outcome == "solved" for outcome in table.texts("outcome")]
@@ -23,7 +23,7 @@ def figures(results):
     marks = {label: style.mark_of(min(number, MOST_LABELS)) for number, label in enumerate(sorted(labels))}
     others = set(sorted(labels)[MOST_LABELS:])
 
-    picture = style.Picture("Designs: where squeal begins, and how fast it grows at most", 2 * len(variables), len(variables), (3.6, 3.0))
+    picture = style.Picture("Designs: onset of squeal and largest divergence rate", 2 * len(variables), len(variables), (3.6, 3.0))
     for row, (column, label_column, title) in enumerate(panels):
         values, names = table.numbers(column), table.texts(label_column)
         for number, variable in enumerate(variables):
@@ -34,7 +34,7 @@ def figures(results):
                 if not is_solved:
                     continue
                 if math.isnan(y):
-                    # Quiet up to the end: no threshold, and nothing that grows
+                    # Quiet up to the last friction coefficient
                     panel.plot(x, end if row == 0 else 0, linestyle="", marker="o", markersize=6, color=style.BLACK, markerfacecolor="white",
                                label="quiet")
                 else:

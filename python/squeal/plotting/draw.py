@@ -8,24 +8,23 @@ import io
 from squeal.errors import Error
 
 DOTS_PER_INCH = 150
-# The same tables give the same bytes
+# Without dates, identical tables give identical files
 UNDATED = {"svg": {"Date": None}, "png": {}, "pdf": {"CreationDate": None}}
 
-
-# Files that draw plots, and the table that a run needs for them
+# Module that draws plots -> the table that it requires
 PLOTS = {"complex_plane": "complex_modes", "branches": "branches", "stability_map": "map", "reduction": "reduction_errors",
          "ingredients": "ingredients", "sensitivity": "sensitivities", "accuracy": "accuracy", "designs": "designs",
          "robustness": "sample_modes", "robust_search": "best_design", "updating": "fit"}
 
 
 def figures(results):
-    """All figures of a run by their names. Raises Error if its tables give none."""
+    """All figures of a run by name. Raises Error if no table has a plot."""
     found = {}
     for name, table in PLOTS.items():
         if results.has(table):
             found.update(importlib.import_module(f"squeal.plotting.{name}").figures(results))
     if not found:
-        raise Error("no table is there of which a plot is known", f"folder {results.folder}", "run squeal again")
+        raise Error("no table of this run has a plot", f"folder {results.folder}", "run squeal again")
     return found
 
 

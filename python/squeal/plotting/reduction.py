@@ -5,13 +5,13 @@
 from squeal.plotting import style
 
 CRITERIA = {"res [-]": "\u03b5_res", "mac [-]": "\u03b5_mac", "frq [-]": "\u03b5_frq", "div [-]": "\u03b5_div"}
-FLOOR = 1e-16  # errors below it are rounding; zero has no place on a logarithmic axis
+FLOOR = 1e-16  # replaces zero and rounding errors on the logarithmic axis
 MOST_COLUMNS = 3
 AT_FLOOR = "on this line: 1e-16 or less"
 
 
 class Candidate:
-    """A basis with its variant: the errors of each group of modes, and what it costs [s of CPU]."""
+    """A basis and its truncation: errors by group of modes and column, and CPU times [s]."""
 
     def __init__(self, name, truncation, build_seconds, solve_seconds):
         self.name, self.truncation = name, truncation
@@ -37,17 +37,17 @@ def read_candidates(results):
 
 
 def draw_floor(panel, values):
-    """A line at the floor if something lies on it."""
+    """Draws a line at the floor if a value lies on it."""
     if any(value <= FLOOR for value in values):
         panel.axhline(FLOOR, color=style.GREY, linestyle=(0, (2, 2)), linewidth=1.2, zorder=1, label=AT_FLOOR)
 
 
 def draw_errors(panel, candidates, names, group, criteria):
-    """One mark for each basis, the criteria beside each other."""
+    """Draws one mark for each basis and criterion."""
     shown = []
     for candidate in candidates:
         number = names.index(candidate.name)
-        # Marks beside each other, so that equal values stay visible
+        # Offset marks so that equal values stay visible
         offset = 0.75 * (number / (len(names) - 1) - 0.5) if len(names) > 1 else 0.0
         values = [candidate.errors[group][column] for column in criteria]
         shown += values
@@ -67,10 +67,10 @@ def error_figure(candidates):
     truncations = list(dict.fromkeys(candidate.truncation for candidate in candidates if candidate.truncation)) or [""]
     groups = list(dict.fromkeys(group for candidate in candidates for group in candidate.errors))
     names = list(dict.fromkeys(candidate.name for candidate in candidates))
-    # Where nothing grows there is no error of growth
+    # Without growing modes, the error of the divergence rate vanishes
     criteria = [column for column in CRITERIA if any(candidate.largest(column) > 0 for candidate in candidates)]
-    title = "Errors of reduced bases: largest of each group of modes"
-    # A row for each truncation; the groups of a single one are wrapped
+    title = "Largest errors of reduced bases by group of modes"
+    # One row for each truncation; the groups of a single one are wrapped
     n_columns = len(groups) if len(truncations) > 1 else min(len(groups), MOST_COLUMNS)
     picture = style.Picture(title, len(truncations) * len(groups), n_columns, (4.9, 3.6))
     panels = iter(picture.panels)
@@ -84,7 +84,7 @@ def error_figure(candidates):
 
 
 def pareto_front(points):
-    """Of points (cost, error) those that none beats in both, by ascending cost."""
+    """The Pareto-optimal points (cost, error), by ascending cost."""
     front = []
     for cost, error in sorted(points):
         if not front or error < front[-1][1]:
@@ -93,7 +93,7 @@ def pareto_front(points):
 
 
 def draw_costs(panel, candidates, column, costs):
-    """The largest error of each basis over its cost, with the bases that none beats in both joined by a line."""
+    """Draws the largest error of each basis over its cost, and the Pareto front."""
     errors = [max(candidate.largest(column), FLOOR) for candidate in candidates]
     front = pareto_front(zip(costs, errors))
     panel.plot(*zip(*front), color=style.GREY, linewidth=1.6, label="Pareto front", zorder=1)
@@ -107,7 +107,7 @@ def cost_figure(candidates, with_friction):
     column = "div [-]" if with_friction else "frq [-]"
     label = f"largest {CRITERIA[column]} [-]"
     picture = style.Picture("Cost and accuracy of reduced bases", 2, 2, (5.4, 4.2))
-    times = ("time per friction coefficient" if with_friction else "time of solving", "time of building")
+    times = ("time per friction coefficient" if with_friction else "solution time", "build time")
     seconds = ([candidate.solve_seconds for candidate in candidates], [candidate.build_seconds for candidate in candidates])
     for panel, time, costs in zip(picture.panels, times, seconds):
         style.prepare(panel, f"Error over {time}", f"{time} [s of CPU]", label)
@@ -116,7 +116,7 @@ def cost_figure(candidates, with_friction):
 
 
 def figures(results):
-    """Of a study of reduced bases."""
+    """Figures of a study of reduced bases."""
     candidates = read_candidates(results)
     return {"reduction_errors": error_figure(candidates),
             "reduction_cost": cost_figure(candidates, results.parameter("Reduction/Problem") == "friction")}

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Clouds of modes over uncertain parameters, the distribution of the largest divergence rate, and the parameters that decide it."""
+"""Modes of all samples, the distribution of the largest divergence rate, and the most influential parameters."""
 
 import math
 
@@ -12,7 +12,7 @@ N_BINS, MOST_SCATTERS = 30, 4
 
 
 def figures(results):
-    """Of a study of uncertain parameters."""
+    """Figures of a study of uncertain parameters."""
     modes, samples = results.table("sample_modes"), results.table("samples")
     indices = results.table("sobol_indices").rows if results.has("sobol_indices") else []
     indices = [row for row in indices if row["quantity"] == "largest divergence rate"]
@@ -52,10 +52,10 @@ def cloud(panel, modes):
 
 
 def cumulative(panel, onsets):
-    """Samples in which a mode grows up to a value of the parameter of the sweep."""
+    """Draws the percentage of samples with an onset up to each value of the parameter of the sweep."""
     known = [missed == 0. for missed in onsets.numbers("values that miss the tolerance [-]")]
     columns = [column for column in onsets.columns if " of " in column and column.endswith("[-]") and not column.startswith("uncertainty")]
-    style.prepare(panel, "", f"first onset: {columns[0].split(' of ')[0]} [-]", "samples that squeal up to there [%]")
+    style.prepare(panel, "", f"first onset: {columns[0].split(' of ')[0]} [-]", "samples with an onset up to this value [%]")
     for column, colour in zip(columns, (style.SKY, style.BLUE)):
         values = sorted(value for value, is_known in zip(onsets.numbers(column), known) if is_known and not math.isnan(value))
         name = column.split(" of ")[1].removesuffix(" [-]")
@@ -65,7 +65,7 @@ def cumulative(panel, onsets):
 
 
 def bars(panel, indices):
-    """First-order and total indices with their intervals."""
+    """Draws first-order and total indices with their confidence intervals."""
     style.prepare(panel, "", "Sobol' index of the largest divergence rate [-]", "")
     for offset, kind, colour in ((-0.2, "first-order index", style.SKY), (0.2, "total index", style.BLUE)):
         values = [float(row[f"{kind} [-]"]) for row in indices]

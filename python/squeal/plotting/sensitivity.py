@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What one per cent of each parameter changes of the divergence rates of the growing modes."""
+"""Change of the divergence rates of growing modes by a 1 % increase of each parameter."""
 
 import math
 
@@ -11,7 +11,7 @@ CHANGE = "divergence rate per 1 % [percentage points]"
 
 
 def figures(results):
-    """Of a study of sensitivities."""
+    """Figures of a sensitivity study."""
     table = results.table("sensitivities")
     columns = [table.texts(name) for name in ("mode [-]", "label", "parameter", "body")]
     rows = [row for row in zip(*columns, table.numbers("frequency [Hz]"), table.numbers("divergence rate [%]"), table.numbers(CHANGE))
@@ -20,11 +20,11 @@ def figures(results):
     changes = {mode: {row[2]: row[6] for row in rows if row[0] == mode} for mode in modes}
     names = sorted(changes[modes[0]], key=lambda name: -abs(changes[modes[0]][name]))
 
-    picture = style.Picture("What one per cent of each parameter changes", len(modes), len(modes), (3.9, style.BAR * len(names) + 1.3))
+    picture = style.Picture("Effect of a 1 % increase of each parameter", len(modes), len(modes), (3.9, style.BAR * len(names) + 1.3))
     for panel, mode in zip(picture.panels, modes):
         _, label, _, _, frequency, divergence, _ = next(row for row in rows if row[0] == mode)
         style.prepare(panel, f"{label}, {frequency:.0f} Hz, {divergence:.3g} %", "change of divergence rate [points]", "")
-        for colour, text, sign in ((style.VERMILLION, "more of it: grows more", 1), (style.BLUE, "more of it: grows less", -1)):
+        for colour, text, sign in ((style.VERMILLION, "increase: grows faster", 1), (style.BLUE, "increase: grows more slowly", -1)):
             chosen = [place for place, name in enumerate(names) if sign * changes[mode][name] > 0]
             style.draw_bars(panel, chosen, [changes[mode][names[place]] for place in chosen], colour, text, sign < 0)
         panel.axvline(0, color=style.GREY, linewidth=1.1)

@@ -1,17 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The cells of a stability map: their edges, limits between them, regions of one leading mode and places for its name."""
+"""Cells of a stability map: edges, boundaries between cells, regions with one leading mode and positions of its label."""
 
+import itertools
 import math
 
 import numpy as np
 import scipy.ndimage
 
-ISOLATED = 0.05  # half-width of the cell of a value without neighbours
-WIDE = 1e4  # ratio of the ends of a logarithmic axis from which on only powers of ten are named
-ROOM_OF_LETTER, ROOM_OF_LINE = 0.02, 0.04  # shares of a panel
+ISOLATED = 0.05  # half-width of the cell of a single value
+WIDE = 1e4  # ratio of the ends of a logarithmic axis above which only powers of ten are labelled
+ROOM_OF_LETTER, ROOM_OF_LINE = 0.02, 0.04  # size of a label as shares of a panel
 
-# From pale to dark, without white and grey, which cells of other meanings have; black texts are legible on all of it.
+# From pale to dark, without white and grey, which mark other cells; black text is legible on all colours
 COLOURS = ("#fff3c4", "#fdd27f", "#f9a052", "#e8673a", "#c43a24")
 ORDINATES = ("load per side [N]", "rotation speed [rad/s]")
 
@@ -21,7 +22,7 @@ class StabilityMap:
 
     def __init__(self, table):
         self.abscissa, self.ordinate = table.columns[:2]
-        self.is_logarithmic = self.ordinate in ORDINATES  # values of equal ratio
+        self.is_logarithmic = self.ordinate in ORDINATES  # geometrically spaced
         abscissae, ordinates = table.numbers(self.abscissa), table.numbers(self.ordinate)
         self.mus, self.values = sorted(set(abscissae)), sorted(set(ordinates))
         shape = len(self.values), len(self.mus)
@@ -48,7 +49,7 @@ class StabilityMap:
 
 
 def cell_edges(values, logarithmic):
-    """Edges half-way between values, the outer ones as far from their value; not across zero."""
+    """Edges halfway between values; the outer cells are symmetric about their value but do not cross zero."""
     v = np.log(values) if logarithmic else np.asarray(values)
     if len(v) > 1:
         edges = np.concatenate([[1.5 * v[0] - 0.5 * v[1]], 0.5 * (v[:-1] + v[1:]), [1.5 * v[-1] - 0.5 * v[-2]]])
@@ -61,35 +62,30 @@ def cell_edges(values, logarithmic):
 
 
 def logarithmic_ticks(first, last):
-    """1, 2, 5, 10, ... within a range; powers of ten alone if it is wide."""
+    """1, 2, 5, 10, ... within a range; only powers of ten if it is wide."""
     digits = (1, 2, 5) if last < WIDE * first else (1,)
     powers = range(math.floor(math.log10(first)), math.floor(math.log10(last)) + 1)
     return [digit * 10.0**power for power in powers for digit in digits if first <= digit * 10.0**power <= last]
 
 
 def limits(stability, differ):
-    """Edges between known cells of which differ(cell, other) is true, as a line broken by NaN; edges in a row are one line."""
-    lines = []
-
-    def follow(ends_of, pairs):
-        for (start, end), (cell, other) in zip(ends_of, pairs):
-            if stability.is_known[cell] and stability.is_known[other] and differ(cell, other):
-                if not lines or math.isnan(lines[-1][0]):
-                    lines.append(start)
-                lines.append(end)
-            elif lines and not math.isnan(lines[-1][0]):
-                lines.append((math.nan, math.nan))
-        if lines and not math.isnan(lines[-1][0]):
-            lines.append((math.nan, math.nan))
-
+    """Edges between known cells for which differ(cell, other) is true, as lines separated by NaN; adjacent edges are joined."""
     x, y = stability.x_edges, stability.y_edges
     n_rows, n_columns = stability.rate.shape
-    for column in range(n_columns - 1):
-        follow([((x[column + 1], y[row]), (x[column + 1], y[row + 1])) for row in range(n_rows)],
-               [((row, column), (row, column + 1)) for row in range(n_rows)])
-    for row in range(n_rows - 1):
-        follow([((x[column], y[row + 1]), (x[column + 1], y[row + 1])) for column in range(n_columns)],
-               [((row, column), (row + 1, column)) for column in range(n_columns)])
+    # (start, end, cell, other) of the edges on each vertical and horizontal grid line
+    grid_lines = [[((x[j + 1], y[i]), (x[j + 1], y[i + 1]), (i, j), (i, j + 1)) for i in range(n_rows)] for j in range(n_columns - 1)]
+    grid_lines += [[((x[j], y[i + 1]), (x[j + 1], y[i + 1]), (i, j), (i + 1, j)) for j in range(n_columns)] for i in range(n_rows - 1)]
+
+    def is_limit(edge):
+        _, _, cell, other = edge
+        return bool(stability.is_known[cell] and stability.is_known[other] and differ(cell, other))
+
+    lines = []
+    for grid_line in grid_lines:
+        for found, edges in itertools.groupby(grid_line, is_limit):
+            if found:
+                starts, ends, *_ = zip(*edges)
+                lines += [starts[0], *ends, (math.nan, math.nan)]
     return lines
 
 
@@ -102,7 +98,7 @@ def regions(stability):
 
 
 def place_of_name(region, shape, length):
-    """The cell of a region farthest from its rim, of several the one nearest to its middle; None without room for the name."""
+    """The cell of a region farthest from its boundary, nearest to its centre if there are several; None without space for the label."""
     inside = set(region)
     middle = np.mean(region, axis=0)
 

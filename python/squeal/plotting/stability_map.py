@@ -13,11 +13,11 @@ from squeal.plotting.stability_cells import COLOURS, StabilityMap, limits, logar
 from squeal.results import axis_title
 
 SCALE = LinearSegmentedColormap.from_list("growth", COLOURS)
-MOST_STEPS = 12  # numbers of modes up to this have a colour each
+MOST_STEPS = 12  # numbers of modes up to this have separate colours
 
 
 def draw_cells(panel, stability, values, norm):
-    """Unstable cells in colour; stable ones white, undecided and missing ones hatched."""
+    """Draws unstable cells in colour, stable ones white, undecided and missing ones hatched."""
     x, y = stability.x_edges, stability.y_edges
     shown = np.where(stability.is_unstable, values, np.nan)
     panel.pcolormesh(x, y, np.ma.masked_invalid(shown), cmap=SCALE, norm=norm, edgecolors="face", linewidth=0.3)
@@ -31,10 +31,10 @@ def draw_cells(panel, stability, values, norm):
 
 
 def draw_limits(panel, stability, with_leaders):
-    """Lines between cells that differ in stability, contact set or most unstable mode."""
+    """Draws lines between cells that differ in stability, contact set or most unstable mode."""
     is_unstable, leader, n_open = stability.is_unstable, stability.leader, stability.n_open
     lines = [("change of the contact set", {"linewidth": 1.4, "linestyle": (0, (5, 3))}, lambda a, b: n_open[a] != n_open[b]),
-             ("limit of stability", {"linewidth": 2.8}, lambda a, b: is_unstable[a] != is_unstable[b])]
+             ("stability boundary", {"linewidth": 2.8}, lambda a, b: is_unstable[a] != is_unstable[b])]
     if with_leaders:
         lines.insert(0, ("change of the most unstable mode", {"linewidth": 0.9},
                          lambda a, b: is_unstable[a] and is_unstable[b] and leader[a] != leader[b]))
@@ -43,7 +43,7 @@ def draw_limits(panel, stability, with_leaders):
 
 
 def draw_leaders(panel, stability):
-    """The name of the most unstable mode in the middle of each region, if there is room."""
+    """Labels each region with its most unstable mode, if there is space."""
     for region in regions(stability):
         name = stability.leader[region[0]]
         cell = place_of_name(region, stability.rate.shape, len(name))
@@ -52,7 +52,7 @@ def draw_leaders(panel, stability):
 
 
 def draw_counts(panel, stability, size):
-    """Numbers in the cells, if there is room."""
+    """Writes the number of unstable modes into the cells, if there is space."""
     n_rows, n_columns = stability.rate.shape
     if (size[0] - 1.7) * style.INCH / n_columns < 1.5 * style.SMALL or (size[1] - 1.0) * style.INCH / n_rows < 1.2 * style.SMALL:
         return
@@ -79,7 +79,7 @@ def prepare(panel, stability, title):
 
 
 def map_figure(table):
-    """Divergence rate of the most unstable mode, and number of unstable modes."""
+    """A panel for the divergence rate of the most unstable mode, and one for the number of unstable modes."""
     stability = StabilityMap(table)
     picture = style.Picture(f"Stability over {axis_title(stability.abscissa).split(' [')[0]} and {stability.ordinate.split(' [')[0]}", 2, 2, (6.2, 4.6))
     rates, counts = picture.panels
@@ -102,5 +102,5 @@ def map_figure(table):
 
 
 def figures(results):
-    """Of a sweep with a map."""
+    """Figures of a sweep with a map."""
     return {"map": map_figure(results.table("map"))}

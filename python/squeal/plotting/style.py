@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What all plots have in common: colours, marks, sizes, and the key below the panels."""
+"""Common style of all plots: colours, markers, sizes, and the legend below the panels."""
 
 import math
 
@@ -8,7 +8,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-# Told apart with every kind of colour vision (Okabe and Ito); what they mean is said by marks, widths and dashes, too.
+# Distinguishable with all types of colour vision (Okabe and Ito); markers, widths and dashes repeat their meaning
 BLACK, GREY, BLUE, VERMILLION, GREEN = "#000000", "#8c8c8c", "#0072b2", "#d55e00", "#009e73"
 PURPLE, ORANGE, SKY, BROWN = "#cc79a7", "#e69f00", "#56b4e9", "#7f5539"
 SERIES = (BLACK, BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY, BROWN)
@@ -17,24 +17,21 @@ MARKERS = ("o", "s", "^", "v", "D", "P", "X", "<", ">", "p", "*", "h")
 FONT_SIZE, SMALL = 10, 8  # [points]
 INCH = 72  # [points]
 BAR = 0.24  # height of a row [inches]
-WIDE = 1e3  # ratio of the ends of an axis of costs from which on only powers of ten are named
+WIDE = 1e3  # ratio of the ends of a cost axis above which only powers of ten are labelled
 KEY_LINE, KEY_MARK, KEY_LETTER, TITLE = 0.22, 0.75, 0.063, 0.35  # [inches]
 
 FREQUENCY, DIVERGENCE = "frequency [Hz]", "divergence rate R/\u03c9 [%]"
 
 
 def mark_of(number):
-    """Colour, marker and face colour of a series: another look for each of 2 * 12, first filled, then open."""
+    """Colour, marker and face colour of a series: 24 different styles, first filled, then open."""
     colour = SERIES[number % len(SERIES)]
     return {"color": colour, "marker": MARKERS[number % len(MARKERS)],
             "markerfacecolor": "white" if number // len(MARKERS) % 2 else colour}
 
 
 class Picture:
-    """Panels beside and below each other with a title above and one key below.
-
-    `size` is that of a panel with its labels [inches].
-    """
+    """A grid of panels with a title above and one legend below; `size` of a panel with its labels [inches]."""
 
     def __init__(self, title, n_panels, n_columns, size=(4.6, 3.4)):
         self.size = size
@@ -49,7 +46,7 @@ class Picture:
         self.figure.suptitle(title, fontsize=FONT_SIZE + 2)
 
     def add_key(self):
-        """Every label once, in a strip of its own below the panels; call when all is drawn."""
+        """Adds a legend with every label once below the panels; call after drawing."""
         entries = {}
         for panel in self.panels:
             for handle, label in zip(*panel.get_legend_handles_labels()):
@@ -60,7 +57,7 @@ class Picture:
             entry_width = KEY_MARK + KEY_LETTER * max(len(label) for label in entries)
             n_columns = min(len(entries), max(1, int(width / entry_width)))
             strip += math.ceil(len(entries) / n_columns) * KEY_LINE
-            # To be read line by line, where matplotlib fills column after column
+            # Order by rows, since matplotlib fills columns
             labels = list(entries)
             labels = [label for column in range(n_columns) for label in labels[column::n_columns]]
         self.figure.set_size_inches(width, height + strip)
@@ -73,7 +70,7 @@ class Picture:
 
 
 def prepare(panel, title, x_label, y_label):
-    """Title, labels and grid of a panel."""
+    """Sets title, labels and grid of a panel."""
     panel.set_title(title, fontsize=FONT_SIZE + 1)
     panel.set_xlabel(x_label)
     panel.set_ylabel(y_label)
@@ -84,7 +81,7 @@ def prepare(panel, title, x_label, y_label):
 
 
 def draw_points(panel, points, **look):
-    """Marks at points, or a line through them, if there are any."""
+    """Draws marks at points, or a line through them, if there are any."""
     if points:
         panel.plot(*zip(*points), **{"linestyle": "none", **look})
 
@@ -94,7 +91,7 @@ def zero_line(panel):
 
 
 def cost_axes(panel, costs):
-    """Logarithmic axes for errors over costs, with numbers on the axis of costs."""
+    """Sets logarithmic axes for errors over costs, with plain numbers on the cost axis."""
     panel.set_xscale("log")
     panel.set_yscale("log")
     panel.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5) if max(costs) < WIDE * min(costs) else (1,)))
@@ -103,13 +100,13 @@ def cost_axes(panel, costs):
 
 
 def draw_bars(panel, places, values, colour, label, is_hatched):
-    """Bars at places from the top, if there are any."""
+    """Draws horizontal bars in rows counted from the top, if there are any."""
     if places:
         panel.barh(places, values, height=0.62, color=colour, label=label, hatch="///" if is_hatched else None, edgecolor="white", linewidth=0)
 
 
 def name_rows(panel, names):
-    """Names of the rows of bars, empty where another panel has them."""
+    """Labels the rows of bars; names are empty if another panel has them."""
     panel.set_ylim(len(names) - 0.4, -0.6)
     panel.set_yticks(range(len(names)), names, fontsize=SMALL)
     panel.grid(axis="y", visible=False)
