@@ -1,3 +1,3 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What scripts/report.py writes into its page."""
+"""Content and layout of the page that scripts/report.py writes."""

@@ -14,7 +14,7 @@ def number(text):
 
 
 def short(text, n=6):
-    """A number with so many digits, for a chart."""
+    """A number rounded to n digits, for a chart."""
     return float(f"{number(text):.{n}g}")
 
 
@@ -30,7 +30,7 @@ def layout(x, y, **more):
 
 
 def points(name, x, y, about=None, mode="markers", **more):
-    """A series of points or lines; about: what the mouse shows of each point."""
+    """A series of points or lines; about: hover text of each point."""
     hover = {} if about is None else {"customdata": about, "hovertemplate": "%{customdata}<extra></extra>"}
     return {"type": "scatter", "mode": mode, "name": name, "x": x, "y": y, **hover, **more}
 
@@ -42,18 +42,18 @@ def best_so_far(rows, goal, **more):
 
 
 def name_of_mode(row):
-    """A mode in a list of choices."""
+    """The name of a mode in a selection list."""
     return f"{row['label']}, {number(row[FREQUENCY]):.0f} Hz, ξ = {digits(number(row[RATE]), 3)} %"
 
 
 def confidence(row):
-    """The interval of a probability of squeal."""
+    """The confidence interval of a probability of squeal."""
     lower, upper = (digits(number(row[f"{end} confidence limit [%]"]), 3) for end in ("lower", "upper"))
     return f"95 % confidence interval {lower} to {upper} %"
 
 
 def plain(text, n=5):
-    """A value as the tables have it, its number with so many digits."""
+    """A cell of a table, with numbers rounded to n digits."""
     try:
         return digits(float(text), n).replace("e+0", "e").replace("e+", "e").replace("e-0", "e-")
     except ValueError:
@@ -61,7 +61,7 @@ def plain(text, n=5):
 
 
 def names_apart(heights, span, most=8, share=0.05):
-    """Keys of the greatest heights whose names do not lie on each other in a chart of such a span."""
+    """Keys of the greatest heights whose labels do not overlap in a chart of this span."""
     named = []
     for key in sorted(heights, key=heights.get, reverse=True):
         if len(named) < most and all(abs(heights[key] - heights[other]) > share * span for other in named):

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What a page says of a run: verdict, sections, tables, what was checked, and how to repeat it. Everything is read from the results, nothing is
-computed anew.
+"""Content of a report: verdict, sections, tables, checks, and how to repeat the run. Everything is read from the results.
 
-Each kind of results has a module in PAGES: the tables that such results have (`TABLES`), titles (`TITLES`), its `verdict`, and, where there are
-any, its `sections` with charts, what was checked (`checks`), and plots that its charts replace (`REPLACED`).
+Each kind of results has a module in PAGES with the tables that it requires (`TABLES`), titles of tables (`TITLES`), `verdict`, and
+optionally `sections` with charts, `checks`, and the plots that its charts replace (`REPLACED`).
 """
 
 import base64
@@ -31,7 +30,7 @@ def verdict(results, pages):
 
 
 def tables(results, pages):
-    """All tables but those with a row for every point of a chart, the most important ones first; and the names of those that are too long."""
+    """Tables, the most important first, and the names of those that are omitted because they are too long."""
     titles = {name: title for page in pages for name, title in page.TITLES.items()}
     order = {name: place for place, name in enumerate(titles)}
     found, too_long = [], []
@@ -46,7 +45,7 @@ def tables(results, pages):
 
 
 def pictures(results, pages):
-    """Plots of the run that no chart replaces, as data."""
+    """Plots of the run that no chart replaces, as data URLs."""
     replaced = tuple(name for page in pages for name in getattr(page, "REPLACED", ()))
     return [{"id": "plot-" + path.stem, "title": path.stem.replace("_", " ").capitalize(),
              "picture": "data:image/svg+xml;base64," + base64.b64encode(path.read_bytes()).decode()}
@@ -54,7 +53,7 @@ def pictures(results, pages):
 
 
 def checks(results, pages):
-    """What was checked, and how accurate it is: pairs of what and how much."""
+    """Pairs (check, result)."""
     record = results.record
     counts, quantities = record.get("counts", {}), record.get("quantities", {})
     found = parts(pages, "checks", results)

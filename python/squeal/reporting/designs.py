@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The page of a study of designs: where squeal begins, how fast it grows, and which values make a design quiet."""
+"""Page of a design study: onset of squeal, largest growth, and the values of quiet designs."""
 
 from squeal.reporting.charts import WEAK, digits, layout, number, plain, points, short
 
 TABLES = ("designs",)
-TITLES = {"designs": "Designs", "design_thresholds": "Where modes of designs begin and cease to grow", "design_modes": "Modes of designs"}
+TITLES = {"designs": "Designs", "design_thresholds": "Thresholds of modes of designs", "design_modes": "Modes of designs"}
 REPLACED = ("designs",)
 ONSET, LARGEST = "mu of 0.01 % [-]", "largest divergence rate [%]"
 
@@ -15,13 +15,13 @@ def variables_of(table):
 
 
 def name_of(variable):
-    """The name of a variable for an axis; of several that take the same value the first."""
+    """The name of a variable for an axis; the first of several that share a value."""
     first, *others = variable.split(" + ")
     return first.split("/")[-1] + (" …" if others else "")
 
 
 def positions(texts):
-    """Places of values on an axis, with names of the ticks where they are no numbers."""
+    """Positions of values on an axis, and names of the ticks if the values are not numbers."""
     try:
         return [float(text) for text in texts], []
     except ValueError:
@@ -42,7 +42,7 @@ def end_of_sweep(results):
 
 
 def verdict(results):
-    """None of a search, which says which design is the best."""
+    """None for a search, which has its own verdict."""
     if results.has("search"):
         return None
     table = results.table("designs")
@@ -57,9 +57,9 @@ def verdict(results):
     name = design_text(best, variables_of(table))
     if quiet:
         return "stable", f"{len(quiet)} of {len(rows)} designs stay below a divergence rate of {WEAK} % up to μ = {end:g}; the quietest is {name}."
-    return "unstable", (f"All {len(rows)} designs exceed a divergence rate of {WEAK} % up to μ = {end:g}; the quietest is {name}, from "
-                        f"μ = {digits(number(best[ONSET]), 3)} on ({best['label at 0.01 %']}), with {digits(number(best[LARGEST] or '0'), 3)} % at most."
-                        + (f" {outcome}." if left else ""))
+    onset, largest = digits(number(best[ONSET]), 3), digits(number(best[LARGEST] or "0"), 3)
+    return "unstable", (f"All {len(rows)} designs exceed a divergence rate of {WEAK} % up to μ = {end:g}; the quietest is {name}, with onset "
+                        f"at μ = {onset} ({best['label at 0.01 %']}) and at most {largest} %." + (f" {outcome}." if left else ""))
 
 
 def sections(results):
@@ -68,22 +68,23 @@ def sections(results):
 
 def checks(results):
     rows = solved(results.table("designs"))
-    found = [("designs of which all modes were found that were counted", f"{sum(row['complete [-]'] == '1' for row in rows)} of {len(rows)}")]
+    found = [("designs in which all counted modes were found", f"{sum(row['complete [-]'] == '1' for row in rows)} of {len(rows)}")]
     for column, text in (("estimated error of lambda [-]", "largest estimated error of λ"), ("eps_res [-]", "largest residual of a mode, eq. (16)")):
         found.append((text, digits(max((number(row[column]) for row in rows), default=0), 2)))
     return found
 
 
 def about(row, variables, end):
-    """What is known of a solved design."""
+    """Hover text of a solved design."""
     return "<br>".join([f"<b>design {row['design [-]']}</b>", *(f"{name}: {plain(row[name])}" for name in variables),
-                        f"from μ = {digits(number(row[ONSET]))} on ({row['label at 0.01 %']})" if row[ONSET] else f"quiet up to μ = {end:g}",
-                        f"{digits(number(row[LARGEST] or '0'))} % at most ({row['label of largest']} at "
+                        f"onset at μ = {digits(number(row[ONSET]))} ({row['label at 0.01 %']})" if row[ONSET] else
+                        f"quiet up to μ = {end:g}",
+                        f"at most {digits(number(row[LARGEST] or '0'))} % ({row['label of largest']} at "
                         f"{digits(number(row['frequency of largest [Hz]']), 5)} Hz)" if row[LARGEST] else "no mode grows"])
 
 
 def onset_section(results):
-    """Onset over growth: what lies to the right and low is quiet."""
+    """Largest growth over onset."""
     table = results.table("designs")
     variables, end, rows = variables_of(table), end_of_sweep(results), solved(table)
     traces = []
@@ -91,14 +92,14 @@ def onset_section(results):
         own = [row for row in rows if (row["label of largest"] or "none") == label]
         traces.append(points(label, [short(row[ONSET] or end) for row in own], [short(row[LARGEST] or "0") for row in own],
                              [about(row, variables, end) for row in own], marker={"size": 10}))
-    return {"id": "designs_chart", "title": "Designs: where squeal begins, and how fast it grows",
-            "caption": "Each point is a design, named by the mode that grows fastest, over the μ from which on a divergence rate exceeds 0.01 %; what "
-                       f"lies to the right and low is quiet. At μ = {end:g} the study ends.",
+    return {"id": "designs_chart", "title": "Designs: onset of squeal and largest growth",
+            "caption": "Each point is a design, named after its fastest growing mode, at the onset μ where a divergence rate exceeds "
+                       f"0.01 %. Designs at the lower right are quiet. The study ends at μ = {end:g}.",
             "data": traces, "layout": layout("μ of 0.01 %", "largest divergence rate [%]", showlegend=True)}
 
 
 def lines_section(results):
-    """Every design as a line through its values; ranges of an axis can be chosen with the mouse."""
+    """Each design as a line through its values; the mouse selects ranges of an axis."""
     table = results.table("designs")
     rows, end = solved(table), end_of_sweep(results)
     dimensions = []
@@ -112,7 +113,7 @@ def lines_section(results):
     by_rate = results.has("search") and results.parameter("Search/Goal") == "divergence rate"
     return {"id": "variables_chart", "title": "Which values make a design quiet",
             "caption": "Each line is a design; drag along an axis to choose a range. Colour is the "
-                       + ("largest divergence rate [%]." if by_rate else "μ from which on it exceeds 0.01 %."),
+                       + ("largest divergence rate [%]." if by_rate else "onset μ where it exceeds 0.01 %."),
             "data": [{"type": "parcoords", "dimensions": dimensions, "line": {"color": largest if by_rate else onset, "colorscale": "Viridis",
                                                                               "reversescale": by_rate, "showscale": True}}],
             "least width": 110 * len(dimensions) + 100,

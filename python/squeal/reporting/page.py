@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""One HTML file with everything in it: data, drawing libraries, styles."""
+"""A self-contained HTML file with data, drawing libraries and styles."""
 
 import base64
 import html
@@ -12,7 +12,7 @@ from squeal.errors import Error
 
 HERE = pathlib.Path(__file__).resolve().parent
 JAVASCRIPT = pathlib.Path("/usr/share/javascript")
-# Debian's packages, and what of them goes into the page
+# Debian packages, and the file of each that is embedded
 LIBRARIES = {"python3-plotly": pathlib.Path("/usr/share/python3-plotly/plotly.js"),
              "libjs-three": JAVASCRIPT / "three" / "three.min.js",
              "libjs-jquery": JAVASCRIPT / "jquery" / "jquery.min.js",
@@ -26,7 +26,7 @@ def missing_packages():
 
 
 def style_of(path):
-    """A style sheet with its pictures in it."""
+    """A style sheet with embedded pictures."""
     def picture(match):
         file = (path.parent / match[1].strip("\"'")).resolve()
         return f"url(data:image/png;base64,{base64.b64encode(file.read_bytes()).decode()})" if file.is_file() else "none"
@@ -35,15 +35,15 @@ def style_of(path):
 
 
 def script(text):
-    """A script that the page's parser does not end early."""
+    """A script element whose text cannot end it early."""
     return "<script>" + text.replace("</script", "<\\/script").replace("<!--", "<\\!--") + "</script>\n"
 
 
 VIEWER = ('<div class="viewer"><div class="buttons" id="modes"></div><div id="canvas"></div><div class="buttons"><button id="play">pause</button>'
           '<label>size <input type="range" id="size" min="0" max="0.2" step="0.005" value="0.06"></label>'
           '<label><input type="checkbox" id="disc" checked> disc</label><button data-view="above">above</button>'
-          '<button data-view="below">below</button><button data-view="side">side</button></div><p>Colours: amplitude, dark where it is large. '
-          "Turn with the mouse or a finger. Without the disc the contact faces of the pins are seen.</p></div>")
+          '<button data-view="below">below</button><button data-view="side">side</button></div><p>Colour: amplitude, dark where large. '
+          "Rotate with the mouse or a finger. Hide the disc to see the contact faces of the pins.</p></div>")
 
 
 def section(title, body, name):
@@ -51,7 +51,7 @@ def section(title, body, name):
 
 
 def entry_section(entry):
-    """A section with what its entry has: a caption, moving shapes, a list of choices, a chart, a picture, facts, notes, a command."""
+    """A section with the parts of its entry: caption, moving shapes, selection list, chart, picture, facts, notes, command."""
     parts, name = [], html.escape(entry["id"])
     if "caption" in entry:
         parts.append(f'<p>{html.escape(entry["caption"])} {choices(entry)}</p>')
@@ -72,7 +72,7 @@ def entry_section(entry):
 
 
 def choices(entry):
-    """A list, of which a choice shows another chart."""
+    """A selection list for the chart."""
     if "choices" not in entry:
         return ""
     options = "".join(f'<option value="{html.escape(choice["key"])}">{html.escape(choice["name"])}</option>' for choice in entry["choices"])
@@ -84,7 +84,7 @@ def is_chart(entry):
 
 
 def rows_of(columns, rows, text_of):
-    """Head and body of a table; text_of(cell) is what is shown."""
+    """Head and body of a table; text_of(cell) is the displayed text."""
     head = "".join(f"<th>{html.escape(column)}</th>" for column in columns)
     lines = "".join("<tr>" + "".join(f"<td>{html.escape(text_of(cell))}</td>" for cell in row) + "</tr>" for row in rows)
     return f"<thead><tr>{head}</tr></thead><tbody>{lines}</tbody>"
@@ -114,19 +114,19 @@ def body(content):
              f'<h1 id="verdict">{html.escape(content["verdict"])}</h1></header>\n']
     parts += map(entry_section, content["sections"])
     parts.append(section("Tables", "".join(table(entry) for entry in content["tables"]) +
-                         "<p>Here with six digits; the files have twelve.</p>" + not_shown(content["too long"]), "tables"))
-    parts.append(section("What was checked, and how accurate it is",
+                         "<p>Numbers with six digits; the files have twelve.</p>" + not_shown(content["too long"]), "tables"))
+    parts.append(section("Checks and accuracy",
                          "<dl>" + "".join(f"<dt>{html.escape(what)}</dt><dd>{html.escape(value)}</dd>" for what, value in content["checks"]) +
                          "</dl>" + "".join(f'<p class="warning">{html.escape(text)}</p>' for text in content["repeat"]["warnings"]), "checks"))
     again = content["repeat"]
-    parts.append(section("How to repeat it", f'<pre>{html.escape(again["command"])}</pre><p>{html.escape(again["finished"])}, {again["time"]}; '
-                         f'{html.escape(again["versions"])}</p><details><summary>parameters.prm</summary><pre>{html.escape(again["parameters"])}</pre></details>',
-                         "repeat"))
+    parts.append(section("How to repeat the run", f'<pre>{html.escape(again["command"])}</pre><p>{html.escape(again["finished"])}, '
+                         f'{again["time"]}; {html.escape(again["versions"])}</p><details><summary>parameters.prm</summary><pre>'
+                         f'{html.escape(again["parameters"])}</pre></details>', "repeat"))
     return "".join(parts)
 
 
 def page(content):
-    """The whole file. Raises Error if libraries are missing."""
+    """The complete page. Raises Error if libraries are missing."""
     if missing := missing_packages():
         raise Error("libraries of the report are missing", "Results.report()", f"apt-get install {' '.join(missing)} (or scripts/setup.sh)")
     charts = [{part: entry[part] for part in ("id", "data", "layout", "choices", "chosen") if part in entry}

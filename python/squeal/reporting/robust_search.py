@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The page of a search with uncertain parameters: the best design, by its samples and by others."""
+"""Page of a search with uncertain parameters: the best design with its own samples and with others."""
 
 from squeal.reporting.charts import STABLE, UNSTABLE, best_so_far, confidence, digits, layout, number, plain, points, short
 
 TABLES = ("best_design",)
-TITLES = {"best_design": "The best design by its samples and by others", "search": "Designs in the order of their evaluation",
-          "full_order": "The worst of the other samples at full order"}
+TITLES = {"best_design": "The best design with its own samples and with others", "search": "Designs in the order of evaluation",
+          "full_order": "The worst other sample at full order"}
 
 
 def goal_of(results):
-    """The column of the goal, in front of that of the best so far."""
+    """The column of the goal, which precedes that of the best so far."""
     return results.table("search").columns[-2]
 
 
@@ -36,7 +36,7 @@ def sections(results):
         traces.append(points(phase, [int(row["design [-]"]) for row in chosen], [short(row[goal]) for row in chosen],
                              marker={"color": colour, "size": 8, "symbol": symbol}))
     return [{"id": "history", "title": "History of the search", "data": traces, "layout": layout("evaluation", goal),
-             "caption": "Each mark is a design, the line is the best so far."}]
+             "caption": "Each mark is a design; the line is the best so far."}]
 
 
 def checks(results):

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The page of a study of uncertain parameters: how probable squeal is. Plots: modes of all samples and influential parameters."""
+"""Page of a study of uncertain parameters: the probability of squeal. Plots: modes of all samples, influential parameters."""
 
 from squeal.reporting.charts import confidence, digits, number
 
 TABLES = ("probabilities",)
-TITLES = {"probabilities": "Probability of squeal by bands of frequencies", "mode_distributions": "Modes over all samples",
-          "onset_distributions": "Where modes begin to grow", "sobol_indices": "Influence of the parameters: Sobol' indices"}
+TITLES = {"probabilities": "Probability of squeal by frequency band", "mode_distributions": "Modes over all samples",
+          "onset_distributions": "Onsets of modes", "sobol_indices": "Influence of the parameters: Sobol' indices"}
 
 
 def verdict(results):
@@ -19,4 +19,4 @@ def verdict(results):
 
 def checks(results):
     counts = results.record["counts"]
-    return [("samples, those for Sobol' indices included", str(counts["samples"])), ("basis vectors", str(counts["basis vectors"]))]
+    return [("samples, including those for Sobol' indices", str(counts["samples"])), ("basis vectors", str(counts["basis vectors"]))]

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The page of a search: its history, the best design with what full order says of it, and all designs over their variables."""
+"""Page of a search: its history, the best design with its check at full order, and all designs over their variables."""
 
 import re
 import shlex
@@ -10,12 +10,12 @@ from squeal.reporting.charts import FREQUENCY, RATE, STABLE, UNSTABLE, WEAK, bes
 from squeal.reporting.designs import LARGEST, ONSET, about, design_text, end_of_sweep, name_of
 
 TABLES = ("search", "designs")
-TITLES = {"search": "Designs in the order of their evaluation", "full_order": "The best design at full order"}
+TITLES = {"search": "Designs in the order of evaluation", "full_order": "The best design at full order"}
 GOALS = {LARGEST: "largest divergence rate [%]", ONSET: "μ of 0.01 %"}
 
 
 class Search:
-    """Evaluations with their goal, and the best of them."""
+    """Evaluated designs with their goal, and the best of them."""
 
     def __init__(self, results):
         self.table = results.table("search")
@@ -33,7 +33,7 @@ class Search:
         return number(row[self.goal])
 
     def text(self, row):
-        """The goal that a design reaches."""
+        """The value of the goal of a design."""
         return f"{digits(self.value(row))} %" if self.goal == LARGEST else f"μ = {digits(self.value(row))}"
 
 
@@ -45,14 +45,14 @@ def verdict(results):
     grows = number(row[LARGEST] or "0") > WEAK
     text = f"Of {len(search.table)} designs the best is {design_text(row, search.variables)}: "
     if grows:
-        text += (f"a divergence rate of {digits(number(row[LARGEST]), 3)} % at most ({row['label of largest']}), "
-                 f"and 0.01 % from μ = {digits(number(row[ONSET]), 3)} on.")
+        text += (f"a divergence rate of at most {digits(number(row[LARGEST]), 3)} % ({row['label of largest']}), "
+                 f"above 0.01 % from μ = {digits(number(row[ONSET]), 3)}.")
     else:
         text += f"it stays below a divergence rate of {WEAK} % up to μ = {search.end:g}."
     if search.best_sample is not None and search.best_sample is not search.best:
         text += f" The best of the samples reaches {search.text(search.best_sample)}, this one {search.text(search.best)}."
     elif len(search.table) > sum(row["phase"] == "sample" for row in search.table.rows):
-        text += " It is one of the samples: the searches from the best two of them found none better."
+        text += " It is one of the samples: the searches from the best two samples found no better design."
     return "unstable" if grows else "stable", text
 
 
@@ -72,7 +72,7 @@ def checks(results):
 
 
 def history_section(search):
-    """The goal over the number of the evaluation, and the best so far."""
+    """The goal over the evaluations, and the best so far."""
     first = search.table.rows.index(search.solved[0]) if search.solved else len(search.table)
     best = best_so_far(search.table.rows[first:], search.goal, hovertemplate="best of %{x} designs: %{y:.4g}<extra></extra>")
     traces = [best, *designs_traces(search, lambda row: int(row["design [-]"]))]
@@ -83,13 +83,13 @@ def history_section(search):
         traces.append(points("refused or failed", [int(row["design [-]"]) for row in left], [worst] * len(left),
                              [f"<b>design {row['design [-]']}</b><br>{'<br>'.join(textwrap.wrap(reason, 44))}" for row, reason in zip(left, reasons)],
                              marker={"symbol": "x", "color": "#8a939c", "size": 9}))
-    caption = ("Each mark is a design, the line is the best so far: first samples of the ranges, then searches that go on from the best two of them."
-               + (" Crosses have no value: a search turns back from them." if left else ""))
+    caption = ("Each mark is a design; the line is the best so far: first samples of the ranges, then searches from the best two samples."
+               + (" Crosses are designs without a value." if left else ""))
     return {"id": "history", "title": "History of the search", "caption": caption, "data": traces, "layout": layout("evaluation", GOALS[search.goal])}
 
 
 def designs_traces(search, place):
-    """Samples, and designs of searches."""
+    """Points of the samples, and of the designs of searches."""
     for phase, title, colour, symbol in (("sample", "samples", STABLE, "circle"), ("search", "search", UNSTABLE, "diamond")):
         rows = [row for row in search.solved if row["phase"] == phase]
         yield points(title, list(map(place, rows)), [short(row[search.goal]) for row in rows],
@@ -98,32 +98,32 @@ def designs_traces(search, place):
 
 
 def best_section(results, search):
-    """Values of the best design beside those of the scene, and what full order says of it."""
+    """Values of the best design and of the baseline, and the check at full order."""
     ranges = dict(re.findall(r"\s*([^;=]+?)\s*=\s*([^;]+?)\s*(?:;|$)", results.parameter("Designs/Variables")))
     facts, notes = [], []
     for name in search.variables:
         value = number(search.best[name])
-        facts.append([name, plain(value_of_scene(results, name)), ranges.get(name, "").replace(" to ", " … "), plain(search.best[name], 4)])
+        facts.append([name, plain(baseline_value(results, name)), ranges.get(name, "").replace(" to ", " … "), plain(search.best[name], 4)])
         ends = [float(end) for end in re.findall(r"[-+.\deE]+", ranges.get(name, "").replace(" to ", " "))[:2]]
         if value in ends:
-            notes.append(f"{name} is at the {'lower' if value == ends[0] else 'upper'} end of its range: a wider one may have a better design.")
+            notes.append(f"{name} is at the {'lower' if value == ends[0] else 'upper'} end of its range: a wider one may contain a better design.")
     row = search.designs[search.best["design [-]"]]
     for full in results.table("full_order").rows if results.has("full_order") else []:
-        text = (f"At full order, μ = {number(full['mu [-]']):.4g}: {full['unstable modes [-]']} of {full['modes [-]']} modes grow, at most with "
-                f"{digits(number(full[RATE]))} % ({full['label']} at {number(full[FREQUENCY]):.1f} Hz)")
+        text = (f"At full order, μ = {number(full['mu [-]']):.4g}: {full['unstable modes [-]']} of {full['modes [-]']} modes grow, "
+                f"with at most {digits(number(full[RATE]))} % ({full['label']} at {number(full[FREQUENCY]):.1f} Hz)")
         if row[LARGEST] and abs(number(full["mu [-]"]) - number(row["mu of largest [-]"])) < 1e-9:
-            text += f"; the sweep of the search has {digits(number(row[LARGEST]))} % there"
+            text += f"; the sweep of the search gives {digits(number(row[LARGEST]))} % there"
         notes.append(text + ".")
-    # The first word of the command, in which blanks may stand between quotes
+    # The first word of the command, which may contain quoted blanks
     program = re.match(r"(?:[^\s'\\]|\\.|'[^']*')*", results.record.get("command", ""))[0] or "squeal"
     return {"id": "best", "title": f"The best design, number {search.best['design [-]']}",
-            "facts": {"columns": ["parameter", "scene", "range", "best"], "rows": facts}, "notes": notes,
-            "caption": "Its parameter file is best.prm beside this page; to sweep it by itself:",
+            "facts": {"columns": ["parameter", "baseline", "range", "best"], "rows": facts}, "notes": notes,
+            "caption": "Its parameter file is best.prm next to this page. To repeat its sweep:",
             "command": f"{program} {shlex.quote(str(results.folder / 'best.prm'))}"}
 
 
-def value_of_scene(results, name):
-    """The value of a variable in the scene as the parameter file describes it."""
+def baseline_value(results, name):
+    """The value of a variable in the parameter file of the search."""
     match = re.fullmatch(r"([^+\[]+?)(?:\[(\d+)\])?(?:\s*\+.*)?", name)
     text = results.parameters.get(match[1], "") if match else ""
     if match and match[2]:
@@ -141,4 +141,4 @@ def variables_section(results, search):
         traces = [*designs_traces(search, lambda row: number(row[name])), ring]
         choices.append({"key": name, "name": name_of(name), "data": traces, "layout": layout(name, GOALS[search.goal])})
     return {"id": "over_variables", "title": "Designs over their variables", "choices": choices, "chosen": search.variables[0],
-            "caption": "Each mark is a design that was solved; a ring is around the best one. Variable:"}
+            "caption": "Each mark is a solved design; a ring marks the best one. Variable:"}

@@ -1,18 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What one per cent of each parameter changes: of modes, of thresholds; pairs of modes that coalesce, and how accurate derivatives are."""
+"""Page of a sensitivity study: effects of a 1 % increase on modes and thresholds, coalescing pairs, accuracy of derivatives."""
 
 from squeal.reporting.charts import FREQUENCY, RATE, STABLE, UNSTABLE, digits, layout, name_of_mode, number, short
 
 TABLES = ("sensitivities",)
-TITLES = {"sensitivity_ranking": "What one per cent changes of the mode that grows fastest", "sensitivities": "What one per cent changes of each mode",
-          "sensitivities_thresholds": "How far one per cent moves thresholds"}
+TITLES = {"sensitivity_ranking": "Effect of a 1 % increase on the fastest growing mode",
+          "sensitivities": "Effect of a 1 % increase on each mode",
+          "sensitivities_thresholds": "Effect of a 1 % increase on thresholds"}
 REPLACED = ("sensitivity",)
 CHANGE, FREQUENCY_CHANGE, MU_CHANGE = "divergence rate per 1 % [percentage points]", "frequency per 1 % [Hz]", "mu per 1 % [-]"
 MOST_BARS = 16
-ROUNDING = 1e-8  # of R/ω, as include/squeal/modes/verdict.h has it
+ROUNDING = 1e-8  # of R/ω, as in include/squeal/modes/verdict.h
 LEAST_CHANGE = 1e-4  # [percentage points]
-ROUGH = 0.01  # of the largest derivative of a threshold, from which its estimated error is worth a note
+ROUGH = 0.01  # estimated error that is worth a note, over the largest derivative of a threshold
 BAR, AXES = 30, 130  # heights [pixels]
 
 
@@ -25,10 +26,10 @@ def verdict(results):
              "is the least damped mode, and none grows. ")
     first, second = (*ranking(rows), None, None)[:2]
     if first is None or abs(number(first[CHANGE])) < LEAST_CHANGE:
-        text += f"One per cent of no parameter changes its divergence rate by {LEAST_CHANGE:g} percentage points."
+        text += f"A 1 % increase of any single parameter changes its divergence rate by less than {LEAST_CHANGE:g} percentage points."
     else:
-        text += f"Of all parameters {first['parameter']} changes that most: one per cent more by {signed(first[CHANGE])} percentage points"
-        text += f", then {second['parameter']} by {signed(second[CHANGE])}." if second else "."
+        text += f"{first['parameter']} has the largest effect, {signed(first[CHANGE])} percentage points for a 1 % increase"
+        text += f", followed by {second['parameter']} with {signed(second[CHANGE])}." if second else "."
     return "unstable" if grows else "stable", text
 
 
@@ -42,14 +43,14 @@ def sections(results):
 def checks(results):
     worst = max(relative_error(rows, "growth rate per unit [1/s]", "estimated error of the growth rate per unit [1/s]")
                 for rows in modes_of(results.table("sensitivities")))
-    found = [("largest estimated error of a mode's derivatives, beside the largest of them", digits(worst, 2))]
+    found = [("largest estimated error of a mode's derivatives, relative to the largest", digits(worst, 2))]
     if results.has("sensitivities_thresholds"):
         thresholds = thresholds_of(results.table("sensitivities_thresholds"))
         known = [rows for rows in thresholds if rows[0]["derivative of"] != "none"]
         found.append(("thresholds with derivatives", f"{len(known)} of {len(thresholds)}"))
         if known:
             worst = max(relative_error(rows, "mu per unit [-]", "estimated error per unit [-]") for rows in known)
-            found.append(("largest estimated error of a threshold's derivatives, beside the largest of them", digits(worst, 2)))
+            found.append(("largest estimated error of a threshold's derivatives, relative to the largest", digits(worst, 2)))
     for step in results.record.get("steps", []):
         if step["name"].startswith("Derivatives of "):
             found.append((step["name"].lower(), step["result"]))
@@ -57,7 +58,7 @@ def checks(results):
 
 
 def modes_of(table):
-    """Rows of each mode, the one that grows fastest first."""
+    """Rows of each mode, the fastest growing mode first."""
     return sorted(table.groups("mode [-]"), key=lambda rows: -number(rows[0][RATE]))
 
 
@@ -67,7 +68,7 @@ def thresholds_of(table):
 
 
 def ranking(rows, change=CHANGE):
-    """Rows of parameters of all pins together that have a per cent, the largest change first."""
+    """Rows of parameters of the whole model with a change per 1 %, the largest change first."""
     return sorted((row for row in rows if row[change] and not row["body"]), key=lambda row: -abs(number(row[change])))
 
 
@@ -76,7 +77,7 @@ def signed(text):
 
 
 def relative_error(rows, derivative, error):
-    """Largest estimated error of what one per cent changes, beside the largest change."""
+    """Largest estimated error of a change per 1 %, relative to the largest change."""
     values = [(abs(number(row["value"])), row) for row in rows if row[derivative] and row[error]]
     largest = max((value * abs(number(row[derivative])) for value, row in values), default=0)
     return max((value * number(row[error]) for value, row in values), default=0) / largest if largest else 0
@@ -100,7 +101,7 @@ def bars(rows, change, title, about, squeals):
 
 
 def in_two_lines(parameter):
-    """Of mounts the name of the parameter and the direction, of others section and name."""
+    """The parameter on two lines: name and direction of a mount, section and name of others."""
     return parameter.split("/", 1)[1].replace(": ", "<br>") if ": " in parameter else parameter.replace("/", "<br>", 1)
 
 
@@ -113,14 +114,13 @@ def modes_section(modes):
     for rows in modes:
         data, axes = bars(rows, CHANGE, "change [% points]", about_mode, squeals=1)
         choices.append({"key": rows[0]["mode [-]"], "data": data, "layout": axes, "name": name_of_mode(rows[0])})
-    return {"id": "sensitivity", "title": "What one per cent of each parameter changes of growth", "choices": choices, "chosen": choices[0]["key"],
-            "height": height_of(modes, CHANGE),
-            "caption": "How much one per cent more of each parameter changes the divergence rate: red bars let the mode grow more, blue ones less. "
-                       "Mode:"}
+    return {"id": "sensitivity", "title": "Effect of a 1 % increase of each parameter on growth", "choices": choices,
+            "chosen": choices[0]["key"], "height": height_of(modes, CHANGE),
+            "caption": "Change of the divergence rate by a 1 % increase of each parameter: red bars increase growth, blue ones reduce it. Mode:"}
 
 
 def about_mode(row):
-    parts = [f"<b>{row['parameter']}</b> = {value_text(row)}", f"one per cent more: {signed(row[CHANGE])} percentage points of divergence rate",
+    parts = [f"<b>{row['parameter']}</b> = {value_text(row)}", f"1 % increase: {signed(row[CHANGE])} percentage points of divergence rate",
              f"{digits(number(row[FREQUENCY_CHANGE]))} Hz, {digits(number(row['growth rate per 1 % [1/s]']))} 1/s"]
     if row["derivative of"] != "lambda":
         parts.append("of the " + row["derivative of"])
@@ -141,10 +141,10 @@ def thresholds_sections(thresholds):
         choices.append({"key": str(i), "name": threshold_text(rows[0]), "data": data, "layout": axes})
     moves = [max((abs(number(row[MU_CHANGE])) for row in ranking(rows, MU_CHANGE)), default=0) for rows in known]
     most = max(range(len(known)), key=lambda i: (known[i][0]["event"] == "onset", moves[i]))
-    return [{"id": "sensitivity_thresholds", "title": "How far one per cent moves a threshold", "choices": choices, "chosen": str(most),
+    return [{"id": "sensitivity_thresholds", "title": "Effect of a 1 % increase on a threshold", "choices": choices, "chosen": str(most),
              "height": height_of(known, MU_CHANGE),
-             "caption": "How much one per cent more of each parameter changes the friction coefficient of a threshold: red bars to a smaller one, blue ones "
-                        "to a larger one. The first shown is the onset that moves most. Threshold:"}]
+             "caption": "Change of the friction coefficient of a threshold by a 1 % increase of each parameter: red bars lower it, blue "
+                        "ones raise it. The onset that moves most is shown first. Threshold:"}]
 
 
 def threshold_text(row):
@@ -155,12 +155,12 @@ def threshold_text(row):
 def about_threshold(row):
     share = number(row[MU_CHANGE]) / number(row["mu [-]"])
     return "<br>".join([f"<b>{row['parameter']}</b> = {value_text(row)}",
-                        f"one per cent more: μ changes by {digits(number(row[MU_CHANGE]))}, {100 * share:.3g} % of it",
+                        f"1 % increase: μ changes by {digits(number(row[MU_CHANGE]))} ({100 * share:.3g} %)",
                         "from the " + row["derivative of"]])
 
 
 def notes_sections(results):
-    """Pairs near exceptional points, where two modes become one, and what has no derivative."""
+    """Pairs near exceptional points, where two modes coalesce, and thresholds without derivatives."""
     notes = []
     modes = modes_of(results.table("sensitivities"))
     for rows in modes:
@@ -170,8 +170,8 @@ def notes_sections(results):
         thresholds = thresholds_of(results.table("sensitivities_thresholds"))
         pairs = sum(rows[0]["derivative of"] == "squared difference of the pair" for rows in thresholds)
         if pairs:
-            notes.append(f"{pairs} of {len(thresholds)} thresholds are exceptional points, where two modes become one and no single λ has a derivative: "
-                         "they are differentiated by the squared difference of the pair, (λ₁ − λ₂)², which is smooth there.")
+            notes.append(f"{pairs} of {len(thresholds)} thresholds are exceptional points, where two modes coalesce and λ has no derivative. "
+                         "Their derivatives are those of the squared difference of the pair, (λ₁ − λ₂)², which is smooth there.")
         for rows in thresholds:
             error = relative_error(rows, "mu per unit [-]", "estimated error per unit [-]")
             if rows[0]["derivative of"] == "none":
@@ -179,6 +179,6 @@ def notes_sections(results):
             elif error > ROUGH:
                 notes.append(f"{threshold_text(rows[0])}: estimated errors reach {100 * error:.2g} % of the largest derivative.")
     if all(rows[0]["derivative of"] == "lambda" for rows in modes):
-        notes.insert(0, "No mode here is close to coalescing with another one: all derivatives of modes are those of simple eigenvalues.")
+        notes.insert(0, "No mode is close to coalescence: all derivatives of modes are those of simple eigenvalues.")
     return [{"id": "sensitivity_notes", "title": "Pairs near exceptional points, and limits", "notes": notes,
-             "caption": "One per cent is a small change only where modes are well apart: a derivative holds as far as the distance to the next one."}]
+             "caption": "Derivatives are valid for changes that are small compared with the distance to the next mode."}]

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Surfaces of disc and pins with the shapes of growing modes, small enough for a page."""
+"""Surfaces of disc and pins with the shapes of growing modes, compressed for a page."""
 
 import base64
 
@@ -11,7 +11,7 @@ from squeal.surface import outer_faces
 from squeal.vtu_file import VtuFile
 
 LARGEST = 12  # modes
-STEPS = 32767  # of a displacement from zero to the largest one
+STEPS = 32767  # integers for displacements from zero to the largest
 
 
 def text_of(array, kind):
@@ -19,7 +19,7 @@ def text_of(array, kind):
 
 
 def of_growing_modes(results, modes):
-    """Points, faces and displacements of the modes that grow fastest; None where there is none, no file of shapes, or no surface."""
+    """Points, faces and displacements of the fastest growing modes; None without growing modes, their files or surfaces."""
     files = shape_files(results.folder)
     growing = [i for i, row in enumerate(modes, start=1) if row["unstable [-]"] == "1" and i in files]
     growing = sorted(sorted(growing, key=lambda i: -float(modes[i - 1]["growth rate [1/s]"]))[:LARGEST])

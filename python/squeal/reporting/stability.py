@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The page of a run at one friction coefficient: effective damping ratios, modes that grow, and where their energy enters."""
+"""Page of a run at one friction coefficient: effective damping ratios, growing modes, and their energy sources."""
 
 from squeal.reporting import shapes
 from squeal.reporting.charts import DAMPING, FREQUENCY, RATE, STABLE, UNSTABLE, digits, end_of_band, layout, name_of_mode, names_apart, number, points
 
 TABLES = ("complex_modes",)
 TITLES = {"complex_modes": "Modes with friction", "real_modes": "Modes without friction", "component_modes": "Modes of disc and pins alone",
-          "energy": "Where the energy of growing modes enters", "real_eigenvalues": "Eigenvalues that do not oscillate",
+          "energy": "Energy sources of growing modes", "real_eigenvalues": "Real eigenvalues",
           "sliding_pins": "Pins in steady sliding"}
 REPLACED = ("complex_plane",)
 
@@ -41,7 +41,7 @@ def checks(results):
 
 
 def damping_section(rows):
-    """Effective damping ratio -2R/omega over frequency; a mode with a negative one grows."""
+    """Effective damping ratio -2R/omega over frequency; it is negative for growing modes."""
     traces, ratios = [], [number(row[DAMPING]) for row in rows] or [0]
     for title, colour, flag in (("does not grow", STABLE, "0"), ("grows", UNSTABLE, "1")):
         own = [row for row in rows if row["unstable [-]"] == flag]
@@ -51,7 +51,8 @@ def damping_section(rows):
                              text=[row["label"] if i in names else "" for i, row in enumerate(own)],
                              marker={"color": colour, "size": 9 if flag == "1" else 7, "symbol": "diamond" if flag == "1" else "circle"}))
     line = {"type": "line", "xref": "paper", "x0": 0, "x1": 1, "y0": 0, "y1": 0, "line": {"color": "#444", "width": 1}}
-    return {"id": "damping", "title": "Effective damping ratio over frequency", "caption": "Effective damping ratio −2R/ω of every mode; below zero it grows.",
+    return {"id": "damping", "title": "Effective damping ratio over frequency",
+            "caption": "Effective damping ratio −2R/ω of every mode; modes below zero grow.",
             "data": traces, "layout": layout("frequency [Hz]", "effective damping ratio [%]", shapes=[line])}
 
 
@@ -67,7 +68,7 @@ def about(row):
 
 def shape_sections(results, modes):
     found = shapes.of_growing_modes(results, modes)
-    return [{"id": "shapes", "title": "Modes that grow", "shapes": found}] if found else []
+    return [{"id": "shapes", "title": "Growing modes", "shapes": found}] if found else []
 
 
 def energy_sections(results):
@@ -84,6 +85,6 @@ def energy_sections(results):
                  "marker": {"color": colour}, "hovertemplate": "%{x}<br>" + title + " %{y:.4g} %<extra></extra>"}
                 for column, title, colour in parts if any(number(row[column] or "0") != 0 for row in rows)]
         choices.append({"key": mode, "name": name_of_mode(rows[0]), "data": data, "layout": layout("", "part of the divergence rate [%]", barmode="relative")})
-    return [{"id": "energy", "title": "Where their energy enters", "choices": choices,
+    return [{"id": "energy", "title": "Energy sources of growing modes", "choices": choices,
              "chosen": max(bodies, key=lambda mode: number(bodies[mode][0][RATE])),
-             "caption": "Contributions of friction and damping of each body; they sum to the divergence rate. Mode:"}]
+             "caption": "Contributions of friction and damping of each body, which add up to the divergence rate. Mode:"}]

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The map of a sweep: stability over the friction coefficient and the load or the rotation speed."""
+"""Page of the map of a sweep: stability over the friction coefficient and the load or the rotation speed."""
 
 import math
 
@@ -44,12 +44,12 @@ def sections(results):
     axes["xaxis"].update(range=[stability.x_edges[0], stability.x_edges[-1]], showgrid=False)
     ends = [float(edge) for edge in (stability.y_edges[0], stability.y_edges[-1])]
     ticks = cells.logarithmic_ticks(*ends) if stability.is_logarithmic else []
-    # Loads and speeds of a map are of equal ratio
+    # Loads and speeds of a map are geometrically spaced
     axes["yaxis"].update({"range": ends, "showgrid": False} if not stability.is_logarithmic else
                          {"type": "log", "range": [math.log10(edge) for edge in ends], "tickvals": ticks,
                           "ticktext": [f"{tick:g}" for tick in ticks], "showgrid": False})
-    caption = ("Colour: divergence rate of the mode that grows fastest, whose name is in its region; " + "; ".join(meanings) +
-               ". The black line is the limit of stability.")
+    caption = ("Colour: divergence rate of the fastest growing mode, which labels its region; " + "; ".join(meanings) +
+               ". The black line is the stability boundary.")
     return [{"id": "map", "title": f"Stability over {axis_title(stability.abscissa).split(' [')[0]} and {ordinate(stability)}", "caption": caption, "data": traces,
              "layout": axes}]
 
@@ -84,12 +84,12 @@ def heatmap(stability, texts, mask, **look):
 
 
 def rate_of(stability, cell):
-    """The rate of a cell for a chart; without a mode in the band, zero."""
+    """The rate of a cell for a chart; zero without a mode in the band."""
     return 0.0 if math.isnan(stability.rate[cell]) else float(f"{stability.rate[cell]:.6g}")
 
 
 def texts_of(stability, table):
-    """What is known of each cell, by rows."""
+    """Hover texts of the cells, by rows."""
     found = [[""] * len(stability.mus) for _ in stability.values]
     for row in table.rows:
         mu, value = number(row[stability.abscissa]), number(row[stability.ordinate])
@@ -116,12 +116,12 @@ def limit(stability):
     is_unstable = stability.is_unstable
     edges = cells.limits(stability, lambda a, b: is_unstable[a] != is_unstable[b])
     line = [tuple(None if math.isnan(value) else float(value) for value in edge) for edge in edges]
-    return points("limit of stability", [x for x, _ in line], [y for _, y in line], mode="lines", showlegend=False, hoverinfo="skip",
+    return points("stability boundary", [x for x, _ in line], [y for _, y in line], mode="lines", showlegend=False, hoverinfo="skip",
                   connectgaps=False, line={"color": "#000", "width": 2.6})
 
 
 def names(stability):
-    """The name of the leading mode in each region that has room for it."""
+    """The label of the leading mode in each region with space for it."""
     found = [(stability.leader[region[0]], cells.place_of_name(region, stability.rate.shape, 2 * len(stability.leader[region[0]])))
              for region in cells.regions(stability)]
     found = [(name, cell) for name, cell in found if cell]

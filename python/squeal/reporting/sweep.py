@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The page of a sweep: growth over the friction coefficient, and which modes meet."""
+"""Page of a sweep: growth over the friction coefficient, and coalescing modes."""
 
 from squeal.reporting.charts import FREQUENCY, PALE, RATE, UNSTABLE, WEAK, digits, end_of_band, layout, names_apart, number, points, short
 from squeal.results import MU, axis_title, symbol
 
 TABLES = ("branches",)
-TITLES = {"onsets": "Where squeal begins", "thresholds": "Where modes begin and cease to grow"}
+TITLES = {"onsets": "Onset of squeal", "thresholds": "Thresholds of modes"}
 REPLACED = ("complex_plane", "overview")
 COLOURS = ("#b2182b", "#2166ac", "#1b7837", "#762a83", "#bf812d", "#01665e", "#c51b7d", "#4d4d4d")
 
@@ -23,7 +23,7 @@ def verdict(results):
         return "stable", f"No mode grows {span}" + (f" by more than a divergence rate of {WEAK} %." if weak else ".")
     worst = max(strong, key=lambda row: number(row[RATE]))
     return "unstable", (f"{len({row['branch [-]'] for row in strong})} modes grow by more than {WEAK} % {span}: {first[0]['label']} at "
-                        f"{number(first[0][FREQUENCY]):.0f} Hz from {name} = {number(first[0][parameter]):.3g} on; {worst['label']} at "
+                        f"{number(first[0][FREQUENCY]):.0f} Hz from {name} = {number(first[0][parameter]):.3g}; {worst['label']} at "
                         f"{number(worst[FREQUENCY]):.0f} Hz "
                         f"grows fastest, with a divergence rate of {digits(number(worst[RATE]), 3)} % at {name} = {number(worst[parameter]):g}.")
 
@@ -33,7 +33,7 @@ def sections(results):
     growth_over = "the friction coefficient" if parameter == MU else symbol(parameter)
     found = [branch_section(results, "branches", "Growth over " + growth_over)]
     if results.has("branches_without_dissipation"):
-        found.append(branch_section(results, "branches_without_dissipation", "The same without radial dissipation"))
+        found.append(branch_section(results, "branches_without_dissipation", "Growth without radial dissipation"))
     return found + bifurcation_sections(results)
 
 
@@ -41,7 +41,7 @@ def checks(results):
     if not results.has("argument_counts"):
         return []
     table = results.table("argument_counts")
-    return [(f"modes at {symbol(table.parameter)} = {number(row[table.parameter]):g} by the argument principle, and found",
+    return [(f"modes at {symbol(table.parameter)} = {number(row[table.parameter]):g} by the argument principle, and modes found",
              f"{row['modes counted [-]']}, {row['modes of the sweep [-]']}") for row in table.rows]
 
 
@@ -51,7 +51,7 @@ def branches_of(results, name):
 
 
 def branch_section(results, name, title):
-    """Divergence rate of every branch over the friction coefficient."""
+    """The divergence rate of every branch over the friction coefficient."""
     branches, parameter = branches_of(results, name), results.table(name).parameter
     peaks = {branch: max(number(row[RATE]) for row in rows) for branch, rows in branches.items()}
     lowest = min(number(row[RATE]) for rows in branches.values() for row in rows)
@@ -81,7 +81,7 @@ def branch_section(results, name, title):
 
 
 def bifurcation_sections(results):
-    """Frequencies of two modes about that at which they meet and begin to flutter; the pairs that then grow most."""
+    """Frequencies of pairs of modes relative to the frequency at which they coalesce, for the pairs that grow most."""
     name = "branches_without_dissipation" if results.has("branches_without_dissipation") else "branches"
     branches, parameter = branches_of(results, name), results.table(name).parameter
     peaks = {branch: max(number(row[RATE]) for row in rows) for branch, rows in branches.items()}
@@ -100,7 +100,7 @@ def bifurcation_sections(results):
                                  showlegend=is_first, line={"color": colour, "width": 1.6},
                                  hovertemplate=f"<b>{rows[0]['label']}</b><br>{symbol(parameter)} = %{{x:.4g}}<br>%{{customdata[0]:.2f}} Hz"
                                                "<br>divergence rate %{customdata[1]:.4g} %<extra></extra>"))
-    caption = ("Frequencies of two modes less that at which they meet; from there on both have one frequency, and one of them grows. "
+    caption = ("Frequencies of two modes minus the frequency at which they coalesce; beyond it both have one frequency and one mode grows. "
                f"The {len(events)} pairs that grow most" + (", without radial dissipation." if "without" in name else "."))
-    return [{"id": "bifurcations", "title": "Which modes meet", "caption": caption, "data": traces,
+    return [{"id": "bifurcations", "title": "Coalescing modes", "caption": caption, "data": traces,
              "height": 500, "layout": layout(axis_title(parameter), "frequency difference [Hz]")}]
