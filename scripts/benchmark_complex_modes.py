@@ -1,18 +1,16 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Times the complex modes of one run on one core: squeal and SLEPc in turn, with the same BLAS kernels.
+"""Times the complex modes of one run on one core: squeal and SLEPc alternately, with the same BLAS kernels.
 
     scripts/benchmark_complex_modes.py DIRECTORY [--formulations linear,toar] [--runs 3] [--core 0]
 
-DIRECTORY is the output of a run with Output/Write matrices = true, in which the modes were found by Krylov methods. SLEPc is asked
-for the number of modes of that run in every formulation of scripts/slepc_modes.py that fits the problem, and the fastest that finds all
-modes is the one to compare with.
+DIRECTORY is the output of a run with Output/Write matrices = true and Krylov methods. SLEPc computes the same number of modes in every
+applicable formulation of scripts/slepc_modes.py; the fastest one that finds all modes is the reference.
 
-All times are processor seconds from the assembled matrices in memory to the modes: of squeal, the steps Factorisation and Complex
-modes of its run record, and the same with the steps Mode count and Real modes, which a run makes in any case and from which it takes
-the number of modes to look for; of SLEPc, set-up and solution with that number given. Reading the matrices is not counted. Ratios are those of one
-round, of which the median is printed.
+All times are CPU seconds from the assembled matrices in memory to the modes. For squeal they are the steps Factorisation and Complex modes
+of the run record, without and with the steps Mode count and Real modes, which provide the number of modes; for SLEPc, set-up and solution
+with that number given. Reading the matrices is not counted. The median of the ratios of each round is printed.
 """
 
 import pathlib
@@ -27,7 +25,7 @@ from squeal.errors import Error
 
 
 def squeal_times(core, directory):
-    """Processor seconds of the complex modes, without and with the real modes."""
+    """CPU seconds of the complex modes, without and with the real modes."""
     with tempfile.TemporaryDirectory() as folder:
         record = benchmarking.run_squeal(core, directory / "parameters.prm", f"{folder}/run",
                                          ["Output/Mode shapes=none", "Output/Write matrices=false"])
@@ -39,7 +37,7 @@ def squeal_times(core, directory):
 def main():
     parser = benchmarking.parser_of(__doc__)
     parser.add_argument("directory", metavar="DIRECTORY", type=pathlib.Path, help="output of a run with Output/Write matrices = true")
-    parser.add_argument("--formulations", help="of SLEPc, separated by commas (default: all that fit)")
+    parser.add_argument("--formulations", help="formulations of SLEPc, separated by commas (default: all applicable ones)")
     arguments = parser.parse_args()
     if not slepc_modes.available():
         raise slepc_modes.missing()

@@ -1,22 +1,22 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Linearisations of the small quadratic eigenproblem of a chart with dissipation, timed beside each other.
+"""Compares the CPU times of linearisations of the small quadratic eigenproblem of a chart with dissipation.
 
     scripts/benchmark_linearisations.py DIRECTORY [--vectors 234] [--runs 3] [--core 0]
 
-DIRECTORY is the output of a run with Output/Write matrices = true and dissipation, prm/dissipation.prm for instance. The lowest real modes
-without friction make the problem small: lambda^2 M + lambda C + K with so many rows, dense, K not symmetric. Right and left vectors of
-the band are found
+DIRECTORY is the output of a run with Output/Write matrices = true and dissipation, such as prm/dissipation.prm. Projection onto the lowest
+real modes without friction gives a small dense problem lambda^2 M + lambda C + K, K not symmetric. Right and left eigenvectors of the band
+are computed
 
-    companion    by the QR algorithm (dgeev) on [[0, I], [-inv(M) K, -inv(M) C]], which keeps nothing of the structure
-    symmetric    by the QZ algorithm (dggev) on lambda [[C, M], [M, 0]] + [[K, 0], [0, -M]], whose blocks stay as symmetric as K, C and M are
-    values       by the QR algorithm for the values of the companion form alone, and two steps of inverse iteration with
-                 lambda^2 M + lambda C + K for each of the band
-    toar         by SLEPc's two-level orthogonal Arnoldi method, a Krylov method that keeps the structure of the companion form;
-                 once for right vectors, once for left ones (needs scripts/setup.sh peers)
+    companion    by the QR algorithm (dgeev) on [[0, I], [-inv(M) K, -inv(M) C]], which ignores the structure
+    symmetric    by the QZ algorithm (dggev) on lambda [[C, M], [M, 0]] + [[K, 0], [0, -M]], which preserves the symmetry of K, C and M
+    values       by the QR algorithm for the eigenvalues of the companion form only, and two steps of inverse iteration with
+                 lambda^2 M + lambda C + K for each eigenvalue of the band
+    toar         by SLEPc's two-level orthogonal Arnoldi method, a Krylov method that preserves the structure of the companion form;
+                 once for right vectors, once for left ones (requires scripts/setup.sh peers)
 
-Processor seconds of one core, medians; the largest relative distance of an eigenvalue of the band from the first method's.
+Prints medians of the CPU seconds on one core, and the largest relative distance of an eigenvalue of the band from the first method's.
 """
 
 import os
@@ -48,7 +48,7 @@ def small_problem(directory, n_vectors):
 
 
 def in_band(values, end):
-    """Which of the eigenvalues are those of modes in the band: one of each conjugate pair."""
+    """Indices of the eigenvalues of modes in the band, one of each conjugate pair."""
     return np.flatnonzero((values.imag > 0) & (values.imag <= end))
 
 

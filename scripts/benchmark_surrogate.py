@@ -1,17 +1,18 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Compares one reduced model for all samples with surrogates that are trained on full-order solutions: polynomial chaos and Kriging.
+"""Compares one reduced model for all samples with surrogates trained on full-order solutions: polynomial chaos and Kriging.
 
     scripts/benchmark_surrogate.py [prm/robustness.prm] [--set "Section/Name=value"]... [--train 50,200] [--fresh 500]
 
-A robustness study without Sobol' indices computes all modes of the samples to a tolerance of 1e-6, which are taken for exact: the first ones
-train, the last ones are fresh. The surrogates are those of OpenTURNS, of Re lambda and Im lambda of every mode that has its name to itself in
-all training samples: sparse polynomial chaos (least angle regression, hyperbolic truncation, degree 6) and Kriging (linear trend, Matern 5/2).
-Errors of lambda are those of fresh samples in which the mode has its name to itself, too. A sample squeals if a divergence rate exceeds 0.01 %.
+A robustness study without Sobol' indices computes all modes of the samples to a tolerance of 1e-6, which are considered exact: the first
+samples are for training, the last ones for testing. OpenTURNS builds surrogates of Re lambda and Im lambda of every mode whose name is
+unique in all training samples: sparse polynomial chaos (least angle regression, hyperbolic truncation, degree 6) and Kriging (linear
+trend, Matern 5/2). Errors of lambda are those of test samples in which the name is unique, too. A sample squeals if a divergence rate
+exceeds 0.01 %.
 
-Processor seconds on one core: a full-order solution is that of a stability run with the Krylov solver, from count to complex modes, assembly
-left out. Needs Debian's python3-openturns.
+Times are CPU seconds on one core. That of a full-order solution is from a stability run with the Krylov solver: from the mode count to the
+complex modes, without assembly. Requires Debian's python3-openturns.
 """
 
 import os
@@ -34,7 +35,7 @@ LEAST_RATE = 1e-4  # divergence rate of a sample that squeals
 
 
 def read_samples(directory):
-    """Values of the uncertain numbers, n x d, and for each sample the eigenvalues by name: lists of those that share it."""
+    """Values of the uncertain numbers (n x d), and for each sample name -> list of eigenvalues."""
     samples, modes = Table(directory / "samples.csv"), Table(directory / "sample_modes.csv")
     first = samples.columns.index("unstable modes [-]")
     numbers = np.array([samples.numbers(name) for name in samples.columns[1:first]]).T
@@ -46,7 +47,7 @@ def read_samples(directory):
 
 
 def chaos(ot, inputs, outputs, distribution):
-    """Sparse polynomial chaos with the degree that the corrected leave-one-out error prefers."""
+    """Sparse polynomial chaos, selected by the corrected leave-one-out error."""
     dimension = inputs.getDimension()
     enumeration = ot.HyperbolicAnisotropicEnumerateFunction(dimension, 0.6)
     basis = ot.OrthogonalProductPolynomialFactory([distribution.getMarginal(i) for i in range(dimension)], enumeration)
@@ -69,7 +70,7 @@ def kriging(ot, inputs, outputs, _distribution):
 
 
 def trained(ot, make, numbers, by_sample, n_train):
-    """Eigenvalues of the fresh samples by name, from surrogates of every mode; seconds that training takes."""
+    """Name -> eigenvalues of all samples from surrogates of every mode, and the CPU seconds of training."""
     lower, upper = numbers.min(axis=0), numbers.max(axis=0)
     scaled = 2 * (numbers - lower) / (upper - lower) - 1
     distribution = ot.ComposedDistribution([ot.Uniform(-1, 1)] * numbers.shape[1])
@@ -90,12 +91,12 @@ def trained(ot, make, numbers, by_sample, n_train):
 
 
 def squeals(modes):
-    """Whether the divergence rate of one of the modes, in lists by name, exceeds the least one."""
+    """Whether the divergence rate of a mode, in lists by name, exceeds LEAST_RATE."""
     return any(value.real / abs(value.imag) > LEAST_RATE for values in modes for value in values)
 
 
 def wrong_verdicts(exact, found):
-    """Percentage of the samples in which only one of both squeals."""
+    """Percentage of the samples in which only one of the two models squeals."""
     return 100 * np.mean([squeals(modes.values()) != squeals(others) for modes, others in zip(exact, found)])
 
 
@@ -112,12 +113,12 @@ def main():
     parser.add_argument("parameter_file", nargs="?", type=pathlib.Path, default=SOURCE / "prm" / "robustness.prm")
     parser.add_argument("--set", action="append", default=[], dest="settings", metavar="Section/Name=value")
     parser.add_argument("--train", default="50,200", help="numbers of full-order solutions (default: %(default)s)")
-    parser.add_argument("--fresh", type=int, default=500, help="samples on which the surrogates are tried (default: %(default)s)")
+    parser.add_argument("--fresh", type=int, default=500, help="number of test samples (default: %(default)s)")
     arguments = parser.parse_args()
     try:
         import openturns as ot
     except ImportError:
-        raise Error("there is no OpenTURNS", "Python", "install Debian's python3-openturns")
+        raise Error("OpenTURNS is missing", "Python", "apt-get install python3-openturns")
     ot.Log.Show(ot.Log.NONE)
     sizes = [int(n) for n in arguments.train.split(",")]
     print(benchmarking.describe_machine(arguments.core), flush=True)

@@ -1,16 +1,16 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Times an error-controlled sweep on one core beside full-order solutions by SLEPc, with the same BLAS kernels.
+"""Compares the CPU time of an error-controlled sweep with that of full-order solutions by SLEPc, on one core with the same BLAS kernels.
 
     scripts/benchmark_sweep.py PRM [--set "Section/Name=value"]... [--runs 3] [--core 0]
 
-PRM is a parameter file with Study = sweep; the settings are handed to squeal. SLEPc solves the problem in the formulation that is
-fastest for it: without damping the linear one in lambda^2 (scripts/slepc_modes.py).
+PRM is a parameter file with Study = sweep; the settings are passed to squeal. SLEPc uses its fastest formulation for the problem, without
+damping the linear one in lambda^2 (scripts/slepc_modes.py).
 
-Processor seconds: of squeal, the whole run from the mesh to the tables; of SLEPc, the solution from the assembled matrices at
-friction coefficients spread over the sweep, of which the mean stands for all. Both run in turn: in every run a sweep, then five solutions.
-Where the sweep makes the chart without dissipation besides, that is counted to squeal alone. Medians, with the smallest and the largest.
+Times of squeal are those of the whole run from the mesh to the tables, including the chart without dissipation if there is one; times of
+SLEPc are those of the solution from the assembled matrices, as a mean of five friction coefficients. Each repetition is one sweep followed
+by five solutions. Prints medians with the smallest and largest values.
 """
 
 import pathlib
@@ -27,9 +27,9 @@ def main():
     rounds = benchmarking.Rounds(arguments.parameter_file.name)
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        scene = benchmarking.matrices_of(folder / "matrices", arguments.parameter_file, arguments.settings, arguments.core)
+        model = benchmarking.matrices_of(folder / "matrices", arguments.parameter_file, arguments.settings, arguments.core)
         for _ in range(arguments.runs):
-            benchmarking.compare_sweep(rounds, arguments.core, arguments.parameter_file, arguments.settings, folder / "sweep", [scene])
+            benchmarking.compare_sweep(rounds, arguments.core, arguments.parameter_file, arguments.settings, folder / "sweep", [model])
     rounds.print()
 
 

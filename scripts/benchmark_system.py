@@ -1,17 +1,16 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Times a sweep over a parameter of a system on one core beside full-order solutions by SLEPc at every one of its values.
+"""Compares the CPU time of a sweep over a parameter of a system with full-order solutions by SLEPc at each of its values, on one core.
 
     scripts/benchmark_system.py PRM [--set "Section/Name=value"]... [--runs 3] [--core 0] [--eigenvalues N] [--basis N] [--tolerance 1e-12]
 
-PRM is a parameter file with Study = sweep, System and one parameter in the section Sweep; the settings are handed to squeal. SLEPc takes
-TOAR about zero and is told the smallest number of eigenvalues, in steps of two, that reach beyond the band at both ends and in the
-middle of the sweep.
+PRM is a parameter file with Study = sweep, System and one parameter in the section Sweep; the settings are passed to squeal. SLEPc uses
+TOAR about zero with the smallest number of eigenvalues, in steps of two, that covers the band at both ends and in the middle of the sweep.
 
-Processor seconds: of squeal, the whole run from the files to branches and thresholds; of SLEPc, the solutions from M, C and K in memory. Both
-run in turn. The modes of the sweep are compared with SLEPc's: those of the band with Re lambda of at least -0.1 times the circular frequency
-at its end. Needs Debian's python3-slepc4py (scripts/setup.sh peers).
+Times of squeal are those of the whole run from the files to branches and thresholds; times of SLEPc are those of the solutions from M, C
+and K in memory. Both run alternately. The modes of the sweep are compared with SLEPc's: those in the band whose Re lambda is at least -0.1
+times the circular frequency at its end. Requires Debian's python3-slepc4py (scripts/setup.sh peers).
 """
 
 import os
@@ -41,7 +40,7 @@ def swept(directory):
 
 
 def modes_by_value(directory, values):
-    """The eigenvalues of the sweep at each of its values, without those of refinements between them."""
+    """The eigenvalues of the sweep at each of its values, without refinements between them."""
     table = Table(pathlib.Path(directory) / "branches.csv")
     at, planned = np.array(table.numbers(table.parameter)), ~np.array(table.flags("refinement [-]"), dtype=bool)
     eigenvalues = np.array(table.eigenvalues(), dtype=complex)
@@ -50,12 +49,12 @@ def modes_by_value(directory, values):
 
 
 def listed(eigenvalues, end):
-    """Those of the band that decay no faster than within a period."""
+    """Eigenvalues in the band with Re lambda of at least -0.1 times its end."""
     return eigenvalues[(eigenvalues.imag > 0) & (eigenvalues.imag < end) & (eigenvalues.real >= -0.1 * end)]
 
 
 def smallest_number(problems, end, first):
-    """The smallest number of eigenvalues with which SLEPc's reach beyond the band."""
+    """The smallest number of eigenvalues with which SLEPc covers the band."""
     number = first
     while not all(slepc_modes.Solution(problem, number, "toar").covers(end / (2 * np.pi)) for problem in problems):
         number += 2
@@ -65,8 +64,8 @@ def smallest_number(problems, end, first):
 @exit_on_error()
 def main():
     parser = benchmarking.parser_of(__doc__, of_sweep=True)
-    parser.add_argument("--eigenvalues", type=int, help="how many SLEPc is asked for (default: the smallest number that covers the band)")
-    parser.add_argument("--basis", type=int, help="vectors of its basis (default: twice as many)")
+    parser.add_argument("--eigenvalues", type=int, help="number of eigenvalues of SLEPc (default: the smallest that covers the band)")
+    parser.add_argument("--basis", type=int, help="size of SLEPc's basis (default: twice as many)")
     parser.add_argument("--tolerance", type=float, default=1e-12, help="SLEPc's tolerance (default: %(default)s)")
     arguments = parser.parse_args()
     if not slepc_modes.available():
@@ -86,7 +85,7 @@ def main():
                 problems = [exported_matrices.QuadraticProblem(*system.matrices({name: float(value)})) for value in values]
                 expected = [listed(found, end) for found in modes_by_value(directory, values)]
                 number = number or smallest_number([problems[0], problems[len(problems) // 2], problems[-1]], end, 2 * max(map(len, expected)) + 4)
-                print(f"{system.size} dofs, {len(values)} values of {name}; SLEPc is asked for {number} eigenvalues", flush=True)
+                print(f"{system.size} dofs, {len(values)} values of {name}; SLEPc computes {number} eigenvalues", flush=True)
             found = [slepc_modes.Solution(problem, number, "toar", tolerance=arguments.tolerance, basis=arguments.basis, seed=run)
                      for problem in problems]
             of_slepc = sum(solution.cpu for solution in found)
@@ -98,8 +97,8 @@ def main():
             uncovered = sum(not solution.covers(end / (2 * np.pi)) for solution in found)
             unequal = sum(len(one) != len(other) for one, other in zip(eigenvalues, expected))
             distance = max(quadratic.match(*pair)[2].max(initial=0.0) for pair in zip(eigenvalues, expected))
-            print(f"run {run}: {min(map(len, expected))} to {max(map(len, expected))} modes, "
-                  f"other numbers of them at {unequal} values, band not covered at {uncovered}, largest relative difference {distance:.1e}", flush=True)
+            print(f"run {run}: {min(map(len, expected))} to {max(map(len, expected))} modes, different numbers at {unequal} values, "
+                  f"band not covered at {uncovered}, largest relative difference {distance:.1e}", flush=True)
     rounds.print()
 
 

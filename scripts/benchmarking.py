@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What the benchmarks share: the machine, runs of squeal and of SLEPc on one core with the same BLAS kernels, medians."""
+"""Functions shared by the benchmarks: the machine, runs of squeal and SLEPc on one core with the same BLAS kernels, medians."""
 
 import json
 import os
@@ -18,11 +18,11 @@ from squeal.program import SOURCE, find_program, words_of
 from squeal.results import read_table
 
 PEER = SOURCE / "scripts" / "slepc_modes.py"
-PARTS = (0.1, 0.3, 0.5, 0.7, 0.9)  # of a sweep, at which SLEPc solves
+PARTS = (0.1, 0.3, 0.5, 0.7, 0.9)  # positions in the range of a sweep at which SLEPc solves
 
 
 def cpu():
-    """Name and abilities of the processor, as Linux tells them."""
+    """Name and flags of the processor from /proc/cpuinfo."""
     fields = {}
     for line in pathlib.Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines():
         name, _, value = line.partition(":")
@@ -31,14 +31,14 @@ def cpu():
 
 
 def kernels():
-    """The OpenBLAS kernels for both programs: what the user chose, else the widest that the processor has."""
+    """The OpenBLAS kernels for both programs: the user's choice, or the widest that the processor supports."""
     _, flags = cpu()
     widest = "SkylakeX" if "avx512vl" in flags else "Haswell" if "avx2" in flags else None
     return os.environ.get("OPENBLAS_CORETYPE", widest)
 
 
 def environment(n_threads=1):
-    """Threads, the kernels, and Open MPI usable by root in a container."""
+    """Environment with numbers of threads, BLAS kernels, and settings of Open MPI for root in a container."""
     settings = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": str(n_threads), "DEAL_II_NUM_THREADS": str(n_threads),
                 "OMPI_MCA_btl_vader_single_copy_mechanism": "none",
                 "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
@@ -48,15 +48,14 @@ def environment(n_threads=1):
 
 
 def describe_machine(core):
-    """One line on what the times belong to."""
+    """One line on the machine and its load."""
     name, _ = cpu()
     load = os.getloadavg()[0]
-    return (f"{name}, core {core} of {os.cpu_count()}, OpenBLAS kernels {kernels() or 'as OpenBLAS chooses'}, "
-            f"load of the machine {load:.1f}")
+    return f"{name}, core {core} of {os.cpu_count()}, OpenBLAS kernels {kernels() or 'chosen by OpenBLAS'}, load average {load:.1f}"
 
 
 def parser_of(description, of_sweep=False):
-    """The command line of a benchmark: repetitions and core, of one of a sweep also parameter file and settings."""
+    """The command line of a benchmark: repetitions and core; for a sweep also parameter file and settings."""
     parser = Parser(description)
     if of_sweep:
         parser.add_argument("parameter_file", metavar="PRM", type=pathlib.Path)
@@ -67,7 +66,7 @@ def parser_of(description, of_sweep=False):
 
 
 def run_on_core(core, command):
-    """Runs a command on one core, or with as many threads on several; its output, or an end with its messages."""
+    """The output of a command on one core, or on several with as many threads. Raises Error with its messages if it fails."""
     cores = core if isinstance(core, list) else [core]
     words = ["taskset", "-c", ",".join(map(str, cores)), *map(str, command)]
     process = subprocess.run(words, env=environment(len(cores)), text=True, capture_output=True, check=False)
@@ -83,7 +82,7 @@ def run_squeal(core, parameter_file, output, settings=()):
 
 
 def run_peer(core, directory, n_modes, formulation=None, friction_coefficient=None):
-    """Solves once by SLEPc; the record of scripts/slepc_modes.py --json."""
+    """Solves once by SLEPc and returns the record of scripts/slepc_modes.py --json."""
     with tempfile.NamedTemporaryFile(suffix=".json") as file:
         options = ["--formulation", formulation] if formulation else []
         options += ["--mu", repr(friction_coefficient)] if friction_coefficient is not None else []
@@ -92,27 +91,27 @@ def run_peer(core, directory, n_modes, formulation=None, friction_coefficient=No
 
 
 def cpu_seconds(record, steps=None):
-    """Processor seconds of the named steps of a run record, or of all."""
+    """CPU seconds of the named steps of a run record, or of all."""
     return sum(step["CPU time [s]"] for step in record["steps"] if steps is None or step["name"] in steps)
 
 
 def parameter(directory, name):
-    """A value of the run as text."""
+    """A parameter of the run as text."""
     return read_parameters(pathlib.Path(directory) / "parameters.prm")[name]
 
 
 def n_rows(table):
-    """Rows of a table."""
+    """Number of rows of a table."""
     return len(read_table(table))
 
 
 def spread(values, digits=1):
-    """Median with smallest and largest."""
+    """Median with the smallest and largest value."""
     return f"{statistics.median(values):.{digits}f} ({min(values):.{digits}f} to {max(values):.{digits}f})"
 
 
 class Rounds:
-    """What the rounds of a benchmark measured, by the name of the quantity."""
+    """Measured values of all rounds of a benchmark, by the name of the quantity."""
 
     def __init__(self, title):
         self.title, self.values = title, {}
@@ -127,14 +126,14 @@ class Rounds:
 
 
 def matrices_of(directory, parameter_file, settings, core):
-    """The matrices of a scene for SLEPc, written once, and its number of modes."""
+    """The folder with the matrices of a model for SLEPc, written once, and the number of modes."""
     if not directory.exists():
         run_squeal(core, parameter_file, directory, [*settings, "Study=stability", "Output/Write matrices=true", "Output/Mode shapes=none"])
     return directory, n_rows(directory / "real_modes.csv")
 
 
 def mean_peer(rounds, core, matrices, chosen):
-    """Mean processor seconds of SLEPc over some friction coefficients."""
+    """Mean CPU seconds of SLEPc over friction coefficients."""
     directory, n_modes = matrices
     solutions = [run_peer(core, directory, n_modes, friction_coefficient=mu) for mu in chosen]
     for solution in solutions:
@@ -145,8 +144,8 @@ def mean_peer(rounds, core, matrices, chosen):
     return mean
 
 
-def compare_sweep(rounds, core, parameter_file, settings, output, scenes):
-    """One round: a sweep, then SLEPc at five of its friction coefficients in each of the scenes; its mean stands for all."""
+def compare_sweep(rounds, core, parameter_file, settings, output, models):
+    """One round: a sweep, then SLEPc for each of the models at five of its friction coefficients, whose mean represents all."""
     record = run_squeal(core, parameter_file, output, settings)
     seconds = cpu_seconds(record)
     rounds.add("squeal, the whole run, CPU [s]", seconds)
@@ -154,5 +153,5 @@ def compare_sweep(rounds, core, parameter_file, settings, output, scenes):
         rounds.add(f"  {name}", cpu_seconds(record, {name}))
     number, first, last = (float(parameter(output, f"Sweep/{name}"))
                            for name in ("Number of friction coefficients", "First friction coefficient", "Last friction coefficient"))
-    peers = sum(mean_peer(rounds, core, scene, [first + part * (last - first) for part in PARTS]) for scene in scenes)
+    peers = sum(mean_peer(rounds, core, model, [first + part * (last - first) for part in PARTS]) for model in models)
     rounds.add(f"{number:.0f} solutions by SLEPc / the run [-]", number * peers / seconds)

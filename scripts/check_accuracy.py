@@ -1,15 +1,14 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Holds the errors that a run with `set Accuracy` estimates against a run on a much finer mesh.
+"""Compares the errors estimated by a run with `set Accuracy` with a run on a much finer mesh.
 
     scripts/check_accuracy.py RUN REFERENCE
 
-RUN and REFERENCE are result folders. Modes are paired by their λ among those of one kind, the letters of their labels, where these
-have not changed, so that the sum of the distances is smallest: not by shape, as the program does. Prints the largest errors of frequencies
-and divergence rates of all modes and of those that RUN calls converged, how many errors are larger than estimated, and every mode that is
-called converged and is off by more than the accuracy, or by a tenth of that in percentage points of the divergence rate. The exit status
-is 1 if there is one.
+RUN and REFERENCE are results folders. Modes are paired by minimising the sum of the distances of λ, with a penalty for different kinds
+(the letters of the labels), and not by shape as in the program. Prints the largest errors of frequencies and divergence rates of all modes
+and of those that RUN reports as converged, the number of errors larger than estimated, and every mode reported as converged whose frequency
+error exceeds the accuracy, or whose divergence rate error in percentage points exceeds a tenth of it. The exit status is 1 if there is one.
 """
 
 import pathlib
@@ -22,13 +21,13 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "python"))
 import squeal
 from squeal.command_line import Parser, exit_on_error
 
-OTHER_KIND = 0.002  # of the frequency: where disc and pins take part alike, a mode's name may change from mesh to mesh
+OTHER_KIND = 0.002  # penalty as a share of the frequency; the label of a mixed mode may change from mesh to mesh
 ESTIMATED = ("estimated frequency error by the mesh", "estimated divergence rate error by the mesh")
 FOUND = ("frequency error", "divergence error")  # [%], relative, and in percentage points
 
 
 def compare(run, reference):
-    """The modes of the results `run` as a data frame, with the errors that the results `reference` show."""
+    """The modes of the results `run` as a data frame, with their errors relative to the results `reference`."""
     modes, exact = run.modes, reference.modes
     frequency = abs(np.divide.outer(modes["frequency"].values, exact["frequency"].values) - 1)
     divergence = abs(np.subtract.outer(modes["divergence rate"].values, exact["divergence rate"].values))
@@ -64,7 +63,7 @@ def main():
     n_over = sum((converged[list(FOUND)].values > converged[list(ESTIMATED)].values).any(axis=1))
     print(f"  errors larger than estimated: {n_over} of {len(converged)}")
     wrong = converged[(converged[FOUND[0]] > goal) | (converged[FOUND[1]] > goal / 10)]
-    print(f"  called converged, and off by more than {goal:g} % or {goal / 10:g} points: {len(wrong)}")
+    print(f"  reported as converged with errors above {goal:g} % or {goal / 10:g} points: {len(wrong)}")
     for _, mode in wrong.iterrows():
         print(f"    {mode['label']:<10} {mode['frequency']:9.2f} Hz: {mode[FOUND[0]]:.4f} % (estimated {mode[ESTIMATED[0]]:.4f}), "
               f"{mode[FOUND[1]]:.4f} points (estimated {mode[ESTIMATED[1]]:.4f})")

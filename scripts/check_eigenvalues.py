@@ -1,19 +1,18 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Checks the complex modes of a run with other people's eigensolvers.
+"""Checks the complex modes of a run with independent eigensolvers.
 
     scripts/check_eigenvalues.py DIRECTORY [--modes FILE] [--solver scipy|slepc|both] [--system FOLDER]
 
-DIRECTORY is the output of a run with Output/Write matrices = true, or of any run of the system in FOLDER (doc/python.md). The
-coupled quadratic problem is formed here from the exported matrices and solved by SciPy (ARPACK on the companion form) and, where installed, by SLEPc (MUMPS;
-Krylov-Schur on the linear problem in lambda^2, or with damping two-level orthogonal Arnoldi). Each eigenvalue of the
-table is held against the nearest one found, one to one. The exit status is 1 when a difference exceeds the tolerance, a count
-differs or the matrices are not what they should be.
+DIRECTORY is the output of a run with Output/Write matrices = true, or of any run of the system in FOLDER (doc/python.md). The coupled
+quadratic problem is assembled from the exported matrices and solved by SciPy (ARPACK on the companion form) and, if installed, by SLEPc
+(MUMPS; Krylov-Schur on the linear problem in lambda^2, or two-level orthogonal Arnoldi with damping). The eigenvalues of the table are
+compared one to one with the nearest ones found. The exit status is 1 if a difference exceeds the tolerance, the numbers differ or the
+matrices lack their structure.
 
-Where a body can move freely the stiffness is singular, and the eigenvalues are sought about a real shift that is
-chosen here. Where the table estimates the errors of its eigenvalues, as that of the residual iteration does, they may
-differ by three times the largest estimate.
+If a body can move freely, the stiffness is singular and a real shift is chosen. If the table estimates the errors of its eigenvalues, as
+for the residual iteration, differences up to three times the largest estimate are accepted.
 """
 
 import math
@@ -37,16 +36,16 @@ from squeal.results import Table
 from squeal.system import System
 
 STRUCTURE_TOLERANCE = 1e-10
-# Largest relative difference of eigenvalues that the table says nothing about the accuracy of
+# Largest relative difference of eigenvalues without estimated errors
 TOLERANCE = 1e-8
-# The largest of the errors that a run estimates may be that much too small
+# The largest error estimated by a run may be underestimated by this factor
 ESTIMATE_SAFETY = 3.0
-# Of a stiffness that is singular but for rounding
+# Condition number above which a stiffness counts as singular
 SINGULAR_CONDITION = 1e12
 
 
 def read_modes(path):
-    """Labels, eigenvalues and, where there are any, estimated errors of a table of modes.
+    """Labels, eigenvalues and, if present, estimated errors of a table of modes.
 
     The columns are `frequency [Hz]`, `growth rate [1/s]` and `estimated error of lambda [-]`.
     """
@@ -60,7 +59,7 @@ def read_modes(path):
 
 
 def choose_shift(problem, band):
-    """Zero [1/s], or a twentieth of the band where the stiffness is singular."""
+    """A shift [1/s]: zero, or a twentieth of the end of the band if the stiffness is singular."""
     n = problem.size
     try:
         factor = scipy.sparse.linalg.splu(problem.stiffness.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.1,
@@ -73,11 +72,11 @@ def choose_shift(problem, band):
 
 
 def choose_tolerance(errors):
-    """Largest relative difference that is accepted, and where it comes from."""
+    """The largest accepted relative difference, and its origin."""
     estimate = ESTIMATE_SAFETY * max(errors, default=0.0)
     if estimate > TOLERANCE:
-        return estimate, f"{ESTIMATE_SAFETY:g} times the largest error that the table estimates"
-    return TOLERANCE, "that of converged eigenvalues"
+        return estimate, f"{ESTIMATE_SAFETY:g} times the largest error estimated in the table"
+    return TOLERANCE, "for converged eigenvalues"
 
 
 def solve_by_scipy(problem, band, n_modes, shift=0.0):
@@ -97,7 +96,7 @@ def solve_by_scipy(problem, band, n_modes, shift=0.0):
 
 
 def problem_of_system(arguments):
-    """The quadratic problem of a system of matrices, whose structure is checked when it is read."""
+    """The quadratic problem of a system of matrices, and True: System.read() checks its structure."""
     system = System.read(arguments.system)
     p = {name: float(value) for name, _, value in (word.partition("=") for word in arguments.parameter)}
     print(f"{system.size} dofs, {len(system.terms)} terms, " + "".join(f"{name} = {value:g}, " for name, value in system.values(p).items()), end="")
@@ -105,7 +104,7 @@ def problem_of_system(arguments):
 
 
 def problem_of_run(arguments):
-    """The coupled quadratic problem of exported matrices, and whether what must vanish does."""
+    """The coupled quadratic problem of exported matrices, and whether their structure is correct."""
     friction_coefficient = exported_matrices.run_parameter(arguments.directory, "Operation/Friction coefficient", arguments.mu)
     matrices, right = exported_matrices.read_matrices(arguments.directory), True
     for description, error in exported_matrices.structure_errors(matrices).items():
@@ -117,7 +116,7 @@ def problem_of_run(arguments):
 
 
 def compare(name, labels, eigenvalues, found, tolerance):
-    """Prints the differences to the eigenvalues found and says whether they and the counts are as they should be."""
+    """Prints the differences from the eigenvalues found; returns whether these and the numbers of modes agree."""
     rows, columns, differences = quadratic.match(eigenvalues, found)
     matched = {row: pair for row, *pair in zip(rows, found[columns], differences)}
 
@@ -136,7 +135,7 @@ def compare(name, labels, eigenvalues, found, tolerance):
     largest = differences.max(initial=0)
     right = len(found) == len(eigenvalues) and largest <= tolerance
     print(f"{name}: {len(found)} modes, the table has {len(eigenvalues)}; largest relative difference {largest:.1e}, "
-          f"{'as it should be' if right else f'too much (tolerance {tolerance:g})' if largest > tolerance else 'the counts differ'}")
+          f"{'passed' if right else f'too much (tolerance {tolerance:g})' if largest > tolerance else 'the counts differ'}")
     return right
 
 
@@ -144,15 +143,15 @@ def compare(name, labels, eigenvalues, found, tolerance):
 def main():
     parser = Parser(__doc__)
     parser.add_argument("directory", metavar="DIRECTORY", type=pathlib.Path, help="output of a run with Output/Write matrices = true")
-    parser.add_argument("--modes", metavar="FILE", default="complex_modes.csv", help="the table, in DIRECTORY (default: %(default)s)")
+    parser.add_argument("--modes", metavar="FILE", default="complex_modes.csv", help="table of modes in DIRECTORY (default: %(default)s)")
     parser.add_argument("--solver", choices=("scipy", "slepc", "both"), default="both", help="(default: %(default)s)")
-    parser.add_argument("--system", metavar="FOLDER", help="the system of matrices that was solved, instead of exported matrices")
-    parser.add_argument("--parameter", action="append", default=[], metavar="NAME=VALUE", help="of the system, where it is not that of its file")
+    parser.add_argument("--system", metavar="FOLDER", help="system of matrices of the run, instead of exported matrices")
+    parser.add_argument("--parameter", action="append", default=[], metavar="NAME=VALUE", help="overrides a parameter of the system")
     parser.add_argument("--mu", type=float, help="friction coefficient (default: that of the run)")
     parser.add_argument("--band", type=float, help="upper end of the band in Hz (default: that of the run)")
-    parser.add_argument("--shift", type=float, help="real shift in 1/s (default: 0, or chosen where a body can move freely)")
+    parser.add_argument("--shift", type=float, help="real shift in 1/s (default: 0, or chosen if a body can move freely)")
     parser.add_argument("--tolerance", type=float,
-                        help=f"largest relative difference (default: {TOLERANCE:g}, or what the table's own estimates allow)")
+                        help=f"largest relative difference (default: {TOLERANCE:g}, or from the errors estimated in the table)")
     arguments = parser.parse_args()
 
     band = exported_matrices.run_parameter(arguments.directory, "Band/Maximum frequency", arguments.band)
@@ -162,14 +161,14 @@ def main():
     file = pathlib.Path(arguments.directory) / "parameters.prm"
     parameters = parameter_file.read_parameters(file) if file.is_file() else {}
     if parameters.get("Damping/Modal damping ratio"):
-        raise Error("the run has modal damping, which no exported matrix holds", file, "repeat it without Damping/Modal damping ratio")
+        raise Error("the run has modal damping, which is not exported", file, "repeat it without Damping/Modal damping ratio")
     problem, right = (problem_of_system if arguments.system else problem_of_run)(arguments)
     print(f"modes up to {band:g} Hz")
     shift = arguments.shift
     if shift is None:
         shift = choose_shift(problem, band)
         if shift != 0:
-            print(f"  a body can move freely: eigenvalues are sought about the shift {shift:.0f} 1/s")
+            print(f"  a body can move freely: the shift is {shift:.0f} 1/s")
     tolerance, source = (arguments.tolerance, "as given") if arguments.tolerance is not None else choose_tolerance(errors)
     print(f"  tolerance {tolerance:.1e}, {source}")
     solvers = {"SciPy": solve_by_scipy} if arguments.solver in ("scipy", "both") else {}
@@ -179,7 +178,7 @@ def main():
         elif arguments.solver == "slepc":
             raise slepc_modes.missing()
         else:
-            print("SLEPc is not installed; SciPy alone is asked.")
+            print("SLEPc is not installed: only SciPy is used.")
 
     for name, solve in solvers.items():
         found, vectors = solve(problem, band, max(len(eigenvalues), 1), shift)

@@ -1,16 +1,14 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Compares the tables of two result folders and prints the largest difference of each.
+"""Compares the tables of two results folders and prints the largest difference of each.
 
     scripts/compare_results.py OLD NEW [--tolerance 1e-9] [--ignore COLUMN]... [--tables PATTERN]
 
-Every CSV file below OLD is held against the one of the same name below NEW, cell by cell: numbers by their
-difference relative to the largest number of their column in OLD, so that a column of rounding errors beside zero
-does not count, texts letter by letter. Columns of what varies from run to run (times, memory, residuals, the
-eps_ estimates at the level of rounding) are left out unless --all is given. The exit status is 1 when a table or
-a column is missing, a text differs or a number differs by more than the tolerance; columns that only NEW has do not
-count.
+Every CSV file below OLD is compared with that of the same name below NEW, cell by cell: numbers by their difference relative to the largest
+number of their column in OLD, texts exactly. Columns that vary from run to run (times, memory, residuals, estimates at rounding level) are
+skipped unless --all is given. The exit status is 1 if a table or column is missing, a text differs or a number differs by more than the
+tolerance; additional columns in NEW are ignored.
 """
 
 import io
@@ -29,13 +27,13 @@ VARYING = re.compile(r"time|CPU|wall|memory|residual|eps_res|speed-up|orthonorma
 
 
 def read_texts(path):
-    """Cells of a table as texts; of columns with the same name pandas numbers all but the first."""
+    """Cells of a table as texts; pandas numbers columns with the same name."""
     lines = [line for line in path.read_text(encoding="utf-8").splitlines(keepends=True) if line.strip() and not line.startswith("#")]
     return pandas.read_csv(io.StringIO("".join(lines)), dtype=str, keep_default_na=False) if lines else pandas.DataFrame()
 
 
 def compare_columns(name, old, new, tolerance):
-    """The largest relative difference of a column, and complaints."""
+    """The largest relative difference of a column, and messages on the cells that differ."""
     x, y = (pandas.to_numeric(column, errors="coerce").replace([np.inf, -np.inf], np.nan) for column in (old, new))
     are_numbers = x.notna() & y.notna()
     differences = ((x - y).abs() / (x.abs().max() or 1.0)).where(are_numbers, 0.0)
@@ -61,9 +59,9 @@ def main():
     parser.add_argument("old", metavar="OLD", type=pathlib.Path)
     parser.add_argument("new", metavar="NEW", type=pathlib.Path)
     parser.add_argument("--tolerance", type=float, default=1e-9, help="relative to the largest of a column (default: %(default)s)")
-    parser.add_argument("--ignore", action="append", default=[], metavar="COLUMN", help="a column to leave out; may be repeated")
-    parser.add_argument("--tables", default="*.csv", metavar="PATTERN", help="which tables (default: %(default)s)")
-    parser.add_argument("--all", action="store_true", help="also the columns that vary from run to run")
+    parser.add_argument("--ignore", action="append", default=[], metavar="COLUMN", help="column to skip; may be repeated")
+    parser.add_argument("--tables", default="*.csv", metavar="PATTERN", help="tables to compare (default: %(default)s)")
+    parser.add_argument("--all", action="store_true", help="includes the columns that vary from run to run")
     arguments = parser.parse_args()
 
     files = sorted(path.relative_to(arguments.old) for path in arguments.old.rglob(arguments.tables))

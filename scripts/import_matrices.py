@@ -5,7 +5,7 @@
 
     scripts/import_matrices.py CONFIG.yaml --output FOLDER
 
-CONFIG, YAML or JSON, says which matrix enters with which power of lambda and which coefficient:
+CONFIG (YAML or JSON) specifies the power of lambda and the coefficient of each matrix:
 
     description: brake on two springs
     parameters:
@@ -16,12 +16,13 @@ CONFIG, YAML or JSON, says which matrix enters with which power of lambda and wh
       - {name: stiffness, power: 0, file: stiffness.npz, symmetry: symmetric, scale: 1000}
     groups: {disc: [[1, 300]], pads: [[301, 400]]}
 
-Files are sought next to CONFIG. Formats by ending, or by `format`: .mat of MATLAB (version 7.3 with python3-h5py), .npy and .npz, Matrix Market and
-Abaqus' *MATRIX GENERATE as text (.mtx: node, dof, node, dof, value or row, column, value), DMIG of Nastran (.bdf, .pch), OUTPUT4 (.op4, with
-pyNastran), Harwell-Boeing (.hb, .rua, .rsa). A symmetric matrix may be given by one triangle, as Abaqus and Nastran write it. Their rows
-are sorted by node and dof and listed in FOLDER/rows.csv, and a group may be {nodes: [[5001, 6000]]}; dofs that Abaqus holds by 1e36 on
-the diagonal are left out. `nodes: model.inp` (or .bdf) with `unit: mm` adds the nodes as points, which dofs 1 to 3 move.
-`coefficient` is an expression in the parameters with + - * / ^, sin, cos, tan, exp, log, sqrt, abs and _pi. Needs python3-yaml.
+File names are relative to CONFIG. The format follows from the suffix or from `format`: .mat of MATLAB (version 7.3 with python3-h5py), .npy
+and .npz, Matrix Market and the text of Abaqus' *MATRIX GENERATE (.mtx: node, dof, node, dof, value or row, column, value), DMIG of Nastran
+(.bdf, .pch), OUTPUT4 (.op4, with pyNastran), Harwell-Boeing (.hb, .rua, .rsa). One triangle of a symmetric matrix suffices, as Abaqus and
+Nastran write it. Matrices with nodes and dofs are sorted by these; FOLDER/rows.csv lists the rows, and a group may be
+{nodes: [[5001, 6000]]}. Dofs that Abaqus fixes by 1e36 on the diagonal are omitted. `nodes: model.inp` (or .bdf) with `unit: mm` adds the
+nodes as points with the displacements of dofs 1 to 3. `coefficient` is an expression in the parameters with + - * / ^, sin, cos, tan, exp,
+log, sqrt, abs and _pi. Requires python3-yaml.
 """
 
 import pathlib
@@ -36,7 +37,7 @@ from squeal.importing.system_import import import_system, write_labels
 def main():
     parser = Parser(__doc__)
     parser.add_argument("config", metavar="CONFIG", help="YAML or JSON")
-    parser.add_argument("--output", metavar="FOLDER", required=True, type=pathlib.Path, help="where to write system.json and its matrices")
+    parser.add_argument("--output", metavar="FOLDER", required=True, type=pathlib.Path, help="folder for system.json and its matrices")
     arguments = parser.parse_args()
     system, remarks, numbering = import_system(arguments.config)
     system.write(arguments.output)

@@ -3,22 +3,22 @@
 
 """Writes a mesh of another pre-processor as a .msh that squeal reads.
 
-    scripts/import_mesh.py brake.inp                       what is in the file
+    scripts/import_mesh.py brake.inp                       lists the contents of the file
     scripts/import_mesh.py brake.inp brake.msh --unit mm \\
         --volume disc=ROTOR --volume pad_lining=PAD --volume pad_backplate=PLATE \\
         --surface disc_top=ROTOR_SURF --surface pad_face=PAD_SURF --surface pad_back=BACKS --surface disc_bore=HUB \\
         --contact "disc_top / pad_face" --mount "disc_bore: 0, 7.8e10, 1.88e10" --mount "pad_back: 2e10, 2e10, 2e10"
 
-Sets of elements become volumes; surfaces, sets of shells and sets of nodes become faces: those on the outside of a body, all of whose
-corners are in the set of nodes. A set that is named like a volume or surface of squeal, in any case, needs no --volume or --surface.
---names FILE reads the same from a YAML or JSON file: {unit: mm, volumes: {disc: [ROTOR]}, surfaces: {...}, contact: [disc_top / pad_face],
-mounts: ["pad_back: 2e10, 2e10, 2e10"]}. --unit is the unit of length of the file, always to be given. Nothing is left out silently: what belongs
-to no volume is listed. FILE.prm beside FILE.msh, which an import never overwrites, runs the brake: contact and mounts as given, otherwise as
-comments to fill in, quadratic elements if the mesh has them, and the elastic materials of an Abaqus file.
+Element sets become volumes; surfaces, shell sets and node sets become faces: the boundary faces of a body whose corners are all in the set.
+Sets with the name of a volume or surface of squeal, in upper or lower case, need no --volume or --surface. --names FILE reads the same from
+a YAML or JSON file: {unit: mm, volumes: {disc: [ROTOR]}, surfaces: {...}, contact: [disc_top / pad_face],
+mounts: ["pad_back: 2e10, 2e10, 2e10"]}. --unit, the unit of length of the file, is required. Everything that is not imported is listed.
+FILE.prm next to FILE.msh, which is never overwritten, runs the brake: with contact and mounts as given or as comments to fill in, quadratic
+elements if the mesh has them, and the elastic materials of an Abaqus file.
 
-Read are Abaqus .inp (sets, surfaces, elastic materials), Nastran .bdf (volumes by the number of their property), Exodus (blocks, side sets, node
-sets) and what meshio reads: MED (groups), VTK (integers of cells: a set `part:3` for each value), Gmsh and others. Meshes of Ansys and Permas are
-rejected. Needs python3-meshio, for Exodus python3-netcdf4, for MED python3-h5py.
+Supported formats are Abaqus .inp (sets, surfaces, elastic materials), Nastran .bdf (volumes by property number), Exodus (blocks, side sets,
+node sets) and those of meshio: MED (groups), VTK (integer cell data: a set `part:3` for each value), Gmsh and others, but not Ansys and
+Permas. Requires python3-meshio, for Exodus python3-netcdf4, for MED python3-h5py.
 """
 
 import pathlib
@@ -34,7 +34,7 @@ from squeal.importing.mesh_import import run
 def main():
     parser = Parser(__doc__)
     parser.add_argument("file")
-    parser.add_argument("output", nargs="?", help="the .msh to be written; without it, the sets of FILE are listed")
+    parser.add_argument("output", nargs="?", help=".msh file to write; by default, the sets of FILE are listed")
     parser.add_argument("--unit", help=f"unit of length of FILE: {', '.join(UNITS)}")
     parser.add_argument("--volume", action="append", default=[], metavar="NAME=SET[,SET]")
     parser.add_argument("--surface", action="append", default=[], metavar="NAME=SET[,SET]")

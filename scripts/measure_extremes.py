@@ -1,14 +1,14 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Runs the cases of doc/extremes.md, holds each against an independent solution, and prints the table of that page.
+"""Runs the cases of doc/extremes.md, compares each with an independent solution, and prints the table of that page.
 
-    scripts/measure_extremes.py                    # all cases, some twenty minutes on two idle cores
-    scripts/measure_extremes.py --only mounts      # those whose name contains a word
-    scripts/measure_extremes.py --missing          # those that the table of the page does not have
-    scripts/measure_extremes.py --write            # all, and writes what was measured into the table of the page
+    scripts/measure_extremes.py                    # all cases, about twenty minutes on two idle cores
+    scripts/measure_extremes.py --only mounts      # cases whose name contains a word
+    scripts/measure_extremes.py --missing          # cases that are missing in the table of the page
+    scripts/measure_extremes.py --write            # all cases, and updates the table of the page
 
-Exits with 1 where a case is neither right nor refused as it should be. The environment variable SQUEAL names the program.
+The exit status is 1 if a case is neither right nor refused as expected. The environment variable SQUEAL is the path of the program.
 """
 
 import collections
@@ -27,7 +27,7 @@ from squeal.command_line import Parser, exit_on_error
 
 
 def judge_in(number, case, keep):
-    """The row of a case, run in DIR/NUMBER or in a folder that does not stay."""
+    """The row of a case, run in DIR/NUMBER or in a temporary folder."""
     with tempfile.TemporaryDirectory() as temporary:
         folder = keep / f"{number:03d}" if keep else pathlib.Path(temporary)
         folder.mkdir(parents=True, exist_ok=True)
@@ -38,11 +38,11 @@ def judge_in(number, case, keep):
 def main():
     parser = Parser(__doc__)
     parser.add_argument("--only", default="", metavar="WORDS", help="only the cases whose name contains WORDS")
-    parser.add_argument("--quick", action="store_true", help="only those that the tests run")
-    parser.add_argument("--missing", action="store_true", help="only those that are not in the table of doc/extremes.md")
-    parser.add_argument("--jobs", type=int, default=os.cpu_count(), metavar="N", help="cases at a time (default: %(default)s)")
-    parser.add_argument("--keep", type=pathlib.Path, metavar="DIR", help="keeps the runs there")
-    parser.add_argument("--write", action="store_true", help="writes the rows measured into the table of doc/extremes.md, beside the others that it has")
+    parser.add_argument("--quick", action="store_true", help="only the cases that the tests run")
+    parser.add_argument("--missing", action="store_true", help="only the cases missing in the table of doc/extremes.md")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count(), metavar="N", help="number of concurrent cases (default: %(default)s)")
+    parser.add_argument("--keep", type=pathlib.Path, metavar="DIR", help="folder in which the runs are kept")
+    parser.add_argument("--write", action="store_true", help="updates the measured rows of the table of doc/extremes.md")
     arguments = parser.parse_args()
     known = page.known_lines() if arguments.missing else ()
     chosen = [case for case in CASES if arguments.only in case.name and (case.quick or not arguments.quick)

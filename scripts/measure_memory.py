@@ -1,12 +1,12 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Memory of every process of a run, step by step: the largest resident size in each, beside what all of them have at once.
+"""Memory of the processes of a run, step by step: the largest resident size of each, and the largest sum at one time.
 
     scripts/measure_memory.py N PRM [ARGUMENT]...
 
-runs `squeal PRM ARGUMENT...` on N processes of this machine (mpirun, more of them than cores allowed) and prints a table in megabytes. The
-sizes are read twenty times a second; those of libraries, which every process loads, are the first line.
+Runs `squeal PRM ARGUMENT...` on N processes of this machine (mpirun, possibly more than cores) and prints a table in megabytes. The sizes
+are sampled twenty times a second; the first line has the sizes at the start, mainly those of libraries.
 """
 
 import os
@@ -35,7 +35,7 @@ def resident(pid):
 
 
 def ranks(program, measurement):
-    """Processes of the program that this measurement has started, by rank."""
+    """Rank -> PID of the processes that this measurement has started."""
     result = {}
     for folder in pathlib.Path("/proc").glob("[0-9]*"):
         try:
@@ -50,7 +50,7 @@ def ranks(program, measurement):
 
 
 class Sampler(threading.Thread):
-    """Largest sizes since the last step has ended."""
+    """Samples the largest sizes since the end of the last step."""
 
     def __init__(self, program, n):
         super().__init__(daemon=True)

@@ -1,13 +1,13 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Time and memory over the size of the mesh: the default scene with finer and finer meshes, one process with all its cores.
+"""Time and memory over the size of the mesh: the default model on successively finer meshes, one process with all its cores.
 
     scripts/measure_scaling.py [--sizes 32,78,138,281,476,1000] [--study stability|sweep] [--set "Section/Name=value"]...
 
-Sizes are thousands of coupled dofs, by their names in MESHES below. Each is one run in a process of its own, without fields. Prints for every
-run what it took by the clock, its peak of memory beside what `squeal --dry-run` had expected, its steps, and for columns of more than one
-size the exponent of a power law through the last two.
+Sizes are thousands of coupled dofs, by their names in MESHES. Each is one run in a separate process, without fields. Prints for each run
+the wall time, the peak memory and the memory expected by `squeal --dry-run`, the steps, and the exponent of a power law through the last
+two sizes.
 """
 
 import math
@@ -25,7 +25,7 @@ STEPS = ("Mode count", "Component modes", "Factorisation", "Real modes", "Comple
 
 
 def settings_of(mesh):
-    """What makes the mesh."""
+    """Settings of a mesh."""
     element, disc_layers, nodes, pin_layers = mesh
     return [f"Geometry/Element size={element}", f"Geometry/Disc layers={disc_layers}", f"Geometry/Nodes per pin face={nodes}",
             f"Geometry/Pin layers={pin_layers}", "Output/Mode shapes=none"]
@@ -39,7 +39,7 @@ def run(study, mesh, settings):
 
 
 def columns(record):
-    """What is shown of a run, by name."""
+    """Name -> value of the printed quantities of a run."""
     result = {"coupled dofs": record["counts"]["coupled dofs"], "contact nodes": record["counts"]["contact nodes"],
               "entries of the factor [million]": record["quantities"]["entries of the Cholesky factor"] / 1e6,
               "whole run [s]": record["wall time [s]"],
@@ -62,7 +62,7 @@ def main():
     arguments = parser.parse_args()
     names = arguments.sizes.split(",")
     if unknown := [name for name in names if name not in MESHES]:
-        raise squeal.Error(f"there is no mesh {unknown[0]}", "--sizes", f"give some of {', '.join(MESHES)}")
+        raise squeal.Error(f"there is no mesh {unknown[0]}", "--sizes", f"choose from {', '.join(MESHES)}")
     print(benchmarking.describe_machine("all"), flush=True)
     before = None
     for name in names:

@@ -1,12 +1,12 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Writes doc/parameters.md from what the program says of its parameters.
+"""Writes doc/parameters.md from the parameters that the program prints.
 
     scripts/parameter_reference.py            # writes the page
-    scripts/parameter_reference.py --check    # says whether it is as it would be written; exit status 1 if not
+    scripts/parameter_reference.py --check    # exit status 1 if the page is not up to date
 
-The environment variable SQUEAL names the program (default: build/release/squeal).
+The environment variable SQUEAL is the path of the program (default: build/release/squeal).
 """
 
 import dataclasses
@@ -40,7 +40,7 @@ class Parameter:
 
 
 def parameter(section, name, default, words):
-    """Words are the meaning, then the units, then what is accepted."""
+    """Splits the words of a comment into meaning, units and accepted values."""
     text, _, accepts = " ".join(words).partition(ACCEPTS)
     meaning, _, unit = text.partition(UNITS)
     unit = unit.rstrip(".")
@@ -48,7 +48,7 @@ def parameter(section, name, default, words):
 
 
 def parameters(listing):
-    """Those in what the program prints, in its order."""
+    """The parameters printed by the program, in its order."""
     section, words, found = "", [], []
     for line in map(str.strip, listing.splitlines()):
         if line.startswith("subsection "):
@@ -89,7 +89,7 @@ def main():
     if not arguments.check:
         PAGE.write_text(written, encoding="utf-8")
     elif not PAGE.exists() or PAGE.read_text(encoding="utf-8") != written:
-        sys.exit(f"{PAGE.relative_to(SOURCE)} is not what the program says of its parameters: call scripts/parameter_reference.py")
+        sys.exit(f"{PAGE.relative_to(SOURCE)} is not up to date: run scripts/parameter_reference.py")
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The page of the scripts that draw results: its scale of colours, texts and colour bar, laid out in pixels. Needs python3-matplotlib."""
+"""A picture with colour scale, texts and colour bar, laid out in pixels. Requires python3-matplotlib."""
 
 import math
 
@@ -14,12 +14,12 @@ from matplotlib.figure import Figure
 SIZE = (1600, 1000)
 INK, GREY = "#212126", "#737378"
 POINT = 0.72  # [points] of a pixel
-# Readable with every kind of colour vision; their pale ends show what is at rest, and the phase goes round
+# Suitable for all types of colour vision; pale colours mark zero, and that of the phase is cyclic
 ONE_SIGN, TWO_SIGNS, PHASE = colormaps["YlGnBu"], colormaps["RdBu_r"], colormaps["twilight"]
 
 
 def nice_range(values):
-    """Round limits around the values: from zero, or symmetric where some are negative."""
+    """Round limits of the values: from zero, or symmetric if some are negative."""
     largest = abs(values).max() or 1.0
     unit = 10.0 ** math.floor(math.log10(largest))
     top = next(step for step in (1, 1.2, 1.6, 2, 2.4, 3, 4, 5, 6, 8, 10) if step * unit >= 0.999 * largest) * unit
@@ -27,7 +27,7 @@ def nice_range(values):
 
 
 class Page:
-    """A picture of a size [pixels] with one scale of colours; places are fractions of it, from the lower left corner."""
+    """A picture of a size [pixels] with one colour scale; positions are fractions of it from the lower left corner."""
 
     def __init__(self, colours, limits, size=SIZE):
         self.size, self.scale = size, ScalarMappable(Normalize(*limits), colours)
@@ -35,7 +35,7 @@ class Page:
         FigureCanvasAgg(self.figure)
 
     def axes(self, left, bottom, right, top):
-        """Axes without frame between these places."""
+        """Axes without frame between these positions."""
         axes = self.figure.add_axes((left, bottom, right - left, top - bottom))
         axes.set_axis_off()
         return axes
@@ -47,7 +47,7 @@ class Page:
         self.text(text, x, y, pixels, INK, fontweight="bold")
 
     def colour_bar(self, caption):
-        """At the lower edge, with five numbers."""
+        """Draws the colour bar at the lower edge, with five numbers."""
         axes = self.figure.add_axes((0.03, 48 / self.size[1], 0.4, 22 / self.size[1]))
         bar = self.figure.colorbar(self.scale, cax=axes, orientation="horizontal", ticks=np.linspace(*self.scale.get_clim(), 5), format="{x:.3g}")
         bar.outline.set_visible(False)

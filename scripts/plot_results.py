@@ -5,9 +5,8 @@
 
     scripts/plot_results.py RESULTS [--format svg|png|pdf] [--output DIR]
 
-Which plots there are follows from the tables. They go to RESULTS/plots and into the list of files in RESULTS/run.json: when the
-run is repeated they go with its tables, and none of another run is left beside new ones. With --output DIR they go there
-and are in no list. Needs Debian's python3-matplotlib (scripts/setup.sh).
+The tables determine the plots. They are written to RESULTS/plots and listed in RESULTS/run.json, so that a repeated run removes them with
+its tables. Plots in --output DIR are not listed. Requires Debian's python3-matplotlib (scripts/setup.sh).
 """
 
 import pathlib
@@ -20,8 +19,8 @@ from squeal.command_line import Parser, exit_on_error, make_of_results
 @exit_on_error()
 def main():
     parser = Parser(__doc__)
-    parser.add_argument("--format", choices=("svg", "png", "pdf"), default="svg", help="of the pictures (default: %(default)s)")
-    parser.add_argument("--output", metavar="DIR", help="where to put them (default: RESULTS/plots)")
+    parser.add_argument("--format", choices=("svg", "png", "pdf"), default="svg", help="format of the plots (default: %(default)s)")
+    parser.add_argument("--output", metavar="DIR", help="folder for the plots (default: RESULTS/plots)")
     make_of_results("plots", parser, lambda results, arguments: results.plot(arguments.format, arguments.output))
 
 

@@ -5,10 +5,9 @@
 
     scripts/report.py RESULTS [-o FILE.html]
 
-The verdict comes first, then charts, growing modes that move and turn, where their energy enters, tables that sort, what was checked, and how to
-repeat the run. The file is RESULTS/report.html, which goes into the list of files in RESULTS/run.json, so that a rerun replaces it; one
-that -o names goes into no list. Needs Debian's python3-plotly, libjs-three, libjs-jquery, libjs-jquery-datatables and python3-scipy
-(scripts/setup.sh).
+It contains the verdict, charts, animated growing modes, their energy sources, sortable tables, checks, and how to repeat the run. The
+default file RESULTS/report.html is listed in RESULTS/run.json, so that a repeated run removes it; that of -o is not. Requires Debian's
+python3-plotly, libjs-three, libjs-jquery, libjs-jquery-datatables and python3-scipy (scripts/setup.sh).
 """
 
 import pathlib

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Parameters far from those of a brake: scenes, an independent solution of each, and the judgement of what the program says.
+"""Parameters far from those of a brake: models, an independent solution of each, and the assessment of the results.
 
-    cases.py     the scenes as data
+    cases.py     the models as data
     oracle.py    all eigenvalues of the exported matrices by SciPy, refined in extended precision
-    judge.py     runs a case and says whether it is right, refused or wrong
-    scaling.py   the small scene in other units of length
+    judge.py     runs a case and decides whether it is right, refused or wrong
+    scaling.py   the small model in other units of length
     page.py      the table of doc/extremes.md
 """
 

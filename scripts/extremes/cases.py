@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The cases of doc/extremes.md as data: what is set, and what has to come of it."""
+"""The cases of doc/extremes.md as data: settings and expected outcomes."""
 
 import dataclasses
 
@@ -31,16 +31,16 @@ RIGHT = "right"
 
 @dataclasses.dataclass(frozen=True)
 class Case:
-    """One scene: the results must be right, or the run refused with a message that contains `expected`."""
+    """One model: the results must be right, or the run must stop with a message that contains `expected`."""
 
     group: str
     value: str
     settings: tuple
     expected: str = RIGHT
-    argument_count: bool = True  # whether the complex modes are counted, too
-    quick: bool = False  # among those that ctest runs
-    scale: float = 1.0  # lengths beside those of `unit`
-    unit: tuple = ()  # settings of the same scene in metres, whose results without unit must be the same
+    argument_count: bool = True  # whether the complex modes are also counted by the argument principle
+    quick: bool = False  # whether ctest runs it
+    scale: float = 1.0  # ratio of the lengths to those of `unit`
+    unit: tuple = ()  # settings of the same model in metres, whose dimensionless results must be the same
 
     @property
     def name(self):
@@ -63,7 +63,7 @@ def mount(radial, tangential, axial):
 
 
 def pins(radii, angles, sides=("Top", "Bottom")):
-    """Settings of pins; sides that are not named have none."""
+    """Settings of pins; other sides have none."""
     return tuple(f"Geometry/{side} pin {what}={', '.join(map(str, values)) if side in sides else ''}"
                  for side in ("Top", "Bottom") for what, values in (("radii", radii), ("angles", angles)))
 
@@ -87,7 +87,7 @@ add("Poisson's ratio of the pins, trilinear", "0.5", "Pin material/Poisson ratio
 
 for exponent in range(-6, 7):
     ratio = 10.0**exponent
-    # Slow waves are resolved up to a lower frequency
+    # A mesh resolves slow waves up to a lower frequency only
     end = 5000 * min(1, (ratio / 1e-2) ** 0.5)
     add("Young's modulus pin to disc", f"1e{exponent}", f"Pin material/Young modulus={ratio * DISC_MODULUS!r}", band(end),
         quick=exponent == -6, argument_count=exponent in (-6, 6))
@@ -136,7 +136,7 @@ for load in (0, 1e-6, 1e9):
 add("end of the band [Hz]", "1", band(1.0), expected="no mode of the coupled system lies in the band", quick=True)
 add("end of the band [Hz]", "400: no mode", band(400.0), expected="no mode of the coupled system lies in the band")
 add("end of the band [Hz]", "440: one mode", band(440.0))
-# Real and complex modes of the scene, to the digits of the tables
+# Frequencies of real and complex modes of the model, with the digits of the tables
 for which, frequency in (("a real mode", 468.738364319), ("a complex mode", 563.560037244), ("a complex mode of a doublet", 901.629050712)):
     add("end of the band on a mode [Hz]", f"{frequency!r}: {which}", band(frequency), quick=which == "a real mode")
 add("end of the band [Hz]", "12000", band(12000.0))

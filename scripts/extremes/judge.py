@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Runs a case and says whether the program is right, refuses with a reason, or is wrong."""
+"""Runs a case and decides whether the program is right, refuses with a reason, or is wrong."""
 
 import dataclasses
 import json
@@ -19,23 +19,23 @@ from squeal.results import Table, read_table
 
 # Largest relative difference of an eigenvalue from the oracle's
 TOLERANCE = 1e-6
-# Largest residual of a mode in the tables of a run that does not warn of lost digits
+# Largest residual of a mode in a run without a warning of lost digits
 LARGEST_RESIDUAL = 1e-8
 # Tables have 12 digits
 PRINTED = 1e-11
-# Eigenvalues that near to the end of the band or to its radius may be listed or not
+# Eigenvalues this close to the end of the band or to its radius may or may not be listed
 EDGE = 1e-7
-# |lambda| / end of the band up to which the program takes lambda for zero
+# |lambda| / end of the band up to which the program treats lambda as zero
 ZERO = 1e-4
-# Largest difference of results without unit from those of the scene in metres
+# Largest difference of dimensionless results from those of the model in metres
 SAME_IN_ALL_UNITS = 1e-8
-# Time of the processor, and time on a clock, that a run may take [s]
+# Limits of the CPU time and the wall time of a run [s]
 CPU_LIMIT, TIME_LIMIT = 300, 1500
 
 
 @dataclasses.dataclass
 class Row:
-    """What came of a case."""
+    """The outcome of a case."""
 
     group: str
     value: str
@@ -54,11 +54,11 @@ class Row:
 
 
 class Wrong(Exception):
-    """The program did what it must not do."""
+    """Wrong behaviour of the program."""
 
 
 def call(*arguments, folder):
-    """The finished process; one that does not end, crashes, or exits with other than 0 or 1, is wrong."""
+    """The finished process. Raises Wrong if it does not end, crashes or exits with a status other than 0 or 1."""
     try:
         process = subprocess.run([find_program(), *arguments], cwd=folder, text=True, capture_output=True, timeout=TIME_LIMIT, check=False,
                                  stdin=subprocess.DEVNULL, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (CPU_LIMIT, CPU_LIMIT)))
@@ -79,7 +79,7 @@ def eigenvalues_of(folder):
 
 
 def check_numbers(folder):
-    """No cell of a table may be infinite or not a number."""
+    """Raises Wrong if a cell of a table is infinite or not a number."""
     for path in folder.glob("*.csv"):
         for row in read_table(path):
             for column, cell in row.items():
@@ -88,7 +88,7 @@ def check_numbers(folder):
 
 
 def judge(case, folder):
-    """The row of a case; runs below the folder."""
+    """The row of a case, which is run below the folder."""
     row = Row(case.group, case.value)
     (folder / "scene.prm").write_text(BASE, encoding="utf-8")
     try:
@@ -106,12 +106,12 @@ def judge(case, folder):
 
 
 def judge_refusal(case, process, folder, row):
-    """One error with reason, place and what to change, nothing left behind."""
+    """There must be one error with reason, place and what to change, and no files."""
     reason = re.match(r"^error: (.*)\n  where:  .*\n  change: .*\n$", process.stderr.lstrip("\n"))
     if not reason:
         raise Wrong(f"no clear error: {process.stderr[-400:]!r}")
     if (folder / "run").exists():
-        raise Wrong("refused, but left results")
+        raise Wrong("refused, but wrote results")
     row.outcome, row.remark = "refused", reason[1]
     if case.expected == RIGHT or case.expected not in process.stderr:
         raise Wrong(f"refused: {reason[1]}")
@@ -126,7 +126,7 @@ def judge_results(case, process, folder, row):
     modes, real = eigenvalues_of(run)
     row.modes = f"{len(modes)}" + (f" + {len(real)} real" if len(real) else "")
 
-    # ------------------------------------------------ what the program says itself
+    # ------------------------------------------------ self-consistency
     table = read_table(run / "complex_modes.csv")
     residual = max(float(line["residual [-]"]) for line in table)
     row.residual = f"{residual:.0e}"
@@ -160,7 +160,7 @@ def judge_results(case, process, folder, row):
     if residual > LARGEST_RESIDUAL and not has_warned:
         raise Wrong(f"residual {residual:.1e} without a warning")
     if worst > max(10.0 ** (1 - digits), PRINTED):
-        raise Wrong(f"eigenvalues differ by {worst:.1e}, the run says that {digits:.1f} digits are right")
+        raise Wrong(f"eigenvalues differ by {worst:.1e}, the run claims {digits:.1f} digits")
     if worst > TOLERANCE:
         raise Wrong(f"eigenvalues differ by {worst:.1e} (oracle's own error {own_error:.0e})")
     row.outcome = "right"
@@ -175,19 +175,19 @@ def judge_results(case, process, folder, row):
 
 
 def compare_units(case, folder, row):
-    """Holds the tables of a scene against those of the same scene in metres."""
+    """Compares the tables of a model with those of the same model in metres."""
     process = call("scene.prm", "--output", "metres", *words_of(case.unit), folder=folder)
     if process.returncode != 0:
         raise Wrong(f"refused in metres: {process.stderr}")
     largest = max(scaling.difference(read_table(folder / "metres" / name), read_table(folder / "run" / name), case.scale)
                   for name in ("complex_modes.csv", "real_modes.csv", "component_modes.csv"))
     if largest > SAME_IN_ALL_UNITS:
-        raise Wrong(f"differs by {largest:.1e} from the scene in metres")
-    row.remark = f"{largest:.0e} from the scene in metres"
+        raise Wrong(f"differs by {largest:.1e} from the model in metres")
+    row.remark = f"{largest:.0e} from the model in metres"
 
 
 def compare(what, actual, expected, band, radius):
-    """Largest relative difference; counts that differ are wrong."""
+    """Largest relative difference. Raises Wrong if the numbers differ."""
     def certain(values):
         return [value for value in values
                 if abs(value) > ZERO * band and abs(abs(value) - radius) > EDGE * radius and abs(value.imag - band) > EDGE * band]
@@ -203,10 +203,8 @@ def compare(what, actual, expected, band, radius):
 
 
 def argument_count(case, folder, modes, band):
-    """
-    Number of complex modes by the argument principle, which a sweep of one friction coefficient can ask for, of those with
-    |Re lambda| up to 0.1 and Im lambda from 0.001 of the end of the band.
-    """
+    """Counts complex modes by the argument principle in a sweep with one friction coefficient: those with |Re lambda| up to 0.1 and
+    Im lambda from 0.001 times the end of the band."""
     parameters = parameter_file.read_parameters(folder / "run" / "parameters.prm")
     mu = parameters["Operation/Friction coefficient"]
     settings = [*case.settings, "Study=sweep", f"Sweep/First friction coefficient={mu}", f"Sweep/Last friction coefficient={mu}",

@@ -1,19 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""All eigenvalues of a band from the exported matrices, by means that share nothing with the program.
+"""All eigenvalues of a band from the exported matrices, independent of the program.
 
 Three steps:
 
-1. Approximations of all eigenvalues: LAPACK's dense solvers on the equilibrated matrices. Of size n:
+1. Approximations of all eigenvalues by LAPACK's dense solvers from the equilibrated matrices of size n:
 
        mu = 0, no damping   T x = theta S x, S = K + s^2 M, T = M, theta = 1 / (s^2 - lambda^2)       symmetric, eigh
        no damping           the eigenvalues theta of S^-1 T                                             eig
        damping              with lambda = s + s / nu:  nu^2 Q(s) + nu s Q'(s) + s^2 M                   eig of size 2 n
 
    Systems beyond `largest_dense` are solved by ARPACK on the shifted and inverted companion form.
-2. Each cluster is refined by block inverse iteration from both sides about its centre c; the eigenvalues then follow from
-   W^H Q(c + delta) V, whose entries are computed with 64 bits of mantissa. Their error is the product of those of V and W.
-3. Again, where this changes them by more than 1e-10: how much they change at last is the error of the oracle.
+2. Two-sided block inverse iteration about the centre c of each cluster; the eigenvalues then follow from W^H Q(c + delta) V, whose entries
+   are computed with a 64-bit mantissa. Their error is the product of the errors of V and W.
+3. Step 2 is repeated while it changes the eigenvalues by more than 1e-10; the last change is the error of the oracle.
 """
 
 import dataclasses
@@ -27,12 +27,12 @@ import check_eigenvalues
 from squeal import exported_matrices, quadratic
 
 LARGEST_DENSE = 1600
-# Eigenvalues closer than this part of their modulus are refined together
+# Relative distance up to which eigenvalues are refined together
 CLUSTER = 1e-6
 N_ITERATIONS = 4
-# |lambda| / end of the band of what counts as zero, and is not refined
+# |lambda| / end of the band up to which eigenvalues count as zero and are not refined
 ZERO = 0.9e-4
-# Change in a refinement from which there is no need of another
+# Relative change at which refinement stops
 CONVERGED = 1e-10
 
 
@@ -43,7 +43,7 @@ class Solution:
     values: np.ndarray
     error: float  # relative, largest change in the last refinement
     method: str
-    first_error: float  # of the approximations before they were refined
+    first_error: float  # of the approximations before refinement
 
 
 class Oracle:
@@ -66,7 +66,7 @@ class Oracle:
         changes = [np.inf]
         while changes[-1] > CONVERGED and len(changes) < 4:
             refined = self.refine(values)
-            changes.append(largest_change(values, refined))
+            changes.append(quadratic.match(values, refined)[2].max(initial=0.0))
             values = refined
         return Solution(values, changes[-1], method, changes[1])
 
@@ -99,7 +99,7 @@ class Oracle:
     # ---------------------------------------------------------------- refinement
 
     def refine(self, values):
-        """Values that coincide are refined together; those that count as zero stay what they are."""
+        """Refines clusters of values together; values that count as zero are unchanged."""
         order = np.lexsort((values.real, values.imag))
         left, refined = list(values[order]), []
         while left:
@@ -128,7 +128,7 @@ class Oracle:
         scaled = (scaling @ at_centre @ scaling).tocsc()
         try:
             factor = scipy.sparse.linalg.splu(scaled)
-        except RuntimeError:  # singular to the last digit: beside the eigenvalue
+        except RuntimeError:  # exactly singular: shift away from the eigenvalue
             factor = scipy.sparse.linalg.splu((scaled + 1e-13 * sparse.identity(n)).tocsc())
         derivative = (self.problem.damping + 2 * centre * self.problem.mass).tocsr()
         adjoint = derivative.conj().T.tocsr()
@@ -141,7 +141,7 @@ class Oracle:
         return [centre + delta for delta in self.corrections(centre, right, left)]
 
     def corrections(self, centre, right, left):
-        """The delta of W^H Q(centre + delta) V y = 0 that are nearest to zero, as many as columns."""
+        """The delta nearest zero of W^H Q(centre + delta) V y = 0, one for each column."""
         m = right.shape[1]
         c = np.clongdouble(centre)
         right, left = right.astype(np.clongdouble), left.astype(np.clongdouble)
@@ -149,7 +149,7 @@ class Oracle:
                                     for matrix in (self.extended.mass, self.extended.damping, self.extended.stiffness))
         constant = (stiffness + c * damping + c * c * mass).astype(complex)
         linear = (damping + 2 * c * mass).astype(complex)
-        # Delta = -L^-1 (A + M Delta^2), a fixed point since Delta is small beside the centre
+        # Delta = -L^-1 (A + M Delta^2); the fixed-point iteration converges, since Delta is small compared with the centre
         first, second = -scipy.linalg.solve(linear, constant), -scipy.linalg.solve(linear, mass.astype(complex))
         delta = np.zeros((m, m), dtype=complex)
         for _ in range(3):
@@ -164,12 +164,10 @@ def orthonormal(vectors, scale):
 
 
 def upper_root(squares):
-    """Roots with Im >= 0; of a positive square both, since both are eigenvalues on the real axis."""
+    """Roots with Im >= 0; both roots of a positive square, since both are real eigenvalues."""
     roots = np.sqrt(squares.astype(complex))
     roots = np.where(roots.imag < 0, -roots, roots)
     is_real = abs(roots.imag) <= 1e-9 * abs(roots)
     return np.concatenate([roots, -roots[is_real]])
 
 
-def largest_change(before, after):
-    return quadratic.match(before, after)[2].max(initial=0.0)

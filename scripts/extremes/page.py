@@ -23,7 +23,7 @@ def known_lines():
 
 
 def write(rows, order):
-    """Rows that were measured replace those of their cases; the other rows stay. Cases that `order` does not name are left out."""
+    """Replaces the rows of the measured cases, keeps the others, and drops cases that are not in `order`."""
     lines = {**known_lines(), **{(row.group, row.value): line(row) for row in rows}}
     before, after = re.split(f"{BEGIN}.*{END}", PAGE.read_text(encoding="utf-8"), flags=re.DOTALL)
     table = "\n".join([HEAD, *(lines[name] for name in order if name in lines)])

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The same scene in other units of length: every result that has no unit must be the same.
+"""The same model in other units of length: every dimensionless result must be the same.
 
-Lengths times s, with Young's moduli, densities and pressures as they are: frequencies, rates and speeds go with 1 / s, forces with s^2,
-stiffnesses per area of mounts with 1 / s, damping coefficients of contact nodes with s^2.
+If lengths scale with s at constant Young's moduli, densities and pressures, frequencies, rates and speeds scale with 1 / s, forces with
+s^2, mount stiffnesses per area with 1 / s, and damping coefficients of contact nodes with s^2.
 """
 
 LENGTHS = {"Disc inner radius": 0.2, "Disc outer radius": 0.3155, "Disc thickness": 0.0463, "Pin diameter": 0.052, "Pin height": 0.0318,
@@ -12,7 +12,7 @@ MOUNT = (0, 7.8e10, 1.88e10)
 
 
 def scaled(s, *, held=True, damped=False):
-    """Settings of the small scene in which lengths are s times as long."""
+    """Settings of the small model with lengths scaled by s."""
     settings = [f"Geometry/{name}={value * s!r}" for name, value in LENGTHS.items()]
     settings += [f"Band/Maximum frequency={5000 / s!r}", f"Operation/Load per side={1000 * s**2!r}", f"Operation/Rotation speed={4 / s!r}"]
     stiffnesses = ", ".join(repr(stiffness / s) for stiffness in MOUNT)
@@ -23,10 +23,8 @@ def scaled(s, *, held=True, damped=False):
 
 
 def difference(rows, others, s):
-    """
-    Largest difference of two tables of modes, the lengths of the second s times as long: frequencies relative to themselves, rates relative
-    to omega, numbers without unit as they are; infinite where texts, numbers of rows or signs of growth differ.
-    """
+    """Largest difference of two tables of modes, the second with s times the lengths of the first: of frequencies and growth rates relative
+    to the frequency, of dimensionless numbers absolute; infinite if texts or numbers of rows differ."""
     if len(rows) != len(others):
         return float("inf")
     largest = 0.0

@@ -58,8 +58,8 @@ def verdict(results):
     if quiet:
         return "stable", f"{len(quiet)} of {len(rows)} designs stay below a divergence rate of {WEAK} % up to μ = {end:g}; the quietest is {name}."
     onset, largest = digits(number(best[ONSET]), 3), digits(number(best[LARGEST] or "0"), 3)
-    return "unstable", (f"All {len(rows)} designs exceed a divergence rate of {WEAK} % up to μ = {end:g}; the quietest is {name}, with onset "
-                        f"at μ = {onset} ({best['label at 0.01 %']}) and at most {largest} %." + (f" {outcome}." if left else ""))
+    return "unstable", (f"All {len(rows)} designs exceed a divergence rate of {WEAK} % up to μ = {end:g}; the quietest is {name}, "
+                        f"with onset μ = {onset} ({best['label at 0.01 %']}) and at most {largest} %." + (f" {outcome}." if left else ""))
 
 
 def sections(results):

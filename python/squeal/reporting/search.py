@@ -106,7 +106,8 @@ def best_section(results, search):
         facts.append([name, plain(baseline_value(results, name)), ranges.get(name, "").replace(" to ", " … "), plain(search.best[name], 4)])
         ends = [float(end) for end in re.findall(r"[-+.\deE]+", ranges.get(name, "").replace(" to ", " "))[:2]]
         if value in ends:
-            notes.append(f"{name} is at the {'lower' if value == ends[0] else 'upper'} end of its range: a wider one may contain a better design.")
+            end = "lower" if value == ends[0] else "upper"
+            notes.append(f"{name} is at the {end} end of its range: a wider range may contain a better design.")
     row = search.designs[search.best["design [-]"]]
     for full in results.table("full_order").rows if results.has("full_order") else []:
         text = (f"At full order, μ = {number(full['mu [-]']):.4g}: {full['unstable modes [-]']} of {full['modes [-]']} modes grow, "

@@ -116,7 +116,7 @@ def modes_section(modes):
         choices.append({"key": rows[0]["mode [-]"], "data": data, "layout": axes, "name": name_of_mode(rows[0])})
     return {"id": "sensitivity", "title": "Effect of a 1 % increase of each parameter on growth", "choices": choices,
             "chosen": choices[0]["key"], "height": height_of(modes, CHANGE),
-            "caption": "Change of the divergence rate by a 1 % increase of each parameter: red bars increase growth, blue ones reduce it. Mode:"}
+            "caption": "Change of the divergence rate by a 1 % increase of each parameter: red bars raise it, blue ones reduce it. Mode:"}
 
 
 def about_mode(row):
@@ -170,7 +170,7 @@ def notes_sections(results):
         thresholds = thresholds_of(results.table("sensitivities_thresholds"))
         pairs = sum(rows[0]["derivative of"] == "squared difference of the pair" for rows in thresholds)
         if pairs:
-            notes.append(f"{pairs} of {len(thresholds)} thresholds are exceptional points, where two modes coalesce and λ has no derivative. "
+            notes.append(f"{pairs} of {len(thresholds)} thresholds are exceptional points: two modes coalesce and λ has no derivative. "
                          "Their derivatives are those of the squared difference of the pair, (λ₁ − λ₂)², which is smooth there.")
         for rows in thresholds:
             error = relative_error(rows, "mu per unit [-]", "estimated error per unit [-]")
