@@ -6,16 +6,16 @@
     scripts/paper.py [--results DIR] [--set "Section/Name=value"]...
     scripts/paper.py --measured-modes FILE
 
-runs squeal without radial dissipation (C_b) and with each reading of it, unless DIR (results/paper) holds these runs already, prints the
+Runs squeal without radial dissipation (C_b) and with each form of it, unless DIR (results/paper) already contains these runs, prints the
 comparison, and writes to DIR:
 
-    table1.csv       Table 1: component, coupled and complex modes without and with C_b, the paper's numbers and ours
-    statements.csv   section 4: the paper's number, ours, and whether the statement holds, by the rule in the row
-    dissipation.csv  divergence rates of all modes with each reading of C_b
+    table1.csv       Table 1: component, coupled and complex modes without and with C_b, of the paper and of squeal
+    statements.csv   section 4: the numbers of the paper and of squeal, and whether the statement holds by the rule in the row
+    dissipation.csv  divergence rates of all modes with each form of C_b
     figure6.svg      divergence rate over frequency without and with C_b; needs python3-matplotlib
 
-"With C_b" is consistent and about steady sliding, the reading closest to the paper. The second command writes the component and coupled modes
-of Table 1 that have a label as measured modes for Study = updating, and runs nothing.
+"With C_b" is consistent dissipation about steady sliding, the form closest to the paper. The second command only writes the labelled
+component and coupled modes of Table 1 as measured modes for Study = updating.
 """
 
 import csv
@@ -32,16 +32,16 @@ NEGLIGIBLE = 0.01  # divergence rate [%] below which a mode counts as neutral
 FIXED = "Study", "Band/", "Operation/Radial dissipation", "Steady sliding/Contact state", "Output/"
 NO_SHAPES, PUBLISHED = "Output/Mode shapes=none", "Operation/Radial dissipation=published"
 WITHOUT, WITH = "no C_b", "steady sliding consistent"
-READINGS = {  # what makes their runs
+READINGS = {  # form of C_b -> arguments of its run
     WITHOUT: ("default", "disc_pins.prm", NO_SHAPES), "equal load consistent": ("dissipation", "dissipation.prm", NO_SHAPES),
     "equal load published": ("dissipation_published", "dissipation.prm", NO_SHAPES, PUBLISHED), WITH: ("sliding", "sliding.prm", NO_SHAPES),
     "steady sliding published": ("sliding_published", "sliding.prm", NO_SHAPES, PUBLISHED)}
 
-# The paper's Table 1: label, component, coupled, complex without and with C_b; a cell is [HOW] FREQUENCY [DIVERGENCE RATE], in Hz and %. HOW
-# finds our mode: by default the one of the row's label; + and - the one of its shape that grows and the other one (the paper prints A0-4 - as
-# growing with C_b); ~ the one of the nearest frequency, where the paper finds the mode hard to name; a slice selects among the pin modes of its
-# shape by divergence rate, and a row `highest` compares their largest frequency and rate, others the smallest. Of the 24 F1 modes the half that
-# bends radially is damped most. Their component frequency is printed 3353 Hz and read 3553 Hz.
+# The paper's Table 1: label, component, coupled, complex without and with C_b; a cell is [HOW] FREQUENCY [DIVERGENCE RATE], in Hz and %.
+# HOW selects the mode of squeal: by default that with the label of the row; + and - the growing and the other mode of its shape (the paper
+# prints A0-4 - as growing with C_b); ~ the mode of nearest frequency, if the paper has no clear label; a slice selects pin modes of its shape
+# ordered by divergence rate, of which a row `highest` compares the largest frequency and rate, other rows the smallest. The half of the 24
+# F1 modes that bends radially is damped most. Their component frequency, printed as 3353 Hz, is read as 3553 Hz.
 TABLE_1 = """\
 A0-1 -,251,295,295,296
 A0-1 +,251,~ 312,~ 312,~ 313
@@ -97,7 +97,7 @@ class Mode:
     frequency: float  # [Hz]
     rate: float = 0.0  # [%]
     unstable: bool = False
-    wave: tuple = (None, None)  # shares that travel with and against the rotation
+    wave: tuple = (None, None)  # shares of the waves with and against the rotation
 
     @property
     def shape(self):
@@ -112,7 +112,7 @@ class Mode:
 
 
 def modes_of(results, table):
-    """Modes of a table of a run by frequency; of component modes those of the free disc and of pins that slide."""
+    """Modes of a table of a run by frequency; of component modes, those of the free disc and of sliding pins."""
     return [Mode(row["label"], row["frequency [Hz]"], row.get("divergence rate [%]", 0.0), row.get("unstable [-]") == 1,
                  (row.get("wave with rotation [-]"), row.get("wave against rotation [-]"))) for row in results.rows(table)
             if (row.get("component"), row.get("contact")) in ((None, None), ("disc", "free"), ("pins", "sliding"))]
@@ -131,11 +131,11 @@ class Printed:
     rate: float
 
     def places(self, n):
-        """Which of n modes of a shape, in the order of their divergence rates, the cell is about."""
+        """Indices of the modes of the cell among n modes of a shape ordered by divergence rate."""
         return range(n)[slice(*(int(end) if end else None for end in self.how.split(":")))]
 
     def find(self, label, modes):
-        """The mode of a run to compare, or None."""
+        """The corresponding mode of a run, or None."""
         if ":" in self.how:
             family = sorted((mode for mode in modes if mode.shape == label.split()[0]), key=lambda mode: mode.rate)
             group = [family[place] for place in self.places(len(family))]
@@ -149,7 +149,7 @@ class Printed:
 
 
 def printed_rows():
-    """Labels with the printed cells of COLUMNS, None for those that are empty."""
+    """Labels with the printed cells of COLUMNS, None for empty ones."""
     pattern = re.compile(r"(?:([~+-]|-?\d*:-?\d*) )?(\d+)(?: (-?[\d.]+))?")
     for line in TABLE_1.splitlines():
         label, *cells = line.split(",")
@@ -158,7 +158,7 @@ def printed_rows():
 
 
 def measured_modes():
-    """Component and coupled modes of Table 1 that are found by a label: rows of a file for Study = updating."""
+    """Rows of a file for Study = updating: component and coupled modes of Table 1 with a label."""
     yield "state", "label", "member", "frequency [Hz]"
     for state, column in (("component", 0), ("coupled", 1)):
         for label, cells in printed_rows():
@@ -168,7 +168,7 @@ def measured_modes():
 
 
 def table_one(without, damped):
-    """Rows of Table 1 with the modes of a run without and one with C_b; None where the paper prints nothing, or the run has no such mode."""
+    """Rows of Table 1 with the modes of a run without and one with C_b; None if the paper prints nothing or the run has no such mode."""
     found = modes_to_compare(without, damped)
     for label, cells in printed_rows():
         row = {"label": label}
@@ -186,7 +186,7 @@ def table_one(without, damped):
 
 
 def agreement(rows, name):
-    """Root mean square of the differences of a column of Table 1 [%], of how many, the largest difference [%] and its row."""
+    """Root mean square of the differences of a column of Table 1 [%], their number, the largest [%] and its row."""
     differences = {row["label"]: row[f"{name} difference [%]"] for row in rows if row[f"{name} difference [%]"] is not None}
     rms = math.sqrt(sum(value**2 for value in differences.values()) / len(differences))
     largest = max(differences, key=lambda label: abs(differences[label]))
@@ -218,7 +218,7 @@ def by_shape(modes):
 
 
 def largest_shift(before, after, pattern):
-    """Largest change of a frequency [%], of shapes of a pattern that both have, with its mode: a list of one pair, or of none."""
+    """Largest change of a frequency [%] and its mode, for shapes of a pattern in both lists: a list of at most one pair."""
     former = by_shape(before)
     shifts = [(abs(change(one.frequency, other.frequency)), one) for shape, modes in by_shape(after).items()
               if re.match(pattern, shape) and len(former.get(shape, [])) == len(modes) for one, other in zip(former[shape], modes)]
@@ -226,7 +226,7 @@ def largest_shift(before, after, pattern):
 
 
 def of_frequencies(component, coupled, undamped, damped, n_pins):
-    """Statements as tuples: section, words, number of the paper, ours, unit, verdict with its rule, modes."""
+    """Statements as tuples: section, words, number of the paper, of squeal, unit, (verdict, rule), modes."""
     for name, paper in (("bending modes F1", 2), ("torsional modes T1", 1)):
         n = sum(mode.label == name.split()[-1] for mode in component) / n_pins
         yield "4.1", f"{name} per pin below 5 kHz", paper, n, "-", as_many(n, paper)
@@ -263,14 +263,14 @@ def of_growth(undamped):
                at_most(rest, 1e-3, 0.1), mode)
     for mode in unstable:
         if mode.grows and None not in mode.wave:
-            way = int(mode.wave[0] <= mode.wave[1])
+            direction = int(mode.wave[0] <= mode.wave[1])
             partner = next((other for other in others if other.label == f"{mode.shape} -"), None)
-            words = f"{mode.label} looks like a rotating wave: share that travels {('with', 'against')[way]} the rotation"
-            waves = [(mode, mode.wave[way], words)]
+            words = f"{mode.label} looks like a rotating wave: share that travels {('with', 'against')[direction]} the rotation"
+            waves = [(mode, mode.wave[direction], words)]
             if partner:
-                waves.append((partner, partner.wave[1 - way], f"its partner {partner.label} rotates the opposite way: share"))
+                waves.append((partner, partner.wave[1 - direction], f"its partner {partner.label} rotates in the opposite sense: share"))
             for one, share, words in waves:
-                yield "4.3", words, None, share, "-", ruling("holds from 0.75 on, less from 0.6 on", share >= 0.75, share >= 0.6), one
+                yield "4.3", words, None, share, "-", ruling("holds from 0.75, less from 0.6", share >= 0.75, share >= 0.6), one
 
 
 def of_dissipation(undamped, damped):
@@ -302,7 +302,7 @@ def of_dissipation(undamped, damped):
 
 
 def statements(without, damped):
-    """Section 4 of the paper statement by statement; those about modes that the runs do not have are left out."""
+    """Statements of section 4 of the paper, except those on modes that the runs lack."""
     modes = modes_to_compare(without, damped)
     found = (*of_frequencies(*modes, len(damped.rows("sliding_pins"))), *of_growth(modes[2]), *of_dissipation(*modes[2:]))
     return [{"section": section, "statement": words, "paper": paper, "here": here, "unit": unit, "verdict": verdict, "rule": rule,
@@ -310,7 +310,7 @@ def statements(without, damped):
 
 
 def printed_rate(label, shape, place, n):
-    """Label and divergence rate [%] that the paper prints with C_b for a mode: of pins for the one at a place of n."""
+    """Label and divergence rate [%] printed with C_b for a mode: the mode at a position among n of its shape."""
     for row, cells in printed_rows():
         printed = cells[-1]
         if printed and printed.rate is not None and row.split()[0] == shape:
@@ -323,7 +323,7 @@ def printed_rate(label, shape, place, n):
 
 
 def readings(solutions):
-    """Divergence rates of all modes with each reading of C_b: doublets by their sign, modes of pins by divergence rate."""
+    """Divergence rates of all modes with each form of C_b: doublets by their sign, pin modes by divergence rate."""
     families = {reading: by_shape(modes_of(results, "complex_modes")) for reading, results in solutions.items()}
     for shape in dict.fromkeys(shape for family in families.values() for shape in family):
         n = max(len(family.get(shape, [])) for family in families.values())
@@ -356,14 +356,14 @@ def show(title, rows, columns):
 
 
 def draw(folder, without, damped):
-    """Figure 6 of the paper, if matplotlib is there."""
+    """Draws figure 6 of the paper if matplotlib is installed."""
     try:
         from squeal.plotting import complex_plane
         from squeal.plotting.draw import render
         figure = complex_plane.paper_figure(without, damped)
         (folder / "figure6.svg").write_bytes(render(figure, "svg"))
     except ModuleNotFoundError as missing:
-        print(f"No figure6.svg: Python has no {missing.name}; install python3-matplotlib.", file=sys.stderr)
+        print(f"No figure6.svg: {missing.name} is missing; install python3-matplotlib.", file=sys.stderr)
 
 
 def compare(folder, settings):
@@ -386,7 +386,7 @@ def compare(folder, settings):
         print(f"{name}: difference of {n} frequencies {rms:.3f} % rms, largest {largest:+.2f} % ({label})")
     show("Section 4", section, [("section", "section", None), ("statement", "statement", None), ("paper", "paper", 2), ("here", "here", 3),
                                 ("unit", "unit", None), ("verdict", "verdict", None)])
-    show("Divergence rates [%] with each reading of C_b, of modes for which the paper prints one",
+    show("Divergence rates [%] with each form of C_b, for modes with one in the paper",
          [row for row in rates if row["paper with C_b [%]"] is not None],
          [("label", "label", None), ("in the paper", "label in the paper", None), ("paper", "paper with C_b [%]", 3),
            *((reading, f"{reading} [%]", 3) for reading in READINGS)])
@@ -398,7 +398,7 @@ def main():
     parser = Parser(__doc__)
     parser.add_argument("--results", metavar="DIR", type=pathlib.Path, default=SOURCE / "results" / "paper")
     parser.add_argument("--set", action="append", default=[], dest="settings", metavar="Section/Name=value",
-                        help="of every run, for another mesh for example")
+                        help="override for every run, such as another mesh")
     parser.add_argument("--measured-modes", metavar="FILE", type=pathlib.Path, help="only write this file for Study = updating")
     arguments = parser.parse_args()
     if arguments.measured_modes:
@@ -406,7 +406,7 @@ def main():
             csv.writer(file, lineterminator="\n").writerows(measured_modes())
         return
     if fixed := [setting for setting in arguments.settings if setting.startswith(FIXED)]:
-        parser.error(f"--set {fixed[0]}: the comparison chooses {', '.join(FIXED)} itself; leave it out")
+        parser.error(f"--set {fixed[0]}: the comparison sets {', '.join(FIXED)}; omit it")
     compare(arguments.results, arguments.settings)
 
 

@@ -1,22 +1,20 @@
 #!/usr/bin/env pvpython
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Shows modes of a run in ParaView, as a session to open there, as pictures, or as a film.
+"""Writes ParaView sessions, pictures or films of modes.
 
-    scripts/paraview_modes.py RESULTS --state FILE.pvsm                   all modes, to be opened with: paraview FILE.pvsm
-    scripts/paraview_modes.py RESULTS --mode A0-4 --state FILE.pvsm       a mode that moves
-    scripts/paraview_modes.py RESULTS [--mode MODE] --pictures FOLDER     a picture of each mode, or of those chosen
-    scripts/paraview_modes.py RESULTS --mode MODE --film FILE.gif         the motion, with its growth
+    scripts/paraview_modes.py RESULTS --state FILE.pvsm                   all modes; open with: paraview FILE.pvsm
+    scripts/paraview_modes.py RESULTS --mode A0-4 --state FILE.pvsm       the motion of one mode
+    scripts/paraview_modes.py RESULTS [--mode MODE] --pictures FOLDER     a picture of each mode, or of the chosen ones
+    scripts/paraview_modes.py RESULTS --mode MODE --film FILE.gif         the motion, including its growth
 
-Of all modes, the buttons for the time step through them by frequency [Hz], warped by the real part. Of one mode they play
---periods of Re(phi e^(lambda t)), so that a growing mode grows; the largest displacement of all is drawn as --size of the disc's radius.
-MODE is a row of complex_modes.csv, counted from 1, or a label; of several modes with that label the one that grows most.
-Disc and pins have the colours of the amplitude; the title says mode, frequency, effective damping ratio and verdict. Views are iso, top, side
-and below; faces: the upper pins seen from the disc, which is left out, with the normal reactions on their contact faces; and
-energy: the same faces with what they add to the divergence rate of a growing mode.
+With all modes, the time buttons step through them by frequency [Hz], warped by the real part. With one mode they play --periods of
+Re(phi e^(lambda t)), including growth; the largest displacement is drawn as --size times the radius of the disc. MODE is a row of
+complex_modes.csv, counted from 1, or a label, of which the fastest growing mode is taken. Colours show the amplitude; the title has mode,
+frequency, effective damping ratio and verdict. Views are iso, top, side, below; faces: the upper pins seen from the hidden disc, with the
+normal reactions on their contact faces; and energy: the same faces with their part in the divergence rate of a growing mode.
 
-Needs Debian's paraview, python3-paraview, xvfb and xauth (scripts/setup.sh paraview);
-without a screen it starts itself again under xvfb-run.
+Requires Debian's paraview, python3-paraview, xvfb and xauth (scripts/setup.sh paraview). Without a display it restarts under xvfb-run.
 """
 
 import pathlib
@@ -44,7 +42,7 @@ def title_of(row):
 
 
 def files_of(results):
-    """Files of shapes by rows of complex_modes.csv."""
+    """Row of complex_modes.csv -> file of the mode shape."""
     found = shape_files(results)
     if not found:
         raise Error("there are no shapes of complex modes", results, "run again with Output/Mode shapes = all")
@@ -52,7 +50,7 @@ def files_of(results):
 
 
 def chosen(name, rows, files):
-    """Number of the row that the user means."""
+    """Number of the row of a mode given by row or label."""
     if name.isdigit():
         number = int(name)
         if not 1 <= number <= len(rows):
@@ -70,14 +68,14 @@ def chosen(name, rows, files):
 def parsed():
     parser = Parser(__doc__)
     parser.add_argument("results", metavar="RESULTS", type=pathlib.Path)
-    parser.add_argument("--mode", action="append", metavar="MODE", help="a row of complex_modes.csv or a label; for pictures several times")
+    parser.add_argument("--mode", action="append", metavar="MODE", help="row of complex_modes.csv or label; may be repeated for pictures")
     parser.add_argument("--state", type=pathlib.Path, metavar="FILE.pvsm")
     parser.add_argument("--pictures", type=pathlib.Path, metavar="FOLDER")
     parser.add_argument("--film", type=pathlib.Path, metavar="FILE.gif")
     parser.add_argument("--view", choices=tuple(VIEWS), default="iso", help="(default: %(default)s)")
-    parser.add_argument("--size", type=float, default=0.08, help="of the largest displacement, over the radius of the disc (default: %(default)s)")
-    parser.add_argument("--periods", type=int, default=2, help="of a mode that moves (default: %(default)s)")
-    parser.add_argument("--width", type=int, default=WIDTH, help="of pictures [pixels] (default: %(default)s)")
+    parser.add_argument("--size", type=float, default=0.08, help="largest displacement over the radius of the disc (default: %(default)s)")
+    parser.add_argument("--periods", type=int, default=2, help="periods of the motion of a mode (default: %(default)s)")
+    parser.add_argument("--width", type=int, default=WIDTH, help="width of pictures [pixels] (default: %(default)s)")
     arguments = parser.parse_args()
     if not (arguments.state or arguments.pictures or arguments.film):
         parser.error("nothing to do: give --state, --pictures or --film")
@@ -86,18 +84,18 @@ def parsed():
     if arguments.state and len(arguments.mode or ()) > 1:
         parser.error("--state shows all modes, or one")
     if arguments.view in ("faces", "energy") and (arguments.film or arguments.state and (arguments.mode or arguments.view == "energy")):
-        parser.error(f"--view {arguments.view} is of modes that do not move: use --pictures")
+        parser.error(f"--view {arguments.view} cannot show motion: use --pictures")
     if arguments.periods < 1 or arguments.width < 1 or not arguments.size > 0:
         parser.error("--periods, --width and --size are positive")
     return arguments
 
 
 def write_pictures(simple, results, numbers, rows, files, titles, arguments):
-    """Of the modes chosen, or of all that have shapes; with the view `energy` only of growing ones."""
+    """Pictures of the chosen modes, or of all with shapes; of growing modes only with the view `energy`."""
     shows_energy = arguments.view == "energy"
     shown = [number for number in numbers or sorted(files) if not shows_energy or rows[number - 1]["unstable [-]"] == "1"]
     if shows_energy and (not shown or set(numbers) - set(shown)):
-        raise Error("--view energy is of growing modes" + ("" if numbers else ", and none grows"), "--mode", "name one that grows")
+        raise Error("--view energy requires growing modes" + ("" if numbers else ", and none grows"), "--mode", "name one that grows")
     arguments.pictures.mkdir(parents=True, exist_ok=True)
     scene, times = (None, {}) if shows_energy else scene_of_all(simple, results, titles, files, arguments)
     for number in shown:
@@ -109,7 +107,7 @@ def write_pictures(simple, results, numbers, rows, files, titles, arguments):
 
 
 def write_session_and_film(simple, results, numbers, rows, files, titles, arguments):
-    """Of one mode that moves, or a session of all."""
+    """Session and film of the motion of one mode, or a session of all modes."""
     if numbers:
         number, = numbers
         scene, times = scene_of_one(simple, files[number], rows[number - 1], titles[number], arguments)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What ParaView shows of the modes of a run: pipelines, views and pictures.
+"""ParaView pipelines, views and pictures of the modes of a run.
 
-A module of its own, since scripts of ParaView's filters run in the namespace of the main one, whose names they replace.
+This is a separate module because scripts of ParaView's filters run in the namespace of the main module and overwrite its names.
 """
 
 import math
@@ -15,13 +15,13 @@ VIEWS = {"iso": ((0.62, -0.62, 0.62), (0, 0, 1)), "top": ((0, 0, 1), (0, 1, 0)),
          "below": ((0.62, -0.62, -0.62), (0, 0, 1)), "faces": ((0.25, -0.25, -0.94), (-1, 0, 0)), "energy": ((0.25, -0.25, -0.94), (-1, 0, 0))}  # towards the eye, and up
 WIDTH, ASPECT = 1600, 0.625  # of pictures [pixels], height over width
 INK, GREY, EDGES = (0.13, 0.13, 0.15), (0.6, 0.6, 0.62), (0.35, 0.35, 0.38)
-CLOSER = 1.25  # than with a sphere about all in sight
-FRAMES = 24  # of a period
+CLOSER = 1.25  # zoom relative to the bounding sphere
+FRAMES = 24  # per period
 # Colours of scripts/pictures.py: YlGnBu and RdBu of ColorBrewer
 YELLOW_BLUE = ("ffffe5", "edf8b1", "c7e9b4", "7fcdbb", "41b6c4", "1d91c0", "225ea8", "253494", "081d58")
 RED_BLUE = ("0a3a70", "2166ac", "4393c3", "92c5de", "d1e5f0", "f7f7f7", "fddbc7", "f4a582", "d6604d", "b2182b", "78061f")
 
-# What ParaView runs for each time of a moving mode; a state keeps it.
+# Scripts of ParaView's programmable filter for a moving mode, which a session contains
 TIMES = """
 executive = self.GetExecutive()
 information = executive.GetOutputInformation(0)
@@ -56,8 +56,8 @@ class Scene:
         self.view.OrientationAxesVisibility = 0
         self.view.UseColorPaletteForBackground = 0
         self.view.Background = (1, 1, 1)
-        self.font = width / WIDTH  # of texts, over that in a picture of usual width
-        # From the eye more light than from above: faces that look down have colours, too
+        self.font = width / WIDTH  # size of texts relative to a picture of default width
+        # More light from the eye than from above, so that faces pointing down show their colours
         self.view.KeyLightElevation, self.view.KeyLightAzimuth = 25, 15
         self.view.HeadLightKHRatio, self.view.FillLightKFRatio = 2, 2
         self.view.KeyLightWarmth = self.view.FillLightWarmth = self.view.HeadLightWarmth = self.view.BackLightWarmth = 0.5
@@ -71,12 +71,12 @@ class Scene:
         return reader
 
     def scale(self, reader, size):
-        """Factor of displacements, of which the largest is about one."""
+        """Factor of displacements with a largest value of about one."""
         bounds = reader.GetDataInformation().GetBounds()
         return size * max(bounds[1] - bounds[0], bounds[3] - bounds[2]) / 2
 
     def show_bodies(self, source, vectors, factor):
-        """Warped disc and pins in the colours of the amplitude, over their outline at rest."""
+        """Shows warped disc and pins coloured by the amplitude, over their outline at rest."""
         simple = self.simple
         self.show_edges(source, 50)
         warp = simple.WarpByVector(Input=source)
@@ -86,17 +86,17 @@ class Scene:
         shown.EdgeColor = EDGES
         shown.LineWidth = 0.5
         simple.ColorBy(shown, ("POINTS", "amplitude"))
-        self.colours("amplitude", YELLOW_BLUE, 0, 1, shown, "amplitude beside the largest displacement", "%.1f")
+        self.colours("amplitude", YELLOW_BLUE, 0, 1, shown, "amplitude over largest displacement", "%.1f")
 
     def show_edges(self, source, angle):
-        """Sharp edges of bodies at rest."""
+        """Shows sharp edges of bodies at rest."""
         edges = self.simple.FeatureEdges(Input=self.simple.ExtractSurface(Input=source), FeatureAngle=angle)
         shown = self.simple.Show(edges, self.view)
         self.simple.ColorBy(shown, None)
         shown.AmbientColor = shown.DiffuseColor = GREY
 
     def show_faces(self, bodies, faces, field, caption):
-        """The upper pins' contact faces in the colours of a field, and the edges of these pins at rest."""
+        """Shows the contact faces of the upper pins coloured by a field, and the edges of these pins at rest."""
         simple = self.simple
         faces.UpdatePipeline(max(faces.TimestepValues or [0]))
         if field not in faces.PointData.keys():
@@ -113,7 +113,7 @@ class Scene:
         shown = simple.Show(upper_faces, self.view)
         shown.Representation = "Surface With Edges"
         shown.EdgeColor = EDGES
-        shown.Ambient, shown.Diffuse = 1, 0  # a face that looks away from the light has its colours
+        shown.Ambient, shown.Diffuse = 1, 0  # no shading, so that the colours are exact
         simple.ColorBy(shown, ("POINTS", field))
         low, high = faces.PointData[field].GetRange(0)
         limit = max(abs(low), abs(high)) or 1
@@ -136,7 +136,7 @@ class Scene:
         legend.WindowLocation, legend.Orientation = "Lower Center", "Horizontal"
 
     def show_title(self, source, titles):
-        """One of the titles, by the number of the time step."""
+        """Shows one of the titles, by the number of the time step."""
         annotation = self.simple.PythonAnnotation(Input=source)
         annotation.ArrayAssociation = "Point Data"
         annotation.Expression = repr(titles[0]) if len(titles) == 1 else f"{titles!r}[int(t_index)]"
@@ -161,7 +161,7 @@ class Scene:
 
 
 def scene_of_all(simple, results, titles, files, arguments):
-    """Modes by frequency, and the time at which each is shown, by rows of complex_modes.csv."""
+    """Scene of all modes by frequency, and row of complex_modes.csv -> time at which the mode is shown."""
     scene = Scene(simple, arguments.view, arguments.width)
     reader = scene.open(results / "modes.pvd")
     if arguments.view == "faces":
@@ -176,18 +176,18 @@ def scene_of_all(simple, results, titles, files, arguments):
 
 
 def scene_of_energy(simple, file, title, arguments):
-    """Where the energy of a growing mode enters."""
+    """Scene of the energy sources of a growing mode."""
     scene = Scene(simple, arguments.view, arguments.width)
     reader = scene.open(file)
     scene.show_faces(reader, scene.open(file.with_name(file.stem + "_contact.vtu")), "energy_input",
-                     "what friction and damping add to the divergence rate, over the area [1/m2]; red feeds")
+                     "contribution of friction and damping to the divergence rate per area [1/m2]; red: energy input")
     scene.show_title(reader, [title])
     scene.look()
     return scene
 
 
 def scene_of_one(simple, file, row, title, arguments):
-    """The motion of a mode, and its times."""
+    """Scene of the motion of a mode, and its times."""
     growth, omega = float(row["growth rate [1/s]"]), 2 * math.pi * float(row["frequency [Hz]"])
     period = 2 * math.pi / omega
     scene = Scene(simple, arguments.view, arguments.width)
@@ -205,7 +205,7 @@ def scene_of_one(simple, file, row, title, arguments):
 
 
 def write_film(scene, times, path):
-    """One picture for each time."""
+    """Writes a film with one picture for each time."""
     from PIL import Image
 
     with tempfile.TemporaryDirectory() as folder:

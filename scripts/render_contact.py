@@ -5,8 +5,8 @@
 
     scripts/render_contact.py RESULTS/sliding_state_contact.vtu [-o PICTURE] [--field FIELD] [--view VIEW]
 
-The disc is that of sliding_state.vtu beside the file, the sliding direction that of parameters.prm. Rings mark open nodes. PICTURE ends in
-.png, .svg or .pdf. Needs Debian's python3-matplotlib.
+The disc is read from sliding_state.vtu in the same folder, the sliding direction from parameters.prm. Rings mark open nodes. PICTURE is a
+.png, .svg or .pdf file. Requires Debian's python3-matplotlib.
 """
 
 import math
@@ -26,19 +26,19 @@ from squeal.vtu_file import VtuFile
 
 PALE = "#f0f0f1"  # of the disc
 VIEWS = {"above": 1, "below": -1}  # side of the disc from which its pins are seen
-# Caption and factor of a field, and its units with what one of them is in SI, smallest first
+# Caption, factor, and unit -> value in SI of each field, smallest first
 QUANTITIES = {
     "pressure": ("contact pressure", 1, {"Pa": 1, "kPa": 1e3, "MPa": 1e6}),
     "normal_reaction": ("normal force of a node", -1, {"N": 1, "kN": 1e3}),
     "gap": ("opening", -1, {"nm": 1e-9, "\u00b5m": 1e-6, "mm": 1e-3}),
     "closed": ("closed (1) or open (0)", 1, {"": 1}),
     "c_b": ("radial damping of a node", 1, {"N s/m": 1}),
-    "c_t": ("damping of a node along the sliding", 1, {"N s/m": 1}),
+    "c_t": ("tangential damping of a node", 1, {"N s/m": 1}),
 }
 
 
 def in_units(field, values):
-    """Values in a unit that suits the largest, with caption and unit."""
+    """Values in a unit suitable for the largest, caption and unit."""
     values = values if values.ndim == 1 else np.linalg.norm(values, axis=1)
     caption, factor, units = QUANTITIES.get(field, (field.replace("_", " "), 1, {"": 1}))
     unit = max((unit for unit in units if abs(values).max() >= 2 * units[unit]), key=units.get, default=next(iter(units)))
@@ -46,11 +46,11 @@ def in_units(field, values):
 
 
 def rotation_of(path):
-    """Sense of rotation about the z axis of the run that left the file: 1 or -1."""
+    """Sense of rotation about the z axis of the run that wrote the file: 1 or -1."""
     for folder in path.resolve().parents[:2]:
         if (folder / "parameters.prm").is_file():
             return -1 if read_parameters(folder / "parameters.prm").get("Operation/Rotation") == "negative" else 1
-    raise Error("there is no parameters.prm, which has the sliding direction", path, "name a file in a folder of results")
+    raise Error("there is no parameters.prm with the sliding direction", path, "name a file in a folder of results")
 
 
 def draw(path, picture, field, view, title):
@@ -67,7 +67,7 @@ def draw(path, picture, field, view, title):
     shown, mesh = np.unique(faces), VtuFile(bodies)
     disc, disc_points = outer_faces(mesh, [0]), np.array(mesh.points)
 
-    # Where the pins lie on one side of the axis, outwards is up, and the picture shows the disc's width there
+    # If the pins lie on one side of the axis, up is outwards and the picture shows the width of the disc there
     distances, centre = np.linalg.norm(points[shown, :2], axis=1), points[shown, :2].mean(axis=0)
     up, around = np.array([0.0, 1.0]), disc_points[np.unique(disc), :2]
     if np.linalg.norm(centre) > 0.3 * distances.max():
@@ -78,12 +78,12 @@ def draw(path, picture, field, view, title):
     places, disc_places = points[:, :2] @ axes_of_picture, disc_points[:, :2] @ axes_of_picture
     extent = np.ptp(points[shown, :2], axis=0).max()
 
-    page = Page(ONE_SIGN if values.min() >= 0 else TWO_SIGNS, nice_range(values))  # those of both sides
+    page = Page(ONE_SIGN if values.min() >= 0 else TWO_SIGNS, nice_range(values))  # limits for both sides of the disc
     axes = page.axes(0.01, 0.15, 0.99, 0.92)
     axes.add_collection(PolyCollection(disc_places[disc], facecolor=PALE, edgecolor=PALE, linewidth=0.5))
     triangles = np.vstack([faces[:, :3], faces[faces[:, 2] != faces[:, 3]][:, [0, 2, 3]]])
     low, high = page.scale.get_clim()
-    beyond = 1e-6 * (high - low)  # values at the ends have a colour, too
+    beyond = 1e-6 * (high - low)  # includes values at the limits
     axes.tricontourf(*places.T, triangles, values, levels=np.linspace(low - beyond, high + beyond, 129), norm=page.scale.norm, cmap=page.scale.cmap)
     sides, count = edges_of(faces)
     for ends, look in ((disc_places[sharp_edges(disc_points, disc)], {"colors": GREY, "linewidths": 1}),
@@ -93,7 +93,7 @@ def draw(path, picture, field, view, title):
     axes.plot(*places[shown[is_open]].T, linestyle="", marker="o", markersize=8, markerfacecolor="none", markeredgecolor=INK)
 
     radius = distances.max() + 0.06 * extent
-    angles = 0.175 * extent / radius * side * rotation_of(path) * np.array([1, -1])  # of tail and tip, from outwards
+    angles = 0.175 * extent / radius * side * rotation_of(path) * np.array([1, -1])  # of tail and tip, measured from the outward direction
     tail, tip = radius * np.column_stack([np.sin(angles), np.cos(angles)])
     axes.annotate("", tip, tail, arrowprops={
         "arrowstyle": "-|>,head_length=0.8,head_width=0.3", "mutation_scale": 40, "linewidth": 5, "color": INK, "shrinkA": 0, "shrinkB": 0,
@@ -116,7 +116,7 @@ def draw(path, picture, field, view, title):
 def main():
     parser = Parser(__doc__)
     parser.add_argument("contact", metavar="CONTACT.vtu", type=pathlib.Path)
-    parser.add_argument("-o", "--output", metavar="PICTURE", type=pathlib.Path, help="(default: CONTACT.png beside CONTACT.vtu)")
+    parser.add_argument("-o", "--output", metavar="PICTURE", type=pathlib.Path, help="(default: CONTACT.png next to CONTACT.vtu)")
     parser.add_argument("--field", default="pressure", help=", ".join(QUANTITIES) + " or another point field (default: %(default)s)")
     parser.add_argument("--view", choices=tuple(VIEWS), default="above", help="(default: %(default)s)")
     parser.add_argument("--title", help="(default: field and side)")

@@ -1,12 +1,13 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Draws modes: the deformed bodies, coloured, over the outline of the undeformed ones; points where there are no cells.
+"""Draws modes: coloured deformed bodies over the outline of the undeformed ones, or points if there are no cells.
 
     scripts/render_mode.py MODE... [-o PICTURE] [--field FIELD] [--view VIEW] [--bodies all|moving]
 
-MODE are files of modes of a run, `modes/NAME.vtu`: complex, real or component modes. Several of them come side by side in one picture with one scale of colours. The bodies are displaced by the real part of the mode. Needs no screen: without one the script starts
-itself again under xvfb-run. Needs Debian's python3-vtk9, xvfb and xauth (scripts/setup.sh pictures).
+MODE are files `modes/NAME.vtu` of complex, real or component modes. Several modes are drawn side by side with one colour scale. The bodies
+are displaced by the real part of the mode. Without a display the script restarts under xvfb-run. Requires Debian's python3-vtk9, xvfb and
+xauth (scripts/setup.sh pictures).
 """
 
 import dataclasses
@@ -32,14 +33,14 @@ INK, GREY = (0.13, 0.13, 0.15), (0.45, 0.45, 0.48)
 LARGEST_DISPLACEMENT = 0.08  # of the size of the bodies
 SHORTEST_EDGE, LARGEST_SHEAR = 0.35, 1.0  # of the length of an element edge at rest
 VIEW_ANGLE = 24  # degree
-MANY_EDGES, FAINT, CLEAR = 2000, 0.16, 0.5  # edges of elements and their opacity, which grows where they are few
+MANY_EDGES, FAINT, CLEAR = 2000, 0.16, 0.5  # number of element edges, and their opacity above and below it
 MARGIN = 1.03  # around the bodies
-POINT_RADIUS = 0.35  # of the distance of the nearest point
+POINT_RADIUS = 0.35  # of the distance to the nearest point
 LEAST_MOTION = 0.01  # of the largest amplitude, below which a body is at rest
 OVERSAMPLING = 2
-PANEL, HEAD, FOOT = (800, 500), 84, 130  # one of several modes, its title, and what stands below all of them [pixels]
+PANEL, HEAD, FOOT = (800, 500), 84, 130  # panel of one of several modes, height of its title, and of the part below all panels [pixels]
 
-VIEWS = {  # direction from the bodies to the eye, and what is up
+VIEWS = {  # direction from the bodies to the eye, and upward direction
     "iso": ((0.62, -0.52, 0.62), (0, 0, 1)),
     "top": ((0, 0, 1), (0, 1, 0)),
     "side": ((1, -0.08, 0.10), (0, 0, 1)),
@@ -49,7 +50,7 @@ FROM_BELOW = ((0.62, -0.52, -0.62), (0, 0, 1))
 
 @dataclasses.dataclass
 class Colours:
-    """Values to draw with their caption and colour map; limits where they do not follow from the values."""
+    """Values to draw with their caption and colour map; limits, if they do not follow from the values."""
 
     values: np.ndarray
     caption: str
@@ -58,7 +59,7 @@ class Colours:
 
 
 def colours_of(mesh, mode, field):
-    """What a field looks like. The size of a mode is arbitrary, so displacements are drawn as shares of the largest amplitude."""
+    """Colours of a field. Displacements are divided by the largest amplitude, since the size of a mode is arbitrary."""
     if field not in ("displacement", "displacement_real", "displacement_imag", "amplitude", "phase"):
         values = mesh.field(field)
         values = values if values.ndim == 1 else np.linalg.norm(values, axis=1)
@@ -67,7 +68,7 @@ def colours_of(mesh, mode, field):
     largest = amplitude.max() or 1.0
     if field == "amplitude":
         return Colours(amplitude / largest, "amplitude, share of the largest", ONE_SIGN, (0, 1))
-    # The component that moves most, with its sign or phase, tells the shape.
+    # The dominant component with its sign or phase shows the shape
     azimuth = np.arctan2(*np.array(mesh.points)[:, [1, 0]].T)
     components = {"axial": mode[:, 2],
                   "radial": mode[:, 0] * np.cos(azimuth) + mode[:, 1] * np.sin(azimuth),
@@ -81,7 +82,7 @@ def colours_of(mesh, mode, field):
 
 
 def common_limits(colours):
-    """Limits of the colours of several modes: symmetric where one has two signs."""
+    """Colour limits of several modes: symmetric if one of them has two signs."""
     if colours[0].limits:
         return colours[0].limits
     values = np.concatenate([one.values for one in colours])
@@ -89,7 +90,7 @@ def common_limits(colours):
 
 
 def polygons_of(points, corners=None):
-    """VTK's lines or faces between points, by the numbers of their corners; the points alone without corners."""
+    """VTK lines or faces from points and indices of corners; points only, without corners."""
     vertices, result = vtk.vtkPoints(), vtk.vtkPolyData()
     vertices.SetData(numpy_to_vtk(np.ascontiguousarray(points), deep=True))
     result.SetPoints(vertices)
@@ -105,7 +106,7 @@ def set_scalars(data, values):
 
 
 def actor_of(mapper, colour, **properties):
-    """Coloured as given, or by a table; properties as VTK names them."""
+    """An actor in a colour, or coloured by a table; properties have VTK's names."""
     actor = vtk.vtkActor()
     actor.SetMapper(mapper)
     if isinstance(colour, vtk.vtkLookupTable):
@@ -128,7 +129,7 @@ def line_actor(points, ends, colour, width, opacity):
 
 
 def colour_table(scale):
-    """VTK's table of a scale of matplotlib."""
+    """VTK's lookup table for a colour scale of matplotlib."""
     table = vtk.vtkLookupTable()
     table.SetNumberOfTableValues(256)
     table.SetRange(*scale.get_clim())
@@ -150,7 +151,7 @@ def sphere_actor(data, radius, colour):
 
 
 class Mode:
-    """A mode to be drawn: the surface of its bodies, or its points, the real part of its shape, how much that is magnified, and its colours."""
+    """A mode to be drawn: surface of its bodies or points, real part of its shape, magnification and colours."""
 
     def __init__(self, path, field, scale, bodies):
         mesh = VtuFile(path)
@@ -167,7 +168,7 @@ class Mode:
         self.colours = colours_of(mesh, shape, field)
 
     def automatic_scale(self):
-        """Displaces by 8 % of the size of the bodies at most, and by less where elements would be drawn inside out."""
+        """Magnification up to displacements of 8 % of the size of the bodies, less if elements would be inverted."""
         largest = np.linalg.norm(self.displacement[self.used], axis=1).max()
         if largest == 0:
             return 1.0
@@ -184,11 +185,11 @@ class Mode:
         return scale
 
     def drawn(self):
-        """What the largest displacement is drawn as [mm]."""
+        """The largest displacement as drawn [mm]."""
         return 1000 * self.scale * np.linalg.norm(self.displacement[self.used], axis=1).max()
 
     def actors(self, table):
-        """Deformed surface, its elements, its sharp edges, and the sharp edges of the undeformed bodies; or points, deformed and at rest."""
+        """Deformed surface, its element edges and sharp edges, and the sharp edges of the undeformed bodies; or points."""
         if len(self.faces) == 0:
             return self.point_actors(table)
         deformed, sharp = self.points + self.scale * self.displacement, sharp_edges(self.points, self.faces)
@@ -200,7 +201,7 @@ class Mode:
         normals.SplittingOn()
         mapper = vtk.vtkPolyDataMapper()
         mapper.SetInputConnection(normals.GetOutputPort())
-        # A phase jumps from 180 to -180 degrees, between which its colours do not jump.
+        # A phase jumps from 180 to -180 degrees, where its colours are continuous
         mapper.SetInterpolateScalarsBeforeMapping(self.colours.map is not PHASE)
         mapper.SetResolveCoincidentTopologyToPolygonOffset()
         return [actor_of(mapper, table, Ambient=0.42, Diffuse=0.62, Specular=0.08, SpecularPower=20),
@@ -208,7 +209,7 @@ class Mode:
                 line_actor(deformed, sharp, INK, 1.3, 0.9), line_actor(self.points, sharp, GREY, 1.0, 0.55)]
 
     def point_actors(self, table):
-        """Coloured spheres at the deformed points, small grey ones where they are at rest."""
+        """Coloured spheres at the deformed points, small grey ones at the undeformed points."""
         distances, _ = cKDTree(self.points[self.used]).query(self.points[self.used], k=2)
         spacing = np.median(distances[np.isfinite(distances).all(axis=1), 1]) if len(self.used) > 1 else 0.0
         spacing = spacing or 0.02 * (np.ptp(self.points[self.used], axis=0).max() or 1.0)
@@ -218,7 +219,7 @@ class Mode:
                 sphere_actor(polygons_of(self.points[self.used]), 0.4 * POINT_RADIUS * spacing, GREY)]
 
     def draw(self, page, place, view):
-        """Draws the mode into a place of a page: left, bottom, right and top."""
+        """Draws the mode at a position of a page: left, bottom, right and top."""
         used, axes = self.used, page.axes(*place)
         around = np.vstack([self.points[used], (self.points + self.scale * self.displacement)[used]])  # at rest and deformed
         size = [round(page.size[i] * (place[i + 2] - place[i])) for i in (0, 1)]
@@ -226,7 +227,7 @@ class Mode:
 
 
 def moving_bodies(mesh, shape):
-    """The bodies that take part in the mode, by their component."""
+    """Components of the bodies that participate in the mode."""
     amplitude, largest = np.linalg.norm(shape, axis=1), {}
     for cell, body in zip(mesh.cells, mesh.cell_fields["component"]):
         largest[body] = max(largest.get(body, 0.0), amplitude[cell].max())
@@ -234,7 +235,7 @@ def moving_bodies(mesh, shape):
 
 
 def rendered(actors, points, size, direction, up):
-    """Pixels of the actors, seen from a direction such that these points fill a picture of this size."""
+    """Pixels of the actors, seen from a direction such that `points` fill the picture."""
     renderer, window = vtk.vtkRenderer(), vtk.vtkRenderWindow()
     renderer.SetBackground(1, 1, 1)
     for actor in actors:
@@ -250,8 +251,7 @@ def rendered(actors, points, size, direction, up):
     upward = np.cross(backward, right)
     tangent = math.tan(math.radians(VIEW_ANGLE) / 2)
 
-    # The eye is as far away as makes the picture of every point fit; then that picture is centred, which
-    # changes the distance, so a few times over.
+    # Choose the distance so that all points fit, then centre the picture, which changes the distance: iterate
     centre = (points.min(axis=0) + points.max(axis=0)) / 2
     for _ in range(4):
         x, y, z = ((points - centre) @ axis for axis in (right, upward, backward))
@@ -272,7 +272,7 @@ def rendered(actors, points, size, direction, up):
     lights.SetKeyToHeadRatio(1.6)
     lights.SetKeyToFillRatio(2.5)
     for set_warmth in (lights.SetKeyLightWarmth, lights.SetFillLightWarmth, lights.SetHeadLightWarmth, lights.SetBackLightWarmth):
-        set_warmth(0.5)  # neutral: colours are to be read
+        set_warmth(0.5)  # neutral, so that colours are not shifted
     lights.AddLightsToRenderer(renderer)
 
     window.Render()
@@ -303,7 +303,7 @@ def draw_one(mode, picture, view, title, width):
 
 
 def draw_several(modes, picture, view, width):
-    """Draws modes side by side, in two columns, into the file `picture`: each says below its title what its colours are."""
+    """Draws modes in two columns into the file `picture`, with the captions of their colours below the titles."""
     columns, rows = 2, (len(modes) + 1) // 2
     size, limits = (columns * PANEL[0], rows * PANEL[1] + FOOT), common_limits([mode.colours for mode in modes])
     page = Page(modes[0].colours.map, limits, size)
@@ -321,22 +321,22 @@ def draw_several(modes, picture, view, width):
 def main():
     parser = Parser(__doc__)
     parser.add_argument("modes", metavar="MODE", type=pathlib.Path, nargs="+")
-    parser.add_argument("-o", "--output", metavar="PICTURE.png", type=pathlib.Path, help="(default: MODE.png beside the first MODE)")
+    parser.add_argument("-o", "--output", metavar="PICTURE.png", type=pathlib.Path, help="(default: MODE.png next to the first MODE)")
     parser.add_argument("--field", default="displacement",
                         help="displacement (its real part), displacement_imag, amplitude, phase or another point field "
                              "(default: %(default)s)")
     parser.add_argument("--bodies", choices=("all", "moving"), default="all",
-                        help="moving: only those that take part in the mode (default: %(default)s)")
-    parser.add_argument("--scale", default="auto", help="factor of the displacement, or auto (default)")
+                        help="moving: only bodies that participate in the mode (default: %(default)s)")
+    parser.add_argument("--scale", default="auto", help="magnification of the displacement, or auto (default)")
     parser.add_argument("--view", choices=tuple(VIEWS), default="iso", help="(default: %(default)s)")
-    parser.add_argument("--title", help="of a single mode (default: the file's field data, or its name)")
-    parser.add_argument("--width", type=int, help="of the picture [pixels] (default: 1600)")
+    parser.add_argument("--title", help="title of a single mode (default: from the file)")
+    parser.add_argument("--width", type=int, help="width of the picture [pixels] (default: 1600)")
     arguments = parser.parse_args()
     for path in arguments.modes:
         if not path.is_file():
             raise Error(f"there is no file {path}", "MODE", "name a file of results")
     if arguments.title and len(arguments.modes) > 1:
-        parser.error("--title is of a single mode")
+        parser.error("--title requires a single mode")
     if arguments.width is not None and arguments.width < 1:
         parser.error(f"--width takes a positive number, not {arguments.width}")
     try:

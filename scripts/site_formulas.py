@@ -2,7 +2,7 @@
 
 """Renders the Unicode formulas of the pages in the site: K_c as K with a subscript, e^(λt) with a superscript.
 
-MkDocs calls on_page_content() with the HTML of each page; code, commands and file names stay as they are.
+MkDocs calls on_page_content() with the HTML of each page; code, commands and file names are unchanged.
 """
 
 import re
@@ -15,7 +15,7 @@ IS_COMMAND = re.compile(r"scripts/|build/|--set|^\s*set |squeal", re.MULTILINE)
 
 
 def rendered(text):
-    """Subscripts and superscripts of a text as HTML."""
+    """A text with its subscripts and superscripts as HTML."""
     text = SUPERSCRIPT.sub(lambda match: f"<sup>{next(group for group in match.groups() if group)}</sup>", text)
     return SUBSCRIPT.sub(r"\1<sub>\2</sub>", text)
 

@@ -1,20 +1,20 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Complex modes by SLEPc: Krylov methods, shift-invert with an LU factorisation by MUMPS, in several formulations.
+"""Complex modes by SLEPc: Krylov methods with shift-invert and an LU factorisation by MUMPS, in several formulations.
 
     scripts/slepc_modes.py DIRECTORY [--formulation linear|toar|q-arnoldi|linearised] [--modes 66] [--runs 3]
 
 DIRECTORY is the output of a run with Output/Write matrices = true. The formulations are
 
-    linear      K x = -lambda^2 M x by Krylov-Schur: of systems without damping, whose modes +-R + i omega are each found once
+    linear      K x = -lambda^2 M x by Krylov-Schur, for systems without damping
     toar        lambda^2 M + lambda C + K by two-level orthogonal Arnoldi, which finds lambda and its conjugate
     q-arnoldi   the same by the quadratic Arnoldi method
     linearised  the same by Krylov-Schur on the companion form
 
-Without --formulation it is the fastest: linear, or toar where there is damping. Prints, for each run, the time from the coupled
-matrices in memory to the eigenvalues and eigenvectors. Like every Krylov method with one starting vector a run may miss members of
-multiple eigenvalues; the number found is printed. Needs Debian's python3-slepc4py (real scalars).
+The default is the fastest formulation: linear, or toar with damping. Prints for each run the time from the coupled matrices in memory to
+the eigenvalues and eigenvectors, and the number of modes: a Krylov method with one starting vector may miss members of multiple eigenvalues.
+Requires Debian's python3-slepc4py (real scalars).
 """
 
 import importlib.util
@@ -55,19 +55,19 @@ def is_undamped(problem):
 
 
 def applicable(problem):
-    """The formulations that fit the problem; linear only without damping."""
+    """The formulations for the problem; linear only without damping."""
     return FORMULATIONS if is_undamped(problem) else FORMULATIONS[1:]
 
 
 def default_basis(formulation, n_eigenvalues):
-    """Vectors of the Krylov basis with which a formulation was fastest (doc/benchmarks.md)."""
+    """Size of the Krylov basis with which a formulation was fastest (doc/benchmarks.md)."""
     return {"linear": 19 * n_eigenvalues // 10, "toar": 2 * n_eigenvalues}.get(formulation, 3 * n_eigenvalues // 2) + 1
 
 
 class Solution:
     """One solution: the eigenvalues lambda nearest a real shift, their vectors, and the times it took.
 
-    n_eigenvalues are those of the formulation: lambda^2 of `linear`, else lambda, of which every mode has two.
+    n_eigenvalues counts lambda^2 for `linear`, otherwise lambda, of which every mode has two.
     """
 
     def __init__(self, problem, n_eigenvalues, formulation=None, shift=0.0, tolerance=1e-12, basis=None, seed=1):
@@ -109,7 +109,7 @@ class Solution:
             operator.destroy()
 
     def solver(self, operators):
-        """Shift-invert with an LU factorisation by MUMPS; the linear problem is K x = nu M x with nu = -lambda^2, about -shift^2."""
+        """The solver with shift-invert by MUMPS; the linear problem is K x = nu M x with nu = -lambda^2, shifted by -shift^2."""
         from petsc4py import PETSc
         from slepc4py import SLEPc
 
@@ -136,7 +136,7 @@ class Solution:
         return solver
 
     def covers(self, band):
-        """Whether the eigenvalues found reach beyond the band, so that those within are all there but for multiple ones."""
+        """Whether the eigenvalues reach beyond the band, so that those within are complete except for multiple ones."""
         if self.found.size == 0:
             return False
         end = 2 * math.pi * band
@@ -154,12 +154,12 @@ def petsc_matrix(matrix):
 
 
 def n_wanted(formulation, n_modes):
-    """Eigenvalues to ask for, so that some lie beyond the band."""
+    """Number of eigenvalues of which some lie beyond the band."""
     return n_modes + 4 if formulation == "linear" else 2 * n_modes + 4
 
 
 def solve_band(problem, band, n_modes, shift=0.0):
-    """All eigenvalues of the band (and their vectors): asks for more until the largest one lies beyond it."""
+    """All eigenvalues of the band and their vectors; increases the number until the largest eigenvalue lies beyond it."""
     from petsc4py import PETSc
 
     formulation = applicable(problem)[0]
@@ -171,7 +171,7 @@ def solve_band(problem, band, n_modes, shift=0.0):
             try:
                 solution = Solution(problem, min(n_eigenvalues, size), formulation, shift, seed=seed)
             except PETSc.Error:
-                return None  # Clusters make LAPACK fail in SLEPc's reordering now and then.
+                return None  # LAPACK occasionally fails for clusters in SLEPc's reordering
             if solution.eigenvalues.size == 0:
                 return None
             if solution.covers(band) or n_eigenvalues >= size:
@@ -183,7 +183,7 @@ def solve_band(problem, band, n_modes, shift=0.0):
 
 
 def largest_difference(eigenvalues, table):
-    """Largest relative difference to the eigenvalues in a table of modes, matched one to one; None if the numbers differ."""
+    """Largest relative difference from the eigenvalues in a table of modes, matched one to one; None if the numbers differ."""
     expected = Table(table).eigenvalues()
     return float(quadratic.match(expected, eigenvalues)[2].max(initial=0)) if len(expected) == len(eigenvalues) else None
 
@@ -195,12 +195,12 @@ def main():
     parser.add_argument("--formulation", choices=FORMULATIONS, help="(default: the fastest one)")
     parser.add_argument("--mu", type=float, help="friction coefficient (default: that of the run)")
     parser.add_argument("--band", type=float, help="upper end of the band in Hz (default: that of the run)")
-    parser.add_argument("--modes", type=int, default=66, help="modes to ask for (default: %(default)s)")
+    parser.add_argument("--modes", type=int, default=66, help="number of modes (default: %(default)s)")
     parser.add_argument("--runs", type=int, default=3, help="repetitions (default: %(default)s)")
     parser.add_argument("--tolerance", type=float, default=1e-12, help="SLEPc's tolerance (default: %(default)s)")
-    parser.add_argument("--basis", type=int, help="vectors of the Krylov basis (default: what was fastest)")
-    parser.add_argument("--json", metavar="FILE", help="also writes what was measured to FILE")
-    parser.epilog = "Other options are handed to PETSc, for example -st_mat_mumps_icntl_7 5 or -log_view."
+    parser.add_argument("--basis", type=int, help="size of the Krylov basis (default: the fastest one)")
+    parser.add_argument("--json", metavar="FILE", help="also writes the measurements to FILE")
+    parser.epilog = "Other options are passed to PETSc, for example -st_mat_mumps_icntl_7 5 or -log_view."
     arguments, options = parser.parse_known_args()
     if not available():
         raise missing()
@@ -238,7 +238,7 @@ def main():
                 solution.eigenvalues[listed], pathlib.Path(arguments.directory) / "complex_modes.csv")
         print(f"run {run + 1}, {formulation}: {solution.wall:.2f} s wall, {solution.cpu:.2f} s CPU "
               f"(setup {solution.setup_wall:.2f} s wall, {solution.setup_cpu:.2f} s CPU); {listed.sum()} modes up to {band:g} Hz, "
-              f"{'the last one found lies beyond' if solution.covers(band) else 'the band is not covered'}, "
+              f"{'the band is covered' if solution.covers(band) else 'the band is not covered'}, "
               f"largest backward error {errors.max(initial=0):.1e}")
     print(f"median: {statistics.median(record['wall time [s]'] for record in records):.2f} s wall, "
           f"{statistics.median(record['CPU time [s]'] for record in records):.2f} s CPU")
