@@ -39,7 +39,7 @@ READINGS = {  # form of C_b -> arguments of its run
 
 # The paper's Table 1: label, component, coupled, complex without and with C_b; a cell is [HOW] FREQUENCY [DIVERGENCE RATE], in Hz and %.
 # HOW selects the mode of squeal: by default that with the label of the row; + and - the growing and the other mode of its shape (the paper
-# prints A0-4 - as growing with C_b); ~ the mode of nearest frequency, if the paper has no clear label; a slice selects pin modes of its shape
+# prints A0-4 - as growing with C_b); ~ the mode of nearest frequency, if its label is unclear; a slice selects pin modes of its shape
 # ordered by divergence rate, of which a row `highest` compares the largest frequency and rate, other rows the smallest. The half of the 24
 # F1 modes that bends radially is damped most. Their component frequency, printed as 3353 Hz, is read as 3553 Hz.
 TABLE_1 = """\

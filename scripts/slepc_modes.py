@@ -13,7 +13,7 @@ DIRECTORY is the output of a run with Output/Write matrices = true. The formulat
     linearised  the same by Krylov-Schur on the companion form
 
 The default is the fastest formulation: linear, or toar with damping. Prints for each run the time from the coupled matrices in memory to
-the eigenvalues and eigenvectors, and the number of modes: a Krylov method with one starting vector may miss members of multiple eigenvalues.
+the eigenvalues and eigenvectors, and the number of modes: a Krylov method with one starting vector may miss multiple eigenvalues.
 Requires Debian's python3-slepc4py (real scalars).
 """
 

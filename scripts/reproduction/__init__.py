@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The numbers that the pages quote: for each sentence the runs it needs, and what is to be read from them.
+"""Reproduces the numbers quoted in the documentation: the runs for each statement, and the quantities to extract from them.
 
-A page has a module of its name here. An entry of it is a function with the decorator `entry(sentence)` that is given the runs
-(runs.Runs) and yields a Number for each number of the sentence, or of a table of the page, which table() reads. A new number in a page is a
-new entry.
+Each page has a module with its name in pages/. An entry is a function with the decorator entry(page, statement) that takes the runs
+(runs.Runs) and yields a Number for each number of the statement or of a table of the page, which table() reads.
 """
 
 import pathlib

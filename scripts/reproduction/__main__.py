@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Lists or reproduces the numbers of pages: see scripts/reproduce.sh."""
+"""Lists or reproduces the numbers in the documentation: see scripts/reproduce.sh."""
 
 import importlib
 import pathlib
@@ -16,7 +16,7 @@ from squeal.errors import Error
 
 
 def reproduce(runs, page, chosen):
-    """Prints the numbers of the sentences; how many differ."""
+    """Prints the numbers of the statements; returns how many differ."""
     n_differing = 0
     for sentence, numbers_of in chosen:
         print(f"\n{page}: {sentence}", flush=True)
@@ -30,15 +30,15 @@ def reproduce(runs, page, chosen):
 def main():
     parser = Parser(__doc__, prog="scripts/reproduce.sh")
     parser.add_argument("pages", nargs="*", metavar="PAGE")
-    parser.add_argument("--list", action="store_true", help="prints pages and sentences, runs nothing")
-    parser.add_argument("--only", default="", metavar="WORDS", help="only the sentences that contain WORDS")
+    parser.add_argument("--list", action="store_true", help="only prints pages and statements")
+    parser.add_argument("--only", default="", metavar="WORDS", help="only the statements that contain WORDS")
     parser.add_argument("--results", type=pathlib.Path, default=SOURCE / "results" / "reproduce", metavar="DIR")
     arguments = parser.parse_args()
     for module in pkgutil.iter_modules(pages.__path__):
         importlib.import_module(f"reproduction.pages.{module.name}")
     unknown = [page for page in arguments.pages if page not in ENTRIES]
     if unknown:
-        raise Error(f"no numbers are known of {', '.join(unknown)}", "PAGE", f"name some of {', '.join(ENTRIES)}")
+        raise Error(f"there are no numbers of {', '.join(unknown)}", "PAGE", f"choose from {', '.join(ENTRIES)}")
 
     n_differing = 0
     for page in arguments.pages or ENTRIES:

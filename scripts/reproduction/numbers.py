@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Numbers as the pages print them, compared with what is found."""
+"""Numbers as printed in the documentation, compared with those found."""
 
 import dataclasses
 import itertools
@@ -13,10 +13,7 @@ ENTRIES = {}
 
 @dataclasses.dataclass
 class Number:
-    """A number as the page prints it, such as "0.680", "6.2e-7" or "24", and what was found.
-
-    With `bound` the page says that it is at most so much.
-    """
+    """A number as printed in a page, such as "0.680", "6.2e-7" or "24", and the number found; `bound`: the page gives an upper bound."""
 
     what: str
     quoted: str
@@ -24,13 +21,13 @@ class Number:
     bound: bool = False
 
     def printed(self):
-        """What was found with as many digits as the page prints."""
+        """The number found with as many digits as in the page."""
         mantissa, _, exponent = self.quoted.lower().partition("e")
         digits = len(mantissa.partition(".")[2])
         return f"{self.found:.{digits}e}" if exponent else f"{self.found:.{digits}f}"
 
     def agrees(self):
-        """Whether the page is right to the digits that it prints."""
+        """Whether the page is right to its printed digits."""
         if self.bound:
             return self.found <= float(self.quoted)
         return float(self.printed()) == float(self.quoted)
@@ -41,7 +38,7 @@ class Number:
 
 
 def entry(page, sentence):
-    """Registers a function that yields the numbers of a sentence of a page."""
+    """Registers a function that yields the numbers of a statement of a page."""
     def register(function):
         ENTRIES.setdefault(page, []).append((sentence, function))
         return function
@@ -49,19 +46,19 @@ def entry(page, sentence):
 
 
 def of_mode(name, mode, frequency=None, rate=None):
-    """Frequency and divergence rate of a mode, of which the page may say one only."""
+    """Frequency and divergence rate of a mode; None if the page does not quote one of them."""
     for unit, quoted, column in (("Hz", frequency, "frequency [Hz]"), ("%", rate, "divergence rate [%]")):
         if quoted is not None:
             yield Number(f"{name} [{unit}]", quoted, mode[column])
 
 
 def several(prefix, names, quoted, found):
-    """A number for each name."""
+    """A Number for each name."""
     return map(Number, (f"{prefix}{name}" for name in names), quoted, found)
 
 
 def table(page, head):
-    """Cells of the table of doc/PAGE.md whose head contains some words, row by row, without bold type, code and plus signs."""
+    """Rows of cells of the table of doc/PAGE.md whose header contains `head`, without bold type, code and plus signs."""
     text = re.sub(r"[*`]|\+(?=\d)", "", (SOURCE / "doc" / f"{page}.md").read_text(encoding="utf-8")).replace("−", "-")
     lines = itertools.dropwhile(lambda line: not (line.startswith("|") and head in line), text.splitlines())
     rows = itertools.takewhile(lambda line: line.startswith("|"), itertools.islice(lines, 2, None))
@@ -69,5 +66,5 @@ def table(page, head):
 
 
 def numbers_in(*cells):
-    """The numbers in cells of a table, as they are printed."""
+    """The numbers in cells of a table, as printed."""
     return [number for cell in cells for number in re.findall(r"-?\d+(?:\.\d+)?(?:e-\d+)?", cell)]

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Runs of squeal that entries share, kept in results/reproduce/."""
+"""Runs of squeal, shared by the entries and kept in results/reproduce/."""
 
 import squeal.results
 from squeal.program import SOURCE, find_program, run
@@ -14,7 +14,7 @@ class Results(squeal.results.Results):
         return [{column: value_of(cell) for column, cell in row.items()} for row in self.table(name).rows]
 
     def complex_modes(self, label=None):
-        """Complex modes, all or those whose label begins so."""
+        """Complex modes, all or those whose label begins with `label`."""
         return [mode for mode in self.rows("complex_modes") if label is None or mode["label"].startswith(label)]
 
     def eigenvalues(self):
@@ -22,11 +22,11 @@ class Results(squeal.results.Results):
         return self.table("complex_modes").eigenvalues()
 
     def leading(self, label):
-        """The mode of that label that grows most."""
+        """The mode of this label with the largest divergence rate."""
         return max(self.complex_modes(label), key=lambda mode: mode["divergence rate [%]"])
 
     def sliding_pin(self, label):
-        """The lowest frequency [Hz] of modes of that label of the pins alone, sliding on the disc."""
+        """The lowest frequency [Hz] of the modes of this label of separate sliding pins."""
         return min(mode["frequency [Hz]"] for mode in self.rows("component_modes")
                    if mode["component"] == "pins" and mode["contact"] == "sliding" and mode["label"].startswith(label))
 
@@ -35,7 +35,7 @@ class Results(squeal.results.Results):
 
 
 class Runs:
-    """Makes runs below a folder, or finds them there."""
+    """Runs below a folder, which are computed unless they exist and are up to date."""
 
     def __init__(self, folder):
         self.folder = folder
@@ -51,12 +51,12 @@ class Runs:
         return Results(folder)
 
     def default(self, name="default", *settings):
-        """The default scene without mode shapes."""
+        """Results of the default model without mode shapes."""
         return self(name, "disc_pins.prm", "Output/Mode shapes=none", *settings)
 
 
 def value_of(cell):
-    """A number, a text, or None where the cell is empty."""
+    """A number, a text, or None for an empty cell."""
     try:
         return float(cell)
     except (TypeError, ValueError):

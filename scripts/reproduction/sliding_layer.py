@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Waves of an elastic layer that slides with friction on a rigid plane: the continuum to which meshes are compared.
+"""Waves of an elastic layer that slides with friction on a rigid plane: the continuum reference for meshes.
 
-The layer 0 <= y <= H is held at y = H. At y = 0 it does not lift off, u_y = 0, and slides: sigma_xy = mu sigma_yy. Of displacements
-u(y) exp(i k x + lambda t) remains an ordinary differential equation in y, which Chebyshev polynomials solve to about ten digits.
-Without a layer, for the half-space H -> infinity, waves move at the complex speed c of
+The layer 0 <= y <= H is fixed at y = H. At y = 0 it slides without lift-off: u_y = 0, sigma_xy = mu sigma_yy. Displacements
+u(y) exp(i k x + lambda t) give an ordinary differential equation in y, which Chebyshev collocation solves to about ten digits.
+In the half-space H -> infinity, waves travel at the complex speed c from
 
     q_p w = -i mu (2 - w - 2 q_s q_p),    w = (c / c_s)^2,  q_s^2 = 1 - w,  q_p^2 = 1 - w (c_s / c_p)^2,  Re q > 0
 """
@@ -16,13 +16,13 @@ import numpy as np
 import scipy.linalg
 import scipy.optimize
 
-# Differences of the eigenvalues with more polynomials are below 1e-6 for waves longer than a quarter of the thickness
+# Eigenvalues converge to 1e-6 for waves longer than a quarter of the thickness
 N_POLYNOMIALS = 80
 
 
 @dataclasses.dataclass
 class Layer:
-    """Thickness H [m], Young's modulus [Pa], Poisson's ratio and density [kg/m^3]; plane stress, as of a narrow ring."""
+    """Thickness H [m], Young's modulus [Pa], Poisson's ratio and density [kg/m^3]; plane stress, as in a narrow ring."""
 
     thickness: float
     modulus: float
@@ -43,7 +43,7 @@ class Layer:
         return self.shear_modulus / (self.lame + 2 * self.shear_modulus)
 
     def eigenvalues(self, wave_number, friction_coefficient, n=N_POLYNOMIALS):
-        """All lambda [1/s] with Re lambda >= 0 of waves along the contact with k [1/m]; high ones are those of the polynomials."""
+        """All lambda [1/s] with Re lambda >= 0 of waves along the contact with k [1/m]; the highest ones are not converged."""
         shear, lame = self.shear_modulus, self.lame
         points = np.arange(n + 1)
         x = np.cos(math.pi * points / n)
@@ -51,7 +51,7 @@ class Layer:
         differences = x[:, None] - x[None, :]
         D = np.outer(weights, 1 / weights) / (differences + np.eye(n + 1))
         D -= np.diag(D.sum(axis=1))
-        D *= 2 / self.thickness  # y = H (1 + x) / 2: the first point is held, the last one slides
+        D *= 2 / self.thickness  # y = H (1 + x) / 2: the first point is fixed, the last one slides
         one, ik, m = np.eye(n + 1), 1j * wave_number, n + 1
         A = np.zeros((2 * m, 2 * m), dtype=complex)
         A[:m, :m] = (lame + 2 * shear) * ik**2 * one + shear * D @ D
@@ -74,7 +74,7 @@ class Layer:
                    for values in (self.eigenvalues(k, friction_coefficient) for k in wave_numbers))
 
     def half_space(self, friction_coefficient):
-        """Im c / Re c of the growing wave of the half-space: its divergence rate; 0 where there is none."""
+        """Im c / Re c, the divergence rate, of the growing wave of the half-space; 0 if there is none."""
         def defect(parts):
             w = complex(*parts) ** 2
             q_s, q_p = np.sqrt(1 - w), np.sqrt(1 - w * self.speed_ratio)

@@ -7,7 +7,8 @@ import statistics
 import check_accuracy
 from reproduction.numbers import Number, entry, numbers_in, several, table
 
-@entry("accuracy", "Errors that a run with an accuracy asked for estimates, and those that a finer mesh shows (40 min)")
+
+@entry("accuracy", "Errors estimated by runs with a required accuracy, and errors relative to a finer mesh (40 min)")
 def goals(runs):
     reference = runs("accuracy_reference", "accuracy/reference.prm")
     for goal, *cells in table("accuracy", "found f [%]"):
@@ -49,19 +50,19 @@ LARGEST, RMS = "frequency error [%]", "rms frequency error [%]"
 
 
 def compared(results, quoted, columns):
-    """Errors of full order beside rows of element, mesh factor and these columns."""
+    """Errors of full order compared with rows of element, mesh factor and these columns."""
     rows = {(row["element"], row["mesh factor [-]"]): row for row in results.rows("accuracy") if row["method"] == "full order"}
     for element, factor, *texts in quoted:
         yield from several(f"{element}, mesh factor {factor}: ", columns, texts, map(rows[element, float(factor)].get, columns))
 
 
-@entry("accuracy", "Errors of every element on three meshes of the default scene (20 min)")
+@entry("accuracy", "Errors of every element on three meshes of the default model (20 min)")
 def default_scene(runs):
     results = runs("accuracy", "studies/accuracy.prm")
     yield from compared(results, (cells[:6] for cells in table("accuracy", "memory [GB]")), ("dofs [-]", LARGEST, RMS, "divergence error [percentage points]"))
     orders = [row["order of frequency [-]"] for row in results.rows("accuracy_orders") if row["family"].startswith("quadratic")]
     yield Number("modes whose frequency shows an order", "66", sum(isinstance(order, float) for order in orders))
-    yield Number("their order in the middle", "2.4", statistics.median(orders))
+    yield Number("their median order", "2.4", statistics.median(orders))
 
 
 @entry("accuracy", "Errors with one pin on each side")

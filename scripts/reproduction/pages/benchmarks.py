@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""doc/benchmarks.md, but for times"""
+"""doc/benchmarks.md, except times"""
 
 import math
 import statistics
@@ -9,7 +9,7 @@ from reproduction.numbers import Number, entry
 from squeal import quadratic
 
 
-@entry("benchmarks", "Residual iteration against the Krylov reference: largest difference of lambda, estimated and true errors")
+@entry("benchmarks", "Residual iteration compared with the Krylov reference: largest difference of lambda, estimated and true errors")
 def residual_iteration(runs):
     for name, parameter_file, quoted in (("without", "disc_pins.prm", "1e-7"), ("consistent", "dissipation.prm", "3e-7")):
         exact = runs(f"krylov_{name}", parameter_file, "Output/Mode shapes=none", "Complex modes/Tolerance=1e-11")

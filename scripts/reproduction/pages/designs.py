@@ -7,11 +7,11 @@ from reproduction.numbers import Number, entry, numbers_in, of_mode, table
 RATE, HEIGHT = "largest divergence rate [%]", "Geometry/Pin height"
 
 
-@entry("designs", "Fifty designs of the default scene")
+@entry("designs", "Fifty designs of the default model")
 def fifty(runs):
     rows = runs("designs", "studies/designs.prm").rows("designs")
     yield Number("designs", "50", len(rows))
-    yield Number("of which the pins flutter first", "48", sum(row["label at 0.01 %"] == "F1" for row in rows))
+    yield Number("in which the pins flutter first", "48", sum(row["label at 0.01 %"] == "F1" for row in rows))
     for name, cell in table("designs", "height of the pins [mm]"):
         height, (least, greatest) = numbers_in(name)[0], numbers_in(cell)
         rates = [row[RATE] for row in rows if abs(1000 * row[HEIGHT] - float(height)) < 1e-6]
@@ -40,9 +40,9 @@ DAMPED_DISC = "Disc material/Rayleigh beta=4.5e-7"
 
 @entry("designs", "A silent design: the search")
 def searched(runs):
-    scene = runs("search_scene", "sweep.prm", *SEARCHED, "Disc material/Rayleigh beta=1e-7").rows("branches")
-    leading = max(scene, key=lambda row: row["divergence rate [%]"])
-    yield from of_mode("leading mode of the scene", leading, "2354", "0.611")
+    baseline = runs("search_scene", "sweep.prm", *SEARCHED, "Disc material/Rayleigh beta=1e-7").rows("branches")
+    leading = max(baseline, key=lambda row: row["divergence rate [%]"])
+    yield from of_mode("leading mode of the baseline", leading, "2354", "0.611")
     results = runs("search", "studies/search.prm")
     best = min(results.rows("designs"), key=lambda row: row[RATE])
     yield Number("best, design", "4", best["design [-]"])
@@ -62,5 +62,5 @@ def silent(runs):
                 "Operation/Friction coefficient=0.45", "Output/Mode shapes=none")
     yield Number("unstable modes at full order", "0", full.n_unstable())
     other = runs("damped_disc_alone", "sweep.prm", *SEARCHED, DAMPED_DISC)
-    yield Number("the pins as they were: squeal from", "0.254", min(row["mu [-]"] for row in other.rows("thresholds")))
+    yield Number("original pins: squeal from", "0.254", min(row["mu [-]"] for row in other.rows("thresholds")))
     yield Number("  largest divergence rate [%]", "0.371", max(row["divergence rate [%]"] for row in other.rows("branches")))

@@ -14,7 +14,7 @@ def rates_with_all_readings(runs):
 
 
 def rates_of(rows, label, column):
-    """Ascending divergence rates [%] of the modes of a label."""
+    """Divergence rates [%] of the modes of a label, ascending."""
     return sorted(row[column] for row in rows if row["label"].startswith(label) and row[column] is not None)
 
 
@@ -22,11 +22,11 @@ def of_modes(results, label):
     return sorted(mode["divergence rate [%]"] for mode in results.complex_modes(label))
 
 
-# Label and positions in the ascending rates, by the rows of the table; half of the 24 F1 modes bend along the radius
+# Label and positions in the ascending rates for each row of the table; half of the 24 F1 modes bend radially
 POSITIONS = (("F1", 0), ("F1", 11), ("T1", 0), ("T1", -1), ("R0-1 +", 0), ("A1-2 +", 0), ("A0-4", 0, -1), ("A0-5", 0, -1), ("F1", -1))
 
 
-@entry("dissipation", "The table of divergence rates with each reading")
+@entry("dissipation", "The table of divergence rates with each form of C_b")
 def all_readings(runs):
     rows = rates_with_all_readings(runs)
     for (name, _, _, *cells), (label, *positions) in zip(table("dissipation", "equal, consistent"), POSITIONS, strict=True):
@@ -54,7 +54,7 @@ def small_friction(runs):
         yield Number(f"most damped F1, {reading} [%]", quoted, of_modes(results, "F1")[0])
 
 
-@entry("dissipation", "Seven F1 modes that hardly grow without it grow by 0.01 to 0.04 %; the leading pairs lose at most 0.15 %")
+@entry("dissipation", "Seven F1 modes, marginal without it, grow by 0.01 to 0.04 %; the leading pairs lose at most 0.15 %")
 def destabilised(runs):
     rows = rates_with_all_readings(runs)
     yield Number("F1 modes that grow by more than 0.001 % without it", "3", sum(rate > 0.001 for rate in rates_of(rows, "F1", "no C_b [%]")))

@@ -28,7 +28,7 @@ def pins(runs):
                          pin_frequency(runs, label, element, outlines, nodes, layers))
 
 
-@entry("elements", "F1 of a sliding pin with rings at its outline and thinner layers at its held end")
+@entry("elements", "F1 of a sliding pin with rings at its outline and thinner layers at its clamped end")
 def rings_of_pins(runs):
     of_table = [("quadratic", *numbers_in(*cells)) for cells in table("elements", "rings | grading")]
     of_text = ("quadratic", 7, 2, 0, 1.5, "3485.9"), ("incompatible modes", 19, 4, 2, 1.5, "3542.7")
@@ -45,7 +45,7 @@ def locking(runs):
             yield from map(Number, (f"{element}, {ratio} [Hz]", "  too high by [%]"), numbers_in(cell), (found, 100 * (found / exact - 1)))
 
 
-@entry("elements", "A0-4, A0-5 and F1 of the default scene by element and outlines")
+@entry("elements", "A0-4, A0-5 and F1 of the default model by element and outlines")
 def disc(runs):
     for name, layers, _, *quoted in table("elements", "disc layers"):
         if not name.startswith("the same"):

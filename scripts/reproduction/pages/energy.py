@@ -7,7 +7,7 @@ from reproduction.numbers import Number, entry, numbers_in, table
 MODES = (17, 21, 37, 44)  # rows of complex_modes.csv
 
 
-@entry("energy", "The table of the default scene")
+@entry("energy", "The table of the default model")
 def default_scene(runs):
     rows = runs.default().rows("energy")
     for mode, (_, *cells) in zip(MODES, table("energy", "share done on the disc"), strict=True):

@@ -18,30 +18,30 @@ def of_table(rows, head):
 
 
 def rows_of(runs, *run):
-    """Rows by the feature and its variant; numbers in a table are numbers, also where they name a variant."""
+    """Rows by feature and variant; a variant may be a number."""
     rows = runs(*run).rows("ingredients")
     return {(row["ingredient"], row["variant"] if isinstance(row["variant"], str) else f"{row['variant']:g}"): row for row in rows}
 
 
-@entry("ingredients", "The table of the default scene")
+@entry("ingredients", "The table of the default model")
 def default_scene(runs):
     rows = rows_of(runs, *DEFAULT)
     yield from of_table(rows, "unstable | verdict")
-    yield Number("unstable modes of the scene", "9", rows["complex modes", "residual iteration"]["unstable modes in reference [-]"])
+    yield Number("unstable modes of the model", "9", rows["complex modes", "residual iteration"]["unstable modes in reference [-]"])
 
 
-@entry("ingredients", "First-order responses, a slope, and what half of the band loses")
+@entry("ingredients", "First-order responses, a friction slope, and modes lost by halving the band")
 def statements(runs):
     rows = rows_of(runs, *DEFAULT)
     real, response = rows["complex modes", "real modes alone"], rows["complex modes", "real modes + 1st order"]
-    yield Number("error in divergence rate beside real modes alone", "0.37", response[DIVERGENCE] / real[DIVERGENCE])
+    yield Number("error of the divergence rate over that of real modes alone", "0.37", response[DIVERGENCE] / real[DIVERGENCE])
     slope = rows["friction slope", "-0.01 s/m"]
     yield Number("more modes that grow with a slope", "34", slope["unstable modes in variant [-]"] - slope["unstable modes in reference [-]"])
     yield Number("modes that half of the band loses", "49", rows["band", "to 2500 Hz"]["modes without counterpart [-]"])
 
 
-@entry("ingredients", "The table of the scene with all damping")
+@entry("ingredients", "The table of the model with all damping")
 def with_all_damping(runs):
     rows = rows_of(runs, "ingredients_damped", "studies/ingredients.prm")
     yield from of_table(rows, "verdict | cost")
-    yield Number("unstable modes of the scene", "4", rows["friction slope", "none"]["unstable modes in reference [-]"])
+    yield Number("unstable modes of the model", "4", rows["friction slope", "none"]["unstable modes in reference [-]"])

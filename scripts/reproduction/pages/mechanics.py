@@ -12,7 +12,7 @@ def bending(runs, ratio, *settings, suffix=""):
     return runs.default(f"poisson_{ratio}{suffix}", f"Pin material/Poisson ratio={ratio}", *settings).sliding_pin("F1")
 
 
-@entry("mechanics", "Volumetric locking: F1 of a sliding pin beside quadratic elements, more than at Poisson's ratio 0.25")
+@entry("mechanics", "Volumetric locking: F1 of a sliding pin relative to quadratic elements, in excess of Poisson's ratio 0.25")
 def locking(runs):
     def excess(ratio):
         return 100 * (bending(runs, ratio) / bending(runs, ratio, *QUADRATIC, suffix="_quadratic") - 1)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""doc/reduction.md, but for times"""
+"""doc/reduction.md, except times"""
 
 from reproduction.numbers import Number, entry, several, table
 
@@ -12,7 +12,7 @@ def study(runs, dissipation, name):
 
 
 def largest(rows, basis, column, group=None):
-    """Of a basis, in one group of modes or in all."""
+    """Largest value of a column for a basis, in one group of modes or in all."""
     return max(row[column] for row in rows if row["basis"] == basis and group in (None, row["group"]))
 
 
@@ -21,7 +21,7 @@ NAMES = {"the same + damping": "real + 1st-ord. two-sided + damping", "POD of μ
 
 
 def compared(runs, head, columns, group=None):
-    """Errors of bases with a table of the page, whose cells say `without | with` where both differ; None: a column that is not compared."""
+    """Errors of bases compared with a table of the page, whose cells are `without | with` if these differ; None skips a column."""
     for number, dissipation in enumerate(STUDIES):
         rows = study(runs, dissipation, "errors")
         for basis, *cells in table("reduction", head):
@@ -31,7 +31,7 @@ def compared(runs, head, columns, group=None):
                 yield from several(f"{dissipation}: {basis}, ", quoted, quoted.values(), found)
 
 
-@entry("reduction", "At one glance: sizes and largest errors of all modes, without and with radial dissipation")
+@entry("reduction", "Overview: sizes and largest errors of all modes, without and with radial dissipation")
 def at_one_glance(runs):
     yield from compared(runs, "error of λ", ("n_r [-]", None, "lambda [-]", "div [-]"))
 
@@ -57,7 +57,7 @@ def wrong_verdicts(runs):
     for dissipation, quoted_wrong, quoted_modes in (("without", "2", "1188"), ("with", "0", "1320")):
         rows = study(runs, dissipation, "estimates")
         yield Number(f"{dissipation}: wrong verdicts", quoted_wrong, sum(row["wrong verdicts [-]"] for row in rows))
-        yield Number(f"{dissipation}: of so many", quoted_modes, sum(row["modes [-]"] for row in rows))
+        yield Number(f"{dissipation}: number of modes", quoted_modes, sum(row["modes [-]"] for row in rows))
 
 
 @entry("reduction", "Counterparts by eq. (17) that differ from one to one")
@@ -65,7 +65,7 @@ def counterparts(runs):
     for dissipation, all_pairs, clustered in (("without", "147", "123"), ("with", "56", "48")):
         differing = [row for row in study(runs, dissipation, "modes") if row["reduced mode [-]"] != row["reduced mode by eq. 17 [-]"]]
         yield Number(f"{dissipation}: other counterparts", all_pairs, len(differing))
-        yield Number(f"{dissipation}: of modes of clusters", clustered, sum(row["cluster [-]"] > 1 for row in differing))
+        yield Number(f"{dissipation}: of these in clusters", clustered, sum(row["cluster [-]"] > 1 for row in differing))
 
 
 @entry("reduction", "Section 5: free, fixed and mixed bases by numbers and by frequencies of component modes")

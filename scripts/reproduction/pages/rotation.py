@@ -5,7 +5,7 @@
 from reproduction.numbers import Number, entry, of_mode, table
 
 
-@entry("rotation", "What it does to the default scene: frequencies and divergence rates without and with gyroscopic forces")
+@entry("rotation", "Effect on the default model: frequencies and divergence rates without and with gyroscopic forces")
 def default_scene(runs):
     still = runs.default()
     turning = runs.default("rotating", "Operation/Gyroscopic forces=true")

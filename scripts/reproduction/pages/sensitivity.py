@@ -10,7 +10,7 @@ PARAMETERS = ("Geometry/Disc outer radius", "Geometry/Pin height", "Geometry/Dis
               "Geometry/Disc inner radius", "Disc material/Poisson ratio", "Geometry/Pin diameter")
 
 
-@entry("sensitivity", "What one per cent of each parameter changes of the mode that grows most")
+@entry("sensitivity", "Effect of a 1 % increase of each parameter on the fastest growing mode")
 def leading_mode(runs):
     rows = [row for row in runs("sensitivity", "studies/sensitivity.prm").rows("sensitivities")
             if row["mode [-]"] == 1 and not row["body"]]
@@ -21,7 +21,7 @@ def leading_mode(runs):
         yield Number("  frequency [Hz]", frequency, row["frequency per 1 % [Hz]"])
 
 
-@entry("sensitivity", "How far thresholds move")
+@entry("sensitivity", "Changes of thresholds")
 def thresholds(runs):
     rows = runs("sensitivity", "studies/sensitivity.prm").rows("sensitivities_thresholds")
     yield Number("without derivatives", "1", sum(row["derivative of"] == "none" for row in rows))

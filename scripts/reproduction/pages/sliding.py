@@ -13,7 +13,7 @@ MEAN_PRESSURE = 1000.0 / (6 * 0.002028)  # load of a side over the area of its p
 
 
 def steady(runs, name, *settings):
-    """Steady sliding on the default scene, with as few modes as possible."""
+    """Steady sliding of the default model, with as few modes as possible."""
     return runs(name, "sliding.prm", NO_SHAPES, FEW_MODES, *settings)
 
 
@@ -21,7 +21,7 @@ def certificate(results):
     return {row["quantity"]: row["value"] for row in results.rows("sliding_certificate")}
 
 
-@entry("sliding", "Proof: the certificate at mu = 0.4, and the friction coefficient below which the state is the only one")
+@entry("sliding", "The certificate at mu = 0.4, and the friction coefficient below which the state is unique")
 def proof(runs):
     values = certificate(steady(runs, "sliding_0.4", "Operation/Friction coefficient=0.4"))
     for quantity, bound in (("residual of the full system [-]", "1e-11"), ("error of the prescribed loads [-]", "1e-14"),
@@ -29,10 +29,10 @@ def proof(runs):
                             ("force balance with the supports [-]", "1e-11"), ("moment balance with the supports [-]", "1e-11")):
         yield Number(quantity, bound, values[quantity], bound=True)
     yield Number("largest tension over load", "-2e-5", values["largest tension over load [-]"])
-    yield Number("the state is the only one below mu =", "1.348", values["friction coefficient below which the state is unique [-]"])
+    yield Number("the state is unique below mu =", "1.348", values["friction coefficient below which the state is unique [-]"])
 
 
-@entry("sliding", "The table over mu: open nodes, largest pressure beside the mean, travel of the backplates")
+@entry("sliding", "The table over mu: open nodes, ratio of largest to mean pressure, travel of the backplates")
 def over_friction(runs):
     for cells in table("sliding", "open nodes of 228"):
         mu, n_open, ratio, travel = numbers_in(*cells)
@@ -59,7 +59,7 @@ def random_gaps(seed):
     return gaps, round(generator.uniform(0.03, 1.11), 3)
 
 
-@entry("sliding", "20 random patterns of gaps: all solved, the state is the only one, residuals are small")
+@entry("sliding", "20 random patterns of gaps: all solved, with unique states and small residuals")
 def random_patterns(runs):
     residuals, overlaps, unique = [], [], 0
     for seed in range(20):
@@ -68,8 +68,8 @@ def random_patterns(runs):
         residuals.append(values["residual of the full system [-]"])
         overlaps.append(values["largest overlap over travel [-]"])
         unique += values["friction coefficient below which the state is unique [-]"] > mu
-    yield Number("patterns that are solved", "20", len(residuals))
-    yield Number("  whose state is the only one", "20", unique)
+    yield Number("solved patterns", "20", len(residuals))
+    yield Number("  with a unique state", "20", unique)
     yield Number("largest residual", "1e-11", max(residuals), bound=True)
     yield Number("largest overlap", "1e-13", max(overlaps), bound=True)
 

@@ -54,12 +54,12 @@ def largest_differences(runs, name, results):
 
 
 def step_number(results, step, pattern):
-    """A number that the run record gives as the result of a step."""
+    """A number in the result of a step of the run record."""
     text = next(entry["result"] for entry in results.record["steps"] if entry["name"] == step)
     return float(re.search(pattern, text)[1])
 
 
-@entry("sweep", "How: vectors initially, and with which the tolerance is met")
+@entry("sweep", "Number of basis vectors initially, and when the tolerance is met")
 def vectors(runs):
     for name, start, end in (("without", "198", "220"), ("consistent", "263", "290")):
         results = sweep(runs, name)
@@ -84,7 +84,7 @@ def against_full_order_tightly(runs):
         yield Number(f"{name}: largest difference of xi", "6e-9", of_divergence, bound=True)
 
 
-@entry("sweep", "1e-5 to either side of a threshold full order finds one growing mode more on one than on the other")
+@entry("sweep", "At 1e-5 on either side of a threshold, the numbers of growing modes at full order differ by one")
 def thresholds(runs):
     for name, label, quoted in (("without", "A0-5", "0.0893"), ("without", "F1", "0.0424"), ("without", "R0-2", "0.3987"),
                                 ("without", "F1", "0.3785"), ("consistent", "A0-4", "0.0837"), ("consistent", "F1", "0.0496")):
@@ -92,10 +92,10 @@ def thresholds(runs):
         threshold = min(rows, key=lambda row: abs(row["mu [-]"] - float(quoted)))
         yield Number(f"{name}: threshold of {label}", quoted, threshold["mu [-]"])
         below, above = (full_order(runs, name, threshold["mu [-]"] + side * 1e-5).n_unstable() for side in (-1, 1))
-        yield Number("  growing modes that come or go there", "1", abs(above - below))
+        yield Number("  change of the number of growing modes", "1", abs(above - below))
 
 
-@entry("sweep", "With 10 values instead of 90, 22 of the 24 thresholds are seen")
+@entry("sweep", "With 10 values instead of 90, 22 of the 24 thresholds are found")
 def few_values(runs):
     yield Number("thresholds with 90 values", "24", len(sweep(runs, "without").rows("thresholds")))
     few = sweep(runs, "without", "Sweep/Number of friction coefficients=10", suffix="_10")

@@ -27,7 +27,7 @@ def agreement(runs):
     for name, quoted, of in (("component", "3.2", "34"), ("coupled", "3.0", "34"), ("without C_b", "2.8", "38"), ("with C_b", "2.8", "39")):
         value, number, _, _ = paper.agreement(rows, name)
         yield Number(f"{name}: difference, rms [%]", quoted, value)
-        yield Number("  of so many", of, number)
+        yield Number("  number of modes", of, number)
     counts = results.record["counts"]
     for name, quoted in (("disc modes", "30"), ("sliding pin modes", "36"), ("real modes", "66")):
         yield Number(name, quoted, counts[name])

@@ -16,14 +16,14 @@ def first_run(runs):
     yield Number("that grow", "9", results.n_unstable())
     for label, rate, frequency in (("F1", "1.068", "3569"), ("A0-5", "0.856", None), ("A0-4", "0.680", "2353")):
         yield from of_mode(label, results.leading(label), frequency, rate)
-    yield Number("periods of a factor of e", "15", 1 / (2 * math.pi * results.leading("F1")[RATE] / 100))
+    yield Number("periods for a factor of e", "15", 1 / (2 * math.pi * results.leading("F1")[RATE] / 100))
     own = {row["body"]: row["total [%]"] / results.leading("F1")[RATE] for row in results.rows("energy") if row["mode [-]"] == 44}
     for pin, share in ((4, "14.9"), (5, "15.7"), (2, "1.9")):
         for side in ("top", "bottom"):
             yield Number(f"energy from pin_{side}_{pin} [%]", share, 100 * own[f"pin_{side}_{pin}"])
 
 
-@entry("tutorial", "From which friction coefficient on?")
+@entry("tutorial", "From which friction coefficient?")
 def sweep(runs):
     results = runs("sweep", "sweep.prm", "Output/Mode shapes=none")
     thresholds = results.rows("thresholds")

@@ -49,7 +49,7 @@ def one_pin(runs, friction_coefficient, factor, band):
                 f"Operation/Friction coefficient={friction_coefficient}", f"Band/Maximum frequency={band:g}", "Output/Mode shapes=none")
 
 
-@entry("well_posedness", "Growth rates of waves of a layer, by friction coefficient and thickness over wave length")
+@entry("well_posedness", "Growth rates of waves in a layer, by friction coefficient and thickness over wavelength")
 def layer(_):
     for friction_coefficient, *quoted in table("well_posedness", "H/ℓ ≤ 0.5"):
         for turns, number in zip((0.5, 1, 2, 4), quoted):
@@ -64,7 +64,7 @@ def half_space(_):
         yield Number(f"mu = {friction_coefficient} [%]", quoted, 100 * PAD.half_space(friction_coefficient))
 
 
-@entry("well_posedness", "The largest growth rate of a ring up to the frequency that its mesh resolves, beside that of the layer")
+@entry("well_posedness", "The largest growth rate of a ring up to the frequency that its mesh resolves, and that of the layer")
 def rings(runs):
     for layers, _, *cells in table("well_posedness", "up to [kHz]"):
         for friction_coefficient, quoted in ((0.4, cells[:3]), (1.5, cells[3:])):
@@ -118,7 +118,7 @@ def whole_spectrum(runs):
                                    (n_growing, first.real, first.imag / 2 / np.pi / 1000))
 
 
-@entry("well_posedness", "What damping does to the growth rates of a ring")
+@entry("well_posedness", "Effect of damping on the growth rates of a ring")
 def damping(runs):
     for name, *quoted in table("well_posedness", "damping | 5 layers"):
         for layers, number in zip((5, 8), quoted):
