@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""A little of what fuzz.py makes up."""
+"""A small sample of the cases of fuzz.py."""
 
 import unittest
 
@@ -12,7 +12,7 @@ class DamagedInput(unittest.TestCase):
         fuzzer = Fuzzer(seed=1)
         outcomes = [fuzzer.run(number) for number in range(16)]
         self.assertEqual([(number, found) for number, (_, _, _, found) in enumerate(outcomes) if found], [])
-        # Neither is all of it refused, nor nothing
+        # Some cases are rejected, some pass the dry run
         self.assertEqual({"refused", "dry run"} - {outcome for _, _, outcome, _ in outcomes}, set())
 
 

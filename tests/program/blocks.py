@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""A geometry small enough to be changed line by line."""
+"""A small geometry that tests change line by line."""
 
-# Two blocks one upon the other; tests add names.
+# Two stacked blocks; tests add names
 BLOCKS = """
 SetFactory("OpenCASCADE");
 Box(1) = {0.1, 0, -0.05, 0.1, 0.1, 0.05};

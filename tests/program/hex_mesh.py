@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Hexahedral meshes of a disc with pads, which tests spoil in the ways of real meshes."""
+"""Hexahedral meshes of a disc with pads, to which tests add typical faults of real meshes."""
 
 import math
 
-# Corners of a hexahedron in Gmsh's order, and of its faces by the axis along which they look
+# Corners of a hexahedron in Gmsh's order, and of its faces by their normal
 CORNERS = ((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1))
 SIDES = {"-a": (0, 4, 7, 3), "+a": (1, 2, 6, 5), "-b": (0, 1, 5, 4), "+b": (3, 7, 6, 2), "-c": (0, 3, 2, 1), "+c": (4, 5, 6, 7)}
 
@@ -14,7 +14,7 @@ def cylindrical(r, theta, z):
 
 
 class HexMesh:
-    """Bodies of hexahedra, and faces that bear one name or several. Blocks share no nodes."""
+    """Bodies of hexahedra, and faces with one or several names. Blocks share no nodes."""
 
     def __init__(self):
         self.points = []
@@ -22,7 +22,7 @@ class HexMesh:
         self.faces = []  # (names, nodes)
 
     def block(self, body, a, b, c, place=cylindrical, is_ring=False):
-        """A grid over three lists of coordinates; a ring closes along b. Returns its faces: side -> {cell: nodes}."""
+        """Adds a grid over three lists of coordinates, closed along b for a ring. Returns its faces: side -> {cell: nodes}."""
         n_b = len(b) - is_ring
         first = len(self.points)
         self.points += [place(x, y, z) for x in a for y in b[:n_b] for z in c]
@@ -39,7 +39,7 @@ class HexMesh:
         return faces
 
     def name(self, faces, *names):
-        """Gives faces, lists of nodes, these names."""
+        """Adds faces, given by lists of nodes, with these names."""
         self.faces += [(names, list(nodes)) for nodes in faces]
 
     def bodies(self):
@@ -49,7 +49,7 @@ class HexMesh:
         return list(dict.fromkeys(name for names, _ in self.faces for name in names))
 
     def write_2(self, path, elementary=None):
-        """Gmsh's text format 2.2: a face with two names stands there twice. `elementary`: tag of all entities; else one for each name."""
+        """Writes Gmsh's text format 2.2, with a face once for each name. `elementary`: tag of all entities, by default one per name."""
         surfaces, bodies = self.surfaces(), self.bodies()
         elements = [(3, surfaces.index(name) + 1, nodes) for names, nodes in self.faces for name in names]
         elements += [(5, len(surfaces) + bodies.index(body) + 1, nodes) for body, nodes in self.cells]
@@ -61,7 +61,7 @@ class HexMesh:
         write(path, "2.2", {"PhysicalNames": [len(groups), *groups], "Nodes": [len(points), *points], "Elements": [len(rows), *rows]})
 
     def write_4(self, path):
-        """Gmsh's text format 4.1: an entity for each combination of names."""
+        """Writes Gmsh's text format 4.1, with an entity for each combination of names."""
         combinations = {}  # (dimension, names) -> nodes of elements
         for dimension, named in ((2, self.faces), (3, [((body,), nodes) for body, nodes in self.cells])):
             for names, nodes in named:
@@ -105,8 +105,8 @@ def angles(n, first=0, last=None):
 
 
 def disc_with_pads(n_parts=24, pad_parts=(0, 3), disc_layers=1):
-    """A ring with one pad on each side, small enough to be solved in a second; pads match the disc's faces node by node. Returns the mesh and
-    the faces of `disc`, `pin_top` and `pin_bottom` by side: -a and +a are bore and rim, -c and +c bottom and top."""
+    """A ring with one matching pad on each side, small enough to be solved in a second. Returns the mesh and the faces of `disc`, `pin_top`
+    and `pin_bottom` by side: -a and +a are bore and rim, -c and +c bottom and top."""
     mesh = HexMesh()
     radii, t = [0.15, 0.2, 0.25, 0.3], 0.02
     levels = [-t + 2 * t * layer / disc_layers for layer in range(disc_layers + 1)]
@@ -123,7 +123,7 @@ def disc_with_pads(n_parts=24, pad_parts=(0, 3), disc_layers=1):
     return mesh, faces
 
 
-# What a parameter file says of such a mesh
+# Parameter file for such a mesh
 PARAMETERS = """
 subsection Geometry
   set File = {file}

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Steady sliding solved again from exported matrices by Lemke's complementary pivoting."""
+"""Independent solution of steady sliding from exported matrices by Lemke's complementary pivoting."""
 
 import csv
 
@@ -9,12 +9,12 @@ import scipy.io
 import scipy.sparse as sparse
 import scipy.sparse.linalg
 
-# Ways of backplates count from here, so that they are positive where the disc gives way before them [m]
+# Origin of the travel of backplates, so that travel is positive even if the disc recedes [m]
 START = -1e-4
 
 
 class SlidingContact:
-    """The contact of disc and pins condensed to all contact nodes; needs the matrices of a run in which all are closed."""
+    """Contact of disc and pins condensed to the contact nodes, from the matrices of a run in which all are closed."""
 
     def __init__(self, folder, friction_coefficient):
         K, P_n, P_t = (sparse.csc_matrix(scipy.io.mmread(folder / "matrices" / f"{name}.mtx")) for name in ("K", "P_n", "P_t"))
@@ -42,10 +42,10 @@ class SlidingContact:
         return gaps
 
     def solve(self, gaps, plates, loads):
-        """Compression [N] of every node and way [m] of every backplate; plates gives the number of each node's backplate.
+        """Compression [N] of every node and travel [m] of every backplate; plates: index of the backplate of each node.
 
-        With compressions p and ways d from START, both >= 0, the remaining gaps G p - B (d + START) + gaps and the surplus
-        B^T p - loads are >= 0 too, and complementary to p and d.
+        Compressions p >= 0 and travels d >= 0 from START are complementary to the remaining gaps G p - B (d + START) + gaps >= 0 and
+        to the excess loads B^T p - loads >= 0.
         """
         n, unit = len(gaps), np.mean(np.diag(self.flexibility))
         B = np.equal.outer(np.array(plates), np.arange(len(loads))).astype(float)
@@ -54,7 +54,7 @@ class SlidingContact:
         return solution[:n], unit * solution[n:] + START
 
     def pressed_along_normals(self, load):
-        """Normal load [N] and way [m] of each body if all nodes are closed and it is pressed along the mean of its own normals."""
+        """Normal load [N] and travel [m] of each body if all nodes are closed and it is pressed along its mean normal."""
         names = list(dict.fromkeys(self.pins))
         n, k = len(self.pins), len(names)
         closing, balance = np.zeros((n, k)), np.zeros((k, n))
@@ -95,6 +95,6 @@ def lemke(matrix, vector):
         if len(positive) == 0:
             break
         ratios = tableau[positive, -1] / column[positive]
-        # Where several leave, the artificial variable does.
+        # In case of ties the artificial variable leaves
         row = int(min(positive[ratios <= ratios.min() * (1 + 1e-12)], key=lambda i: basis[i] != 2 * n))
     raise RuntimeError("Lemke's method ended on a ray.")

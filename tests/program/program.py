@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Runs the executable on a small scene and reads what it leaves.
+"""Runs the executable on a small model and reads its results.
 
-The environment variable SQUEAL names the executable, MPIRUN the launcher of several processes, STARTER the library of starter.cc if there
-is one.
+Environment variables: SQUEAL, the executable; MPIRUN, the launcher of several processes; STARTER, the optional library of starter.cc.
 """
 
 import atexit
@@ -24,7 +23,7 @@ MPIRUN = os.environ.get("MPIRUN", "mpirun")
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(SOURCE / "scripts"), str(SOURCE / "python")]
 
-# Two pins on each side with seven nodes each, large elements: less than a second, 38 modes, unstable ones of disc and pins.
+# Two pins on each side with seven nodes each, large elements: less than a second, 38 modes, unstable ones of disc and pins
 SCENE = """
 subsection Geometry
   set Top pin radii = 0.2275, 0.2275
@@ -42,19 +41,19 @@ subsection Output
 end
 """
 
-# With a disc of a fifth of the elements, for what does not depend on how well its modes are resolved
+# The disc has a fifth of the elements, for tests that do not need resolved modes
 COARSE = SCENE.replace("Element size = 0.04", "Element size = 0.08")
 
 COMPLEX_COLUMNS = ["label", "share [-]", "frequency [Hz]", "growth rate [1/s]", "divergence rate [%]", "effective damping ratio -2R/omega [%]",
                    "residual [-]", "eps_res [-]", "unstable [-]", "wave with rotation [-]", "wave against rotation [-]",
                    *(f"strain energy in {part} [%]" for part in ("disc", "pins", "mounts")), "verdict"]
 
-# Of the same eigenvalue found in another way [-]
+# Relative difference of an eigenvalue between two methods [-]
 SAME = 1e-9
 
 
 def settings(overrides):
-    """Words of the command line that give parameters "Section/Name=value"."""
+    """Command-line arguments for overrides "Section/Name=value"."""
     return [word for override in overrides for word in ("--set", override)]
 
 
@@ -82,7 +81,7 @@ class Starter:
             try:
                 status, = struct.unpack("i", self.socket.recv(struct.calcsize("i")))
             except TimeoutError:
-                self.process.kill()  # and its child with it
+                self.process.kill()  # ends its child, too
                 ProgramTest.starter = None
                 raise
             texts = []
@@ -93,7 +92,7 @@ class Starter:
 
 
 class ProgramTest(unittest.TestCase):
-    """A folder of its own with `scene` in scene.prm, kept while the tests of a class run."""
+    """A temporary folder with `scene` in scene.prm, shared by the tests of a class."""
 
     scene = SCENE
     starter = None
@@ -107,7 +106,7 @@ class ProgramTest(unittest.TestCase):
 
     @classmethod
     def call(cls, *arguments, n_processes=1):
-        """The finished process, without what MPI's hardware detection says of machines that hide their hardware."""
+        """The finished process, without hwloc's messages on virtual machines."""
         if n_processes > 1 or "STARTER" not in os.environ:
             launcher = [MPIRUN, "-np", str(n_processes)] if n_processes > 1 else []
             process = subprocess.run([*launcher, EXECUTABLE, *arguments], cwd=cls.folder, text=True, errors="surrogateescape", capture_output=True,
@@ -133,7 +132,7 @@ class ProgramTest(unittest.TestCase):
 
     @classmethod
     def shared(cls, *overrides, file="scene.prm"):
-        """Results that no test changes: of runs of a class with the same file and overrides the first is that of all."""
+        """Results that no test changes, computed once for each file and overrides."""
         runs = cls.__dict__.get("shared_runs")
         if runs is None:
             runs = cls.shared_runs = {}
@@ -142,7 +141,7 @@ class ProgramTest(unittest.TestCase):
         return runs[file, overrides]
 
     def write(self, name, content):
-        """A file for the time of one test."""
+        """Writes a file for the duration of a test."""
         path = self.folder / name
         path.parent.mkdir(exist_ok=True)
         path.write_bytes(content if isinstance(content, bytes) else content.encode())
@@ -158,7 +157,7 @@ class ProgramTest(unittest.TestCase):
         self.assert_message(process, mentions)
 
     def assert_refused(self, mentions, *overrides):
-        """The scene with these overrides gets one message that says what, where and what to change, and nothing is written."""
+        """The run with these overrides fails with one message that says what, where and what to change, and writes nothing."""
         before = contents(self.folder)
         process = self.call_scene("refused", *overrides)
         self.assertEqual(contents(self.folder), before)
@@ -166,7 +165,7 @@ class ProgramTest(unittest.TestCase):
         self.assert_message(process, mentions)
 
     def assert_message(self, process, mentions):
-        """The program or a script has failed with one message of three parts, in which there are these words."""
+        """The program or a script failed with one message in three parts that contains these words."""
         self.assertNotEqual(process.returncode, 0, process.stdout)
         lines = process.stderr.strip().splitlines()
         for start in ("error: ", "  where:  ", "  change: "):
@@ -175,8 +174,8 @@ class ProgramTest(unittest.TestCase):
             self.assertIn(text, process.stderr)
 
     def interrupt(self, output, overrides, ends):
-        """Begins a study of designs or a search, and goes on with it, as often as there are pairs (number, signal) in `ends`: each time it gets
-        the signal as soon as so many designs are finished, and leaves no results."""
+        """Starts or resumes a design study or search once for each (number, signal) in `ends`: the signal is sent as soon as this number of
+        designs is finished, and no results are written."""
         for number, how in ends:
             with open(self.folder / "interrupted.log", "w+", encoding="utf-8") as log:
                 process = subprocess.Popen([EXECUTABLE, "scene.prm", "--output", output, *settings(overrides)], cwd=self.folder, stdout=log, stderr=log)
@@ -191,11 +190,11 @@ class ProgramTest(unittest.TestCase):
             self.assertFalse((self.folder / output / "run.json").exists())
 
     def known_designs(self, output):
-        """Files that hold the designs that an interrupted study has solved."""
+        """Files of the designs solved by an interrupted study."""
         return sorted((self.folder / f"{output}.checkpoint").glob("design-*.result"))
 
     def assert_same_eigenvalues(self, actual, expected, tolerance=SAME):
-        """Holds two lists against each other, whatever the order within clusters."""
+        """Compares two lists of eigenvalues, independent of the order within clusters."""
         self.assertEqual(len(actual), len(expected))
         self.assertLessEqual(distance(actual, expected), tolerance)
 
@@ -207,7 +206,7 @@ def read_table(path):
 
 
 def design_tables(folder):
-    """All tables of a study of designs but the times, which no two runs share."""
+    """All tables of a design study without the times."""
     return {name: [{key: value for key, value in row.items() if key != "time [s]"} for row in read_table(folder / f"{name}.csv")]
             for name in ("designs", "design_thresholds", "design_modes")}
 
@@ -228,7 +227,7 @@ def real_frequencies(folder, table="real_modes.csv"):
 
 
 def distance(actual, expected):
-    """Largest relative difference of eigenvalues, each held against the nearest one that is left."""
+    """Largest relative difference of eigenvalues, each compared with the nearest remaining one."""
     left, largest = list(expected), 0.0
     for value in actual:
         nearest = min(left, key=lambda other: abs(other - value))
@@ -248,5 +247,5 @@ def numbers(path):
 
 
 def contents(folder):
-    """Every file below a folder with what it holds."""
+    """Every file below a folder with its content."""
     return {str(path.relative_to(folder)): path.read_bytes() if path.is_file() else None for path in sorted(folder.rglob("*"))}

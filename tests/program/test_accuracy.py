@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""`Study = accuracy` as a user runs it, on a small scene."""
+"""`Study = accuracy` and `Accuracy = ...` on a small model."""
 
 import math
 import unittest
@@ -11,7 +11,7 @@ BAND = 2500
 STUDY = ["Study=accuracy", f"Band/Maximum frequency={BAND}", "Accuracy study/Mesh factors=1, 2, 5", "Accuracy study/Outlines=true area",
          "Accuracy study/Largest number of dofs=20000",
          "Accuracy study/Elements=trilinear, incompatible modes", "Accuracy study/Bases=real + 1st-ord. two-sided"]
-# What `Mesh factors = 2` makes of the scene
+# Settings equivalent to `Mesh factors = 2`
 TWICE = ["Geometry/Nodes per pin face=19", "Geometry/Element size=0.04", "Geometry/Pin layers=4", "Geometry/Disc layers=2",
          "Geometry/Outlines=true area"]
 METHODS = ["full order", "real + 1st-ord. two-sided"]
@@ -31,7 +31,7 @@ class Accuracy(ProgramTest):
         return [row for row in self.modes if all(row[names[key]] == value for key, value in condition.items())]
 
     def test_rows(self):
-        """A row for each mesh, element and method, with numbers of one meaning."""
+        """A row for each mesh, element and method, with consistent numbers."""
         self.assertEqual([(row["mesh factor [-]"], row["element"], row["method"]) for row in self.meshes],
                          [(factor, element, method) for factor in "12" for element in ("trilinear", "incompatible modes") for method in METHODS])
         for name in ("accuracy", "accuracy_modes", "accuracy_orders"):
@@ -41,7 +41,7 @@ class Accuracy(ProgramTest):
         self.assertIn("yes", [row["Pareto front"] for row in self.meshes])
 
     def test_frequencies_are_those_of_a_run_on_that_mesh(self):
-        """The finer mesh made by hand, solved by another study."""
+        """Compared with a stability run on the same mesh."""
         found = self.run_scene("twice", *TWICE, f"Band/Maximum frequency={1.1 * BAND}")
         expected = [float(row["frequency [Hz]"]) for row in read_table(found / "complex_modes.csv")]
         rows = self.of(element="trilinear", factor="2", method="full order")
@@ -51,7 +51,7 @@ class Accuracy(ProgramTest):
                 self.assertLess(min(abs(float(row["frequency [Hz]"]) / frequency - 1) for frequency in expected), 1e-8)
 
     def test_kinds(self):
-        """Full order has no reduction error; on every mesh discretisation is what a basis and full order have in common."""
+        """Full order has no reduction error; a basis has the discretisation error of full order."""
         for row in self.of(method="full order"):
             if row["counterpart"] != "none":
                 self.assertEqual(float(row["reduction frequency error [%]"]), 0)
@@ -79,9 +79,8 @@ class Accuracy(ProgramTest):
         self.assertEqual(sorted({row["reference"] for row in self.orders}), ["no", "yes"])
 
 
-
 class Goal(ProgramTest):
-    """`Accuracy = 5 %` beside quadratic elements on a mesh that the program does not use to set itself."""
+    """`Accuracy = 5 %` compared with quadratic elements on an independent mesh."""
 
     @classmethod
     def setUpClass(cls):
@@ -101,7 +100,7 @@ class Goal(ProgramTest):
                 found, exact = ([float(mode[column]) for column in ("frequency [Hz]", "divergence rate [%]")] for mode in (row, by_label[row["label"]]))
                 self.assertLess(abs(found[0] / exact[0] - 1), 0.05, row["label"])
                 self.assertLess(abs(found[1] - exact[1]), 0.5, row["label"])
-                # An estimate, not a bound: frequencies of two meshes may agree by chance
+                # The estimate is not a bound: frequencies on two meshes may agree by chance
                 estimated = float(row["estimated frequency error by the mesh [%]"]) / 100
                 self.assertLess(abs(found[0] / exact[0] - 1), 2 * estimated + 0.005, row["label"])
                 n_compared += 1
@@ -114,7 +113,7 @@ class Goal(ProgramTest):
         self.assertNotIn("chooses it", process.stdout)
 
     def test_unstable_modes_that_are_not_converged_are_named(self):
-        """Half of a percentage point of the divergence rate is less than strong friction makes of coarse meshes."""
+        """With strong friction, errors on coarse meshes exceed 0.1 percentage points of the divergence rate."""
         process = self.call_scene("strong", "Accuracy=1 %", "Operation/Friction coefficient=1.5", f"Band/Maximum frequency={BAND}")
         self.assertEqual(process.returncode, 0, process.stderr)
         rows = read_table(self.folder / "strong" / "complex_modes.csv")

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Parameters far from the default: the spectrum is right and complete, or the run ends early and says why.
+"""Parameters far from the default: the spectrum is right and complete, or the run stops early with a reason.
 
-What is found is compared with eigenvalues of the exported matrices that scripts/extremes/oracle.py refines with 64 bits of mantissa.
+References are eigenvalues of the exported matrices that scripts/extremes/oracle.py refines with a 64-bit mantissa.
 """
 
 import os
@@ -47,7 +47,7 @@ def real_values(folder):
 
 
 class Extremes(ProgramTest):
-    """In the scene of program.py, unless said otherwise."""
+    """In the model of program.py, unless stated otherwise."""
 
     def succeed(self, output, *overrides):
         process = self.call("scene.prm", "--output", output, *settings(overrides))
@@ -59,7 +59,7 @@ class Extremes(ProgramTest):
         self.assertFalse((self.folder / "refused").exists())
 
     def assert_spectrum(self, folder, friction_coefficient=0.4, slowest=0.0, tolerance=1e-6):
-        """The tables hold every eigenvalue inside the radius and no other, beyond the slowest."""
+        """The tables contain exactly the eigenvalues between `slowest` and the radius."""
         solution = oracle.Oracle(exported_matrices.read_matrices(folder), friction_coefficient, BAND / (2 * np.pi)).solve(RADIUS)
         self.assertLess(solution.error, 0.01 * tolerance)
         inside = [root for root in solution.values if slowest < abs(root) <= RADIUS and root.imag <= BAND]
@@ -70,7 +70,7 @@ class Extremes(ProgramTest):
     # ------------------------------------------------------------ real eigenvalues
 
     def test_large_friction(self):
-        """Static divergence is listed, counted and named; what leaves the radius is left out by both solvers."""
+        """Static divergence is listed, counted and reported; both solvers omit eigenvalues outside the radius."""
         n_real = set()
         for friction_coefficient in (3, 10):
             folder, screen = self.succeed("friction", *SMALL, f"{FRICTION}={friction_coefficient}", MATRICES)
@@ -102,7 +102,7 @@ class Extremes(ProgramTest):
     # ------------------------------------------------------------ wide bands
 
     def test_small_pins_in_a_wide_band(self):
-        """The block of the solver is large beside the pins' dofs."""
+        """The block of the solver is large compared with the dofs of the pins."""
         folder, screen = self.succeed("wide", "Band/Maximum frequency=10000")
         found, counted = map(int, re.search(r"Real modes .* (\d+) found, (\d+) counted", screen).groups())
         self.assertEqual(found, counted)
@@ -138,7 +138,7 @@ class Extremes(ProgramTest):
             self.assertIn(f"note: trilinear elements lock at {place}", process.stdout)
             self.assertIn(change, process.stdout)
             self.assertNotIn("lock", self.dry_run(*SMALL, override, "Discretization/Element=incompatible modes").stdout)
-        # Soft along axis 3: one of three ratios alone does not lock
+        # Soft along axis 3: a single large ratio does not cause locking
         self.assertNotIn("lock", self.dry_run(*SMALL, constants("1.9e9, 1.9e9, 0.5e9", "0.1, 0.1")).stdout)
 
 

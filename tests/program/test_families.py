@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Designs that share a mesh: solved by one basis, held against the same designs solved alone, interrupted and resumed, and told apart
-from designs that cannot share it."""
+"""Designs that share a mesh and a basis: compared with the same designs solved individually, interrupted and resumed."""
 
 import signal
 
@@ -43,7 +42,7 @@ class FamiliesTest(ProgramTest):
             self.assertLessEqual(abs(float(one["mu [-]"]) - float(other["mu [-]"])),
                                  float(one["uncertainty [-]"]) + float(other["uncertainty [-]"]))
 
-        # Within what both estimate, mode by mode
+        # Each mode within the estimated errors of both
         frequencies = [[float(mode["frequency at smallest mu [Hz]"]) for mode in table if mode["design [-]"] == number]
                        for table in (modes, read_table(single / "design_modes.csv"))]
         self.assertEqual(len(frequencies[0]), len(frequencies[1]))
@@ -58,7 +57,7 @@ class FamiliesTest(ProgramTest):
 
     def test_damped_designs(self):
         damped = ["Study=geometry", "Sweep/Number of friction coefficients=4", "Operation/Radial dissipation=consistent",
-                  "Pin material/Rayleigh beta=1e-6", "Geometry/Element size=0.04"]  # where all designs grow
+                  "Pin material/Rayleigh beta=1e-6", "Geometry/Element size=0.04"]  # on which all designs are unstable
         variables = "Designs/Variables=Pin material/Rayleigh beta = 1e-6, 2e-6; Operation/Load per side = 500, 1000"
         study = self.run_scene("damped", *damped, variables)
         single = self.run_design("damped_single", "3", *damped, variables)

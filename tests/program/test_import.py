@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""scripts/import_mesh.py: the same mesh from several pre-processors gives the same modes; nothing is guessed or left out silently."""
+"""scripts/import_mesh.py: the same mesh from several pre-processors gives the same modes; every omission is reported."""
 
 import itertools
 import json
@@ -32,7 +32,7 @@ def rows(numbers, per_row=10):
 
 
 def abaqus(mesh):
-    """Millimetres; contact and bore as surfaces of element faces, backs of the pads as a set of nodes; bodies named as a designer would."""
+    """Text in millimetres, with contact and bore as surfaces of element faces, backs of the pads as a node set, bodies renamed."""
     lines = ["** a comment", "*NODE"] + [f"{i}, " + ", ".join(repr(1e3 * x) for x in point) for i, point in enumerate(mesh.points, 1)]
     for body, name in NAMES.items():
         lines.append(f"*Element, type=C3D8R, elset={name.lower()}")
@@ -66,7 +66,7 @@ def bulk(mesh, elements, groups):
 
 
 def nastran(mesh):
-    """Bodies and surfaces, the latter as shells."""
+    """Text with bodies, and surfaces as shells."""
     cells = [("CHEXA", body, nodes) for body, nodes in mesh.cells]
     return bulk(mesh, cells + [("CQUAD4", name, nodes) for names, nodes in mesh.faces for name in names], [*mesh.bodies(), *mesh.surfaces()])
 
@@ -77,7 +77,7 @@ def assignments(numbers, mesh):
 
 
 def abaqus_tetrahedra(mesh):
-    """Millimetres; C3D10, whose last two middle nodes Gmsh exchanges, sets of elements, surfaces of element faces, materials."""
+    """Text in millimetres with C3D10, whose last two mid-side nodes Gmsh swaps, element sets, surfaces and materials."""
     lines = ["*NODE"] + [f"{i}, " + ", ".join(repr(1e3 * x) for x in point) for i, point in enumerate(mesh.points, 1)]
     for volume in mesh.volumes():
         lines.append(f"*ELEMENT, TYPE=C3D10, ELSET={volume.upper()}")
@@ -94,7 +94,7 @@ def abaqus_tetrahedra(mesh):
 
 
 def nastran_tetrahedra(mesh):
-    """CTETRA of ten nodes, whose middle nodes are those of Abaqus; surfaces as CTRIA6."""
+    """Text with CTETRA of ten nodes in the order of Abaqus, and surfaces as CTRIA6."""
     cells = [("CTETRA", volume, (*c[:8], c[9], c[8])) for volume, c in mesh.cells]
     return bulk(mesh, cells + [("CTRIA6", *face) for face in mesh.faces], [*mesh.volumes(), *mesh.surfaces()])
 
@@ -156,7 +156,7 @@ class Import(ProgramTest):
             self.assertEqual(len(meshio.read(self.folder / "variant.msh").cells[0].data), len(self.mesh.faces))
 
     def test_engineering_constants(self):
-        """In the axes of an orientation, in x, y and z without one; others are left out."""
+        """In the axes of an orientation, or in x, y and z without one; other axes are omitted."""
         constants = "*ELASTIC, TYPE=ENGINEERING CONSTANTS\n2000., 1500., 500., 0.2, 0.1, 0.15, 800., 300.\n250."
         text = abaqus(self.mesh).replace("*ELASTIC\n2000., 0.1", constants)
         for orientation, is_about_z in (("\n0., 0., 0., 0., 0., 1.\n3, 0.", True), ("\n0., 0., 0., 1., 0., 0.", False)):
@@ -202,7 +202,7 @@ class Import(ProgramTest):
                 self.assert_same_eigenvalues(eigenvalues(self.run_mesh(name)), self.baseline)
 
     def test_brake_of_quadratic_tetrahedra(self):
-        """Two pads of two volumes that do not match the disc: the parameter file written beside the mesh runs."""
+        """Two nonmatching pads of two volumes each: the parameter file written with the mesh runs."""
         mesh = brake()
         mesh.write_msh(self.folder / "tet.msh")
         mesh.write_msh(self.folder / "tet_4.msh", "4.1")
@@ -227,7 +227,7 @@ class Import(ProgramTest):
                 self.imported(source, f"{name}.msh", "--unit", unit, *words, *rubs)
                 overrides = ["Operation/Friction coefficient=0.5", "Output/Mode shapes=none", *materials]
                 self.assert_same_eigenvalues(eigenvalues(self.run_scene(f"out_{name}", *overrides, file=f"{name}.prm")), baseline)
-        # Without them: comments to fill in
+        # Without contact and mounts: comments to fill in
         self.imported("tet.inp", "blank.msh", "--unit", "mm", *words)
         stub = (self.folder / "blank.prm").read_text(encoding="utf-8")
         for line in ("# Surfaces of the disc: disc_bottom, disc_hub, disc_top; of other bodies: pad_outer_face, ", "# set Pairs", "# set Elastic mounts",

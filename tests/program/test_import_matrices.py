@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""From matrices of other programs to a study on the command line: the results are SciPy's on the matrices before they were written."""
+"""From matrices of other programs to a study: results compared with SciPy's for the original matrices."""
 
 import math
 import subprocess

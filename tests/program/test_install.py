@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The installed program, moved to another place."""
+"""The installed program, moved to another folder."""
 
 import os
 import pathlib

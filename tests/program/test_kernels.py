@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""A sweep of twelve pins refines at the same places with the kernels of BLAS for other processors."""
+"""A sweep of twelve pins refines at the same friction coefficients with BLAS kernels for other processors."""
 
 import os
 import pathlib
@@ -12,9 +12,9 @@ from test_sweep import THRESHOLD_TOLERANCE, SweepTest
 
 
 class OtherProcessors(SweepTest):
-    """The default twelve pins, whose modes are close to each other, on a coarse mesh: kernels of BLAS for other processors round differently."""
+    """The default twelve pins, which have close modes, on a coarse mesh: BLAS kernels for other processors round differently."""
 
-    # What each of them asks of this one
+    # Processor flags that the kernels require
     KERNELS = {"Prescott": {"pni"}, "Haswell": {"avx2", "fma"}, "SkylakeX": {"avx512f", "avx512dq", "avx512bw", "avx512vl", "avx512cd"}}
 
     def refinements(self, kernels):

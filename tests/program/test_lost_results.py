@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Results are never lost: two runs into one folder, files of the user, killed runs, full disks, folders that cannot be written."""
+"""Results are never lost: concurrent runs in one folder, files of the user, killed runs, full disks, read-only folders."""
 
 import json
 import os
@@ -15,12 +15,12 @@ from program import EXECUTABLE, ProgramTest, contents, settings
 
 TABLES = ["component_modes.csv", "real_modes.csv", "complex_modes.csv"]
 
-# Every mode shape: half of the time of the run goes into writing.
+# All mode shapes, so that writing takes half of the time
 LONG = ["Output/Mode shapes=all", "Output/Animation frames=3"]
 
 
 def limit_files(size):
-    """Lets a process write no file beyond this size [byte]."""
+    """Limits the size of files of a process [byte]."""
     return lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
 
 
@@ -34,7 +34,7 @@ class LostResults(ProgramTest):
         self.addCleanup(self.clean)
 
     def clean(self):
-        """Everything beside the scene and the first results goes."""
+        """Removes everything except the parameter file and the first results."""
         for path in self.folder.iterdir():
             if path.name not in ("results", "scene.prm"):
                 shutil.rmtree(path) if path.is_dir() and not path.is_symlink() else path.unlink()
@@ -63,14 +63,14 @@ class LostResults(ProgramTest):
             time.sleep(0.005)
 
     def assert_complete(self, folder):
-        """Every file that the record lists is there with its size."""
+        """Every file in the record exists with its size."""
         record = json.loads((folder / "run.json").read_text(encoding="utf-8"))
         sizes = record["files [byte]"]
         self.assertLessEqual({*TABLES, "parameters.prm", "mesh.msh"}, set(sizes))
         self.assertEqual({name: (folder / name).stat().st_size for name in sizes}, sizes)
 
     def refused(self, mentions, *words):
-        """Before any work."""
+        """The run is rejected before meshing."""
         before = contents(self.folder)
         process = self.call(*words)
         self.assertEqual(contents(self.folder), before)
@@ -137,7 +137,7 @@ class FullDisks(LostResults):
         self.assert_message(subprocess.CompletedProcess(process.args, 1, *streams), [name, cause])
 
     def test_limited_sizes(self):
-        """The first file beyond the limit is named, whoever writes it."""
+        """The first file beyond the limit is named, independent of the library that writes it."""
         sizes = json.loads((self.run_scene("whole", *self.EVERYTHING) / "run.json").read_text(encoding="utf-8"))["files [byte]"]
         copy = self.copy()
         before = contents(copy)

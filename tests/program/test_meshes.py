@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Meshes as other programs write them: names, tags, handedness, and what is said of those that cannot be read."""
+"""Meshes written by other programs: names, tags, handedness, and messages for unsuitable meshes."""
 
 import math
 import pathlib
@@ -13,13 +13,13 @@ from tet_mesh import BRAKE, brake, clutch
 
 
 def renamed(mesh, old, *new, where=lambda nodes: True):
-    """Gives the faces of one name, or some of them, other ones."""
+    """Renames the faces with one name, or some of them."""
     mesh.faces = [(tuple(n for name in names for n in (new if name == old and where(nodes) else [name])), nodes) for names, nodes in mesh.faces]
     return mesh
 
 
 def left_handed(mesh, where):
-    """Exchanges bottom and top of some cells; returns their number."""
+    """Swaps bottom and top of some cells; returns their number."""
     chosen = [where(body, nodes) for body, nodes in mesh.cells]
     mesh.cells = [(body, nodes[4:] + nodes[:4] if left else nodes) for left, (body, nodes) in zip(chosen, mesh.cells)]
     return sum(chosen)
@@ -33,7 +33,7 @@ class Meshes(ProgramTest):
 
     @classmethod
     def write_mesh(cls, mesh, name, version=4, mount="disc_bore", **options):
-        """Writes a mesh and its parameters; returns the name of these."""
+        """Writes a mesh and its parameter file; returns the name of the latter."""
         (mesh.write_4 if version == 4 else mesh.write_2)(cls.folder / f"{name}.msh", **options)
         (cls.folder / f"{name}.prm").write_text(PARAMETERS.format(file=f"{name}.msh", mount=mount), encoding="utf-8")
         return f"{name}.prm"
@@ -52,7 +52,7 @@ class Meshes(ProgramTest):
             with self.subTest(version=version):
                 results = self.run_mesh(renamed(disc_with_pads()[0], "disc_bore", *names), f"two_{version}", version=version, mount="hub")
                 self.assert_baseline(results)
-        # What the run leaves has all names
+        # The mesh written by the run has all names
         (self.folder / "left.prm").write_text(PARAMETERS.format(file=results / "mesh.msh", mount="hub"), encoding="utf-8")
         self.assert_baseline(self.run_scene("out_left", file="left.prm"))
 
@@ -79,13 +79,13 @@ class Meshes(ProgramTest):
         for elementary in (0, 1):
             with self.subTest(elementary):
                 self.assert_baseline(self.run_mesh(disc_with_pads()[0], f"tag_{elementary}", version=2, elementary=elementary))
-        # A mount on the bore alone, although the rim has its entity
+        # The mount is on the bore only, although the rim has the same entity
         mesh, faces = disc_with_pads()
         mesh.name(faces["disc"]["+a"].values(), "disc_rim")
         self.assert_baseline(self.run_mesh(mesh, "tag_rim", version=2, elementary=1))
 
     def edited_refused(self, mentions, change, **options):
-        """The text of a mesh is changed."""
+        """Changes the text of a mesh file, which must then be rejected."""
         prm = self.write_mesh(disc_with_pads()[0], "edited", **options)
         path = self.folder / "edited.msh"
         path.write_text(change(path.read_text(encoding="utf-8")), encoding="utf-8")
@@ -131,7 +131,7 @@ class Meshes(ProgramTest):
                 hard = eigenvalues(self.run_scene(f"out_hard_{kind}", mounts.format("1e18"), file=f"clamps_{kind}.prm"))
                 self.assert_same_eigenvalues(hard, self.baseline, 1e-4)
                 self.assertGreater(len(soft), len(self.baseline))
-                # Without the mount nothing holds them
+                # Without the mount they are unconstrained
                 mesh.faces = [face for face in mesh.faces if "back" not in face[0]]
                 loose = self.write_mesh(mesh, f"loose_{kind}")
                 self.dry_run_refused(["'pin_bottom'" if kind == "one" else "'pin_", "'pin_clamp'"], file=loose)
@@ -163,7 +163,7 @@ def turned(angle):
 
 
 def part_pad(mesh, pad, of_nodes=slice(0, 10)):
-    """The backplate has nodes of its own where it meets the lining."""
+    """Gives the backplate separate nodes on its interface with the lining."""
     lining, own = {node for volume, nodes in mesh.cells if volume == f"{pad}_lining" for node in nodes[of_nodes]}, {}
     for index, (volume, nodes) in enumerate(mesh.cells):
         if volume == f"{pad}_backplate":
@@ -175,7 +175,7 @@ def part_pad(mesh, pad, of_nodes=slice(0, 10)):
 
 
 def bonded_brake(pad_parts=None):
-    """Backplates are meshed separately, with other divisions than the linings if these are given, and have a face to tie."""
+    """A brake whose backplates are meshed separately, optionally with other divisions, and have a face to tie."""
     mesh = brake(backplate_parts=pad_parts, has_bond=True)
     if pad_parts is None:
         for pad in ("pad_outer", "pad_inner"):
@@ -212,13 +212,13 @@ class Tetrahedra(ProgramTest):
             with self.subTest(n_processes=n_processes):
                 tied = self.run_scene(f"out_tied_{n_processes}", TIED, "Output/Mode shapes=unstable", file=file, n_processes=n_processes)
                 self.assert_same_eigenvalues(eigenvalues(tied), expected)
-        # Held in the plane of their backs, pressed along the axis
+        # Supported in the plane of their backs, pressed along the axis
         pressed = ("Steady sliding/Contact state=steady sliding", "Steady sliding/Control=pressure", "Operation/Radial dissipation=consistent",
                    "Steady sliding/Pressed faces=pad_outer_back, pad_inner_back",
                    "Mounts/Elastic mounts=disc_hub: 1e12, 1e12, 1e12; pad_outer_back: 2e10, 2e10, 0; pad_inner_back: 2e10, 2e10, 0")
         self.assert_same_eigenvalues(*(eigenvalues(self.run_scene(f"out_pressed_{name}", *pressed, *tied, file=f"{name}.prm"))
                                        for name, tied in (("brake", ()), ("bonded", (TIED,)))))
-        # Faces that do not match converge to the same: both are coarse
+        # Nonmatching faces give similar eigenvalues; both meshes are coarse
         other = eigenvalues(self.run_scene("out_other", TIED, file=self.write_brake(bonded_brake(5), "bonded_5")))
         self.assertEqual(len(other), len(expected))
         self.assert_same_eigenvalues(other, expected, 0.02)
@@ -229,7 +229,7 @@ class Tetrahedra(ProgramTest):
         volumes = "Materials/Volumes="
         file = self.write_brake(clutch(), "clutch")
         values = eigenvalues(self.run_scene("out_clutch", pairs, held("1e12"), volumes, file=file))
-        # Mirrored about the plane between the discs it is the same
+        # Mirroring about the plane between the discs changes nothing
         mirrored = self.write_brake(clutch().moved(lambda x, y, z: (x, y, -z)), "mirrored")
         self.assert_same_eigenvalues(eigenvalues(self.run_scene("out_mirrored", pairs, held("1e12"), volumes, file=mirrored)), values)
         other = eigenvalues(self.run_scene("out_soft", pairs, held("1e11"), volumes, file=file))
@@ -258,7 +258,7 @@ class Tetrahedra(ProgramTest):
             return mesh
 
         def middle_at(part, beside=0.0):
-            """The middle node of the last element's first edge, along that edge and beside it."""
+            """Moves the mid-side node of the last element's first edge along and off that edge."""
             def change(mesh):
                 nodes = mesh.cells[-1][1]
                 first, last = mesh.points[nodes[0]], mesh.points[nodes[1]]
@@ -316,7 +316,7 @@ class Tetrahedra(ProgramTest):
                 self.dry_run_refused(mentions, *overrides, file=self.write_brake(spoiled(change), "spoiled"))
 
     def test_energy_of_contact_springs(self):
-        """The sensitivity of a frequency to the stiffness is half of the share of the springs' energy."""
+        """The relative sensitivity of a frequency to the stiffness is half the energy share of the springs."""
         def rows(stiffness):
             pairs = "Contact/Pairs={0}: 1, {2!r}; {1}: 1, {2!r}".format("disc_top / pad_outer_face", "disc_bottom / pad_inner_face", stiffness)
             results = self.run_scene(f"out_{stiffness}", pairs, "Operation/Friction coefficient=0", file=self.write_brake(brake()))
@@ -332,7 +332,7 @@ class Tetrahedra(ProgramTest):
             self.assertAlmostEqual(float(other["frequency [Hz]"]) / float(row["frequency [Hz]"]) - 1, share * change / 2, delta=1e-3 * change)
 
     def test_difference_from_a_coarser_mesh(self):
-        """Estimated errors are the differences between two runs, where the counterpart is alone."""
+        """For isolated counterparts, estimated errors are the differences between two runs."""
         coarse, fine = (self.write_brake(brake(n_parts), f"brake_{n_parts}") for n_parts in (12, 16))
         found, expected = (read_table(self.run_scene(f"out_{file}", *overrides, file=file) / "complex_modes.csv")
                            for file, overrides in ((fine, ["Discretization/Coarser mesh=brake_12.msh"]), (coarse, ["Band/Maximum frequency=5250"])))

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Options that print and compute nothing, and the parameter files that come with the program."""
+"""Options that only print, and the parameter files of the program."""
 
 from program import SOURCE, ProgramTest, contents
 
 
 class Options(ProgramTest):
     def printed(self, *arguments):
-        """What a call prints that succeeds and writes nothing."""
+        """The output of a call, which must succeed without writing files."""
         before = contents(self.folder)
         process = self.call(*arguments)
         self.assertEqual((process.returncode, process.stderr), (0, ""))

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Anybody's geometry: what it may do, what is understood of it, what is refused, and what is kept of it."""
+"""Custom geometries: permissions, variables, the summary, and rejected geometries."""
 
 import re
 import shutil
@@ -8,7 +8,7 @@ import shutil
 from blocks import BLOCKS, HEXAHEDRA, SURFACES, VOLUMES
 from program import SOURCE, ProgramTest, settings
 
-# Two boxes, one on the other
+# Two stacked boxes
 SCRIPT = BLOCKS + HEXAHEDRA + VOLUMES + SURFACES
 COARSE = ("Geometry/Disc layers=1", "Geometry/Pin layers=1", "Geometry/Element size=0.04")
 
@@ -22,10 +22,10 @@ class OwnGeometry(ProgramTest):
     def geometry_refused(self, mentions, text, *overrides):
         self.dry_run_refused(mentions, f"Geometry/File={self.write('other.geo', text)}", "Mounts/Elastic mounts=", *overrides)
 
-    # ------------------------------------------------------ what a file may do
+    # ------------------------------------------------------------- permissions
 
     def test_geometry_reaches_nothing_but_the_mesh(self):
-        """tests/geometry/mesher.cc has every statement and what ends Gmsh."""
+        """tests/geometry/mesher.cc covers all statements and terminations of Gmsh."""
         self.write("part.geo", 'x = 1;\nSystemCall "touch trace";')
         self.geometry_refused(["starts a program", "part.geo, line 2", "Allow shell commands"], 'Include "part.geo";')
         # A mesh in name, a script in content
@@ -79,7 +79,7 @@ class OwnGeometry(ProgramTest):
         self.assertIn(note, self.understood(*own))
         self.assertNotIn("value of section Geometry", self.understood(*own, "Geometry/Disc thickness=0.03"))
 
-    # ------------------------------------------------------- what is understood
+    # ----------------------------------------------------------------- summary
 
     def test_summary(self):
         text = self.understood()
@@ -92,7 +92,7 @@ class OwnGeometry(ProgramTest):
         self.assertRegex(text, r"pin_top_2: 0\.0318 m high.*; bar waves 556\.3 m/s")
 
     def doubted(self, mentions, *overrides, refused):
-        """What was understood is said with its doubts, also where the run is then refused for its waves."""
+        """The summary has warnings, also if the run is then rejected because of its shear waves."""
         process = self.dry_run(*overrides)
         for word in ["disc: radii", "warning: ", *mentions]:
             self.assertIn(word, process.stdout)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The plots of every study: which there are, what they say of themselves, and what becomes of them."""
+"""The plots of every study: their number, labels, files and repetition."""
 
 import json
 import os
@@ -34,11 +34,11 @@ def draw(folder, *options, environment=None):
 
 @unittest.skipIf(figures is None, "python3-matplotlib is not installed")
 class Studies(ProgramTest):
-    """The pictures of every study; what they show of tables is asserted of small ones by tests/scripts/test_plot_results.py."""
+    """The pictures of every study; tests/scripts/test_plot_results.py checks their content for small tables."""
 
     scene = COARSE
 
-    # Overrides and pictures; those of families are as many as there are pages of them
+    # Overrides and names of pictures; families may have several
     STUDIES = {"stability": ([], {"complex_plane"}),
                "sweep": (["Study=sweep", "Operation/Radial dissipation=consistent", "Sweep/Last friction coefficient=0.45",
                           "Sweep/Number of friction coefficients=10", "Sweep/Complex plane at=0.4, 0.22", "Sweep/Map parameter=load",
@@ -48,7 +48,7 @@ class Studies(ProgramTest):
                              {"reduction_errors", "reduction_cost"}),
                "ingredients": (["Study=ingredients", "Ingredients/Divergence tolerance=0.2"], {"ingredients"}),
                "sensitivity": (["Study=sensitivity", "Sensitivity/Thresholds=false"], {"sensitivity"})}
-    WITH_NAMES_ABOVE = ("ingredients", "sensitivity")  # names stand above each other
+    WITH_NAMES_ABOVE = ("ingredients", "sensitivity")  # bar charts with a name for each row
 
     def test_pictures(self):
         for name, (overrides, expected) in self.STUDIES.items():
@@ -66,7 +66,7 @@ class Studies(ProgramTest):
                     getattr(self, f"assert_bars_of_{name}")(results, drawn[name].axes)
 
     def assert_holds_something(self, picture):
-        """And nothing is cut off at its rim."""
+        """The picture is neither empty nor cut off at its edges."""
         pixels = matplotlib.image.imread(picture)[..., :3]
         self.assertGreater(min(pixels.shape[:2]), 400, picture)
         ink = pixels.min(axis=2) < 0.9
@@ -74,7 +74,7 @@ class Studies(ProgramTest):
         self.assertFalse(any(edge.any() for edge in (ink[0], ink[-1], ink[:, 0], ink[:, -1])), picture)
 
     def assert_says_what_it_shows(self, name, figure):
-        """Axes have units, and the key has what is drawn."""
+        """Axes have units, and the legend is complete."""
         self.assertTrue(any(text.get_text() for text in figure.texts), name)
         for axes in figure.axes:
             if name not in self.WITH_NAMES_ABOVE:
@@ -111,7 +111,7 @@ class Studies(ProgramTest):
 
 @unittest.skipIf(figures is None, "python3-matplotlib is not installed")
 class Pictures(ProgramTest):
-    """What becomes of pictures when they are drawn again and when the run is repeated."""
+    """Pictures that are drawn again, and pictures of a repeated run."""
 
     scene = COARSE
 
@@ -145,7 +145,7 @@ class Pictures(ProgramTest):
             self.assertTrue(self.picture.with_suffix(f".{ending}").read_bytes().startswith(start))
         self.assertEqual(self.listed(), {f"plots/{path.name}": path.stat().st_size for path in self.picture.parent.iterdir()})
         self.assertEqual(len(self.listed()), 3)
-        # The same tables give the same bytes
+        # Identical tables give identical files
         self.assertEqual(self.picture.read_bytes(), (elsewhere / "complex_plane.svg").read_bytes())
 
     def test_pictures_of_the_user_stay_and_stale_ones_go(self):
@@ -185,7 +185,7 @@ class Refusals(ProgramTest):
 
 
 class WithoutMatplotlib(ProgramTest):
-    """scripts/run.sh in a checkout of which everything is built."""
+    """scripts/run.sh in a fully built checkout."""
 
     scene = COARSE
 
@@ -200,7 +200,7 @@ class WithoutMatplotlib(ProgramTest):
             encoding="utf-8")
         (cls.checkout / "build" / "release").mkdir(parents=True)
         (cls.checkout / "build" / "release" / "squeal").symlink_to(pathlib.Path(EXECUTABLE).resolve())
-        # In place of the package
+        # Replaces the package
         (cls.folder / "nothing").mkdir()
         (cls.folder / "nothing" / "matplotlib.py").write_text("raise ModuleNotFoundError('none', name='matplotlib')\n", encoding="utf-8")
 
@@ -211,7 +211,7 @@ class WithoutMatplotlib(ProgramTest):
         return process
 
     def test_what_is_missing_is_said(self):
-        # A function of this name hides what bash would find
+        # A shell function overrides the command
         for environment in ({"PYTHONPATH": str(self.folder / "nothing")}, {"BASH_FUNC_command%%": "() { return 1; }"}):
             process = self.run_script(**environment)
             line, = [line for line in process.stderr.splitlines() if "No plots" in line]
@@ -228,7 +228,7 @@ class WithoutMatplotlib(ProgramTest):
         self.run_script()
         picture = self.checkout / "results" / "scene" / "plots" / "complex_plane.svg"
         self.assertTrue(picture.is_file())
-        # A call that leaves no results draws nothing
+        # A call without results draws nothing
         picture.unlink()
         self.assertNotIn("plots", self.run_script("--", "--dry-run").stdout)
         self.assertFalse(picture.exists())

@@ -2,8 +2,7 @@
 
 """The same results on several processes as on one: solvers, steady sliding, damping, and a sweep.
 
-These runs are apart from the other tests because they need cores of their own: processes that share theirs with other
-programs wait for each other.
+These tests are separate because they need exclusive cores: processes that share cores with other programs wait for each other.
 """
 
 import json
@@ -19,7 +18,7 @@ COMPONENT_SHAPES = "Output/Component mode shapes=true"
 
 
 def cells_of(file):
-    """Body and corners [um] of each cell, in an order of their own."""
+    """Body and corners [um] of each cell, sorted."""
     return sorted((body, *(tuple(round(1e6 * x) for x in point) for point in (file.points[corner] for corner in file.cells[cell])))
                   for cell, body in enumerate(file.cell_fields["component"]))
 
@@ -31,7 +30,7 @@ class Solvers(ProgramTest):
         for name, overrides in {"Krylov": [], "quadratic": ["Discretization/Element=quadratic"], "residual iteration": RESIDUAL_ITERATION,
                                 "residual iteration, dissipation": [DISSIPATION, *RESIDUAL_ITERATION]}.items():
             one = self.run_scene("one", UNSTABLE_SHAPES, COMPONENT_SHAPES, *overrides)
-            # Three processes see no other code than two, four do
+            # Three processes run the same code as two, four do not
             for n_processes in {"Krylov": (2, 4), "residual iteration, dissipation": (3,)}.get(name, (2,)):
                 with self.subTest(name, n_processes=n_processes):
                     several = self.run_scene("several", UNSTABLE_SHAPES, COMPONENT_SHAPES, *overrides, n_processes=n_processes)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The study of reduced bases: sizes, errors, verdicts, and what it refuses."""
+"""The study of reduced bases: sizes, errors, verdicts, and rejected parameters."""
 
 import math
 import unittest
@@ -52,7 +52,7 @@ class Friction(ProgramTest):
                 self.assertLess(float(row["orthonormality [-]"]), 1e-10)
 
     def test_charges(self):
-        """A basis is charged for what it rests on; modes for one solution that holds no more than the wanted ones."""
+        """The cost of a basis includes the sets that it requires; modes are computed once without surplus."""
         costs = {row["set"]: row for row in read_table(self.results / "reduction_costs.csv")}
         for name, wanted in (("free modes of the disc", DISC), ("free modes of the pins", PINS_FREE),
                              ("sliding modes of the pins", PINS_SLIDING), ("real coupled modes", self.n_real)):
@@ -79,7 +79,7 @@ class Friction(ProgramTest):
         self.assertLess(worst["residual-grown 1e-07"], worst["residual-grown 0.0001"])
 
     def test_verdicts(self):
-        """Where a basis decides it decides as the reference does, and the accurate one decides all modes that matter."""
+        """An accurate basis decides all modes with a relevant rate, with the verdicts of the reference."""
         verdicts = set()
         for row in read_table(self.results / "reduction_modes.csv"):
             rate = float(row["reference divergence rate [%]"])
@@ -117,7 +117,7 @@ class Frictionless(ProgramTest):
         self.assertEqual([row["component modes"] for row in rows if row["basis"] == "mixed"], ["28/20/12", "36/36/16", "9000 Hz"])
         truncations = [tuple(row.values()) for row in read_table(results / "reduction_truncations.csv")]
         self.assertEqual(truncations[:2], [("28/20/12", "28", "20", "12"), ("36/36/16", "36", "36", "16")])
-        # More component modes, nearer frequencies; and no Ritz value below the exact one
+        # More component modes reduce the error; Ritz values are upper bounds
         frequency = {}
         for row in read_table(results / "reduction_modes.csv"):
             self.assertGreater(float(row["frequency [Hz]"]), float(row["reference frequency [Hz]"]) * (1 - 1e-9))

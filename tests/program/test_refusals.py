@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Every refusal: one message that says what, where and what to change, a non-zero exit status, nothing written."""
+"""Rejected runs: one message that says what, where and what to change, a nonzero exit status, and no files."""
 
 import os
 import resource
@@ -12,7 +12,7 @@ from program import EXECUTABLE, ProgramTest, contents, settings
 
 
 class Refusals(ProgramTest):
-    """In a folder with an earlier result, which every refusal must leave alone."""
+    """Runs in a folder with earlier results, which must not change."""
 
     @classmethod
     def setUpClass(cls):
@@ -34,14 +34,14 @@ class Refusals(ProgramTest):
         return self.refused(mentions, "scene.prm", "--output", output, *settings(overrides), n_processes=n_processes)
 
     def sliding_refused(self, mentions, *overrides, n_processes=1):
-        """Refused before anything is assembled or factorised, and no folder is made for results."""
+        """The run is rejected before assembly and factorisation, without a results folder."""
         process = self.scene_refused(mentions, "Steady sliding/Contact state=steady sliding", *overrides, n_processes=n_processes,
                                      output="new")
         for step in ("Assembly", "Steady sliding", "Component modes"):
             self.assertNotIn(step, process.stdout)
 
     def test_limit_of_threads(self):
-        """With a stack larger than the address space no thread can be started: one does the work."""
+        """With a stack larger than the address space no thread can be started: the run uses one."""
         stack, (_, most) = 1 << 47, resource.getrlimit(resource.RLIMIT_STACK)
         if most != resource.RLIM_INFINITY:
             self.skipTest("the size of stacks is limited")
@@ -104,7 +104,7 @@ class Refusals(ProgramTest):
                              "Steady sliding/Gaps=pin_top_1: 1e-5; pin_top_2: 2e-6")
 
     def test_disc_that_nothing_holds(self):
-        # Friction pushes the disc in its plane; this is known after a factorisation only.
+        # Friction pushes the disc in its plane, which is only known after a factorisation
         self.scene_refused(["nothing holds the disc in its plane", "Mounts/Elastic mounts"], "Steady sliding/Contact state=steady sliding",
                            "Mounts/Elastic mounts=", output="new")
 
@@ -115,7 +115,7 @@ class Refusals(ProgramTest):
         self.scene_refused(["CHOLMOD", "on 2 processes", "MUMPS"], "Linear algebra/Factorization=CHOLMOD", n_processes=2)
 
     def test_pin_off_the_disc(self):
-        """tests/geometry has what else is refused of geometries and meshes."""
+        """tests/geometry covers other invalid geometries and meshes."""
         mesh = MeshFile(self.results / "mesh.msh")
         for node in mesh.nodes_of("pin_top_1"):
             _, (x, y, z) = mesh.nodes[node]

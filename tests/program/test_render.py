@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Pictures that scripts/render_mode.py and render_contact.py draw of results; those of modes where VTK and a (virtual) screen are there."""
+"""Pictures by scripts/render_mode.py, which requires VTK and a (virtual) display, and scripts/render_contact.py."""
 
 import importlib.util
 import os
@@ -18,7 +18,7 @@ except ImportError:
 
 
 def coloured(pixels):
-    """Which pixels are neither white, grey nor black."""
+    """Mask of the pixels that are neither white, grey nor black."""
     return pixels.max(axis=-1) - pixels.min(axis=-1) > 20
 
 
@@ -56,19 +56,19 @@ class Mode(RenderTest):
 
     def test_draws_several_side_by_side(self):
         pixels = self.picture((800, 565), *self.modes[:3], "--width", "800")
-        # Rows count from below: two rows of modes above the colour bar, the last of the four places empty
+        # Rows from below: two rows of modes above the colour bar, the last of four panels empty
         for row, column, is_there in ((1, 0, True), (1, 1, True), (0, 0, True), (0, 1, False)):
             place = pixels[70 + 250 * row:300 + 250 * row, 400 * column:400 * (column + 1)]
             self.assertEqual(coloured(place).mean() > 0.1, is_there, (row, column))
 
     def test_bodies_at_rest_are_left_out(self):
-        """The disc, of a mode of pins that hardly move it."""
+        """The disc is omitted in a mode of the pins that hardly moves it."""
         mode = [path for path in self.modes if "_F1" in path.name][-1]
         shares = [(self.picture((1600, 1000), mode, "--bodies", bodies).min(axis=-1) < 250).mean() for bodies in ("all", "moving")]
         self.assertLess(shares[1], 0.8 * shares[0])
 
     def test_points_without_cells(self):
-        """Of a system: spheres, coloured where they move."""
+        """Points of a system are drawn as coloured spheres."""
         self.run_scene("mesh", "Output/Write system=full")
         modes = self.run_scene("points", "System=mesh/system", "Output/Mode shapes=all") / "modes"
         pixels = self.picture((800, 500), sorted(modes.glob("complex_*.vtu"))[3], "--width", "800", "--view", "top")
@@ -85,7 +85,7 @@ class Contact(RenderTest):
         return self.picture((1600, 1000), self.results / "sliding_state_contact.vtu", *arguments)
 
     def test_pressure_is_largest_where_the_disc_enters(self):
-        # Seen from above the disc slides to the left at the upper edge, which is outwards.
+        # Seen from above, the disc slides to the left at the upper edge, which is radially outwards
         blue, yellow = [], []
         faces = self.faces()[200:]
         for y, x in zip(*coloured(faces).nonzero()):
@@ -97,7 +97,7 @@ class Contact(RenderTest):
     def test_arrow_follows_the_rotation(self):
         parameters = self.results / "parameters.prm"
         text = parameters.read_text(encoding="utf-8")
-        # Its head is dark.
+        # The head of the arrow is dark
         centres = []
         for rotation, view in (("positive", "above"), ("negative", "above"), ("positive", "below")):
             parameters.write_text(text + f"subsection Operation\n  set Rotation = {rotation}\nend\n", encoding="utf-8")

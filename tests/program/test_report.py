@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""scripts/report.py: what its page says is what the tables say, and a browser shows it."""
+"""scripts/report.py: its page agrees with the tables, and a browser displays it."""
 
 import html
 import json
@@ -29,7 +29,7 @@ SCENES = {"stability": ("Output/Mode shapes=unstable",),
           # Cells that are stable, unstable and undecided
           "map": ("Study=sweep", "Operation/Radial dissipation=consistent", "Sweep/Compare dissipation=false", "Sweep/Map parameter=load",
                   "Sweep/Number of map values=3", "Sweep/Map friction coefficients=4", *QUICK),
-          # Designs that are solved and refused
+          # Solved and rejected designs
           "designs": ("Study=geometry", "Designs/Variables=Geometry/Pin height = 0.030, 0.034; Pin material/Young modulus = 1.9e9, 1", *QUICK),
           "search": ("Study=search", "Designs/Variables=Geometry/Pin diameter = 0.05 to 0.09; Geometry/Pin height = 0.03 to 0.034",
                      "Search/Samples=3", "Search/Evaluations=5", *QUICK),
@@ -38,7 +38,7 @@ SCENES = {"stability": ("Output/Mode shapes=unstable",),
 # A table of each page, and a column by which it is sorted
 SORTED = {"stability": ("complex_modes", "frequency [Hz]"), "sweep": ("thresholds", "frequency [Hz]"), "map": ("map", "growth rate [1/s]"),
           "designs": ("design_modes", "frequency [Hz]"), "search": ("search", LARGEST), "sensitivity": ("sensitivities", CHANGE)}
-# Titles and keys of a chart: pairs that lie on each other, and those that reach beyond it
+# Titles and legends of a chart that overlap or exceed it
 CROWDED = """
 return [...document.querySelectorAll('.chart')].flatMap(chart => {
   const frame = chart.getBoundingClientRect();
@@ -53,7 +53,7 @@ return [...document.querySelectorAll('.chart')].flatMap(chart => {
 
 
 def browser(width):
-    """Chromium without a screen, or nothing."""
+    """Headless Chromium, or None."""
     try:
         from selenium import webdriver
         from selenium.webdriver.chrome.options import Options
@@ -67,7 +67,7 @@ def browser(width):
     for argument in ("--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
                      f"--window-size={width},900"):
         options.add_argument(argument)
-    # Windows have a least width, screens of telephones do not
+    # Windows have a minimum width, emulated phones do not
     options.add_experimental_option("mobileEmulation", {"deviceMetrics": {"width": width, "height": 900, "pixelRatio": 1.0}})
     options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
     return webdriver.Chrome(service=Service(driver), options=options)
@@ -103,7 +103,7 @@ class Reports(ProgramTest):
         return html.unescape(re.search(r'<h1 id="verdict">(.*?)</h1>', self.page(name))[1])
 
     def section(self, name, which):
-        """The text of a section without its marks."""
+        """The text of a section without tags."""
         return html.unescape(re.sub("<[^>]*>", " ", re.search(rf'<section id="{which}">(.*?)</section>', self.page(name), re.S)[1]))
 
     def test_verdicts_name_what_the_tables_say(self):
@@ -125,7 +125,7 @@ class Reports(ProgramTest):
         self.assertIn('<header class="unstable">', self.page("stability"))
 
     def test_charts(self):
-        """As many curves as branches, as many marks as modes."""
+        """A curve for each branch, a mark for each mode."""
         rows = self.rows("stability", "complex_modes")
         damping = self.charts("stability")["damping"]
         self.assertEqual([len(trace["x"]) for trace in damping["data"]],
@@ -139,7 +139,7 @@ class Reports(ProgramTest):
         self.assertEqual(sum(len(trace["x"]) for trace in curves), len(rows))
         events = self.rows("sweep", "thresholds")
         self.assertEqual(sum(len(trace["x"]) for trace in charts["branches"]["data"][-2:]), len(events))
-        # Of two modes that meet, both have the frequency of the threshold there
+        # Two coalescing modes have the frequency of the threshold there
         first, second = charts["bifurcations"]["data"][:2]
         event = next(row for row in events if first["name"].startswith(f"{row['label']} and {row['partner label']}, "
                                                                        f"{float(row['frequency [Hz]']):.1f} Hz"))
@@ -168,7 +168,7 @@ class Reports(ProgramTest):
         for (value, text), row in zip(cells[0], growing):
             self.assertAlmostEqual(value / float(row[RATE]), 1, delta=1e-5)
             self.assertIn(row["label"], text)
-        # Cells reach half-way to the next load, in the ratio of both
+        # Cells extend to the geometric mean of neighbouring loads
         self.assertAlmostEqual(maps[0]["y"][1] / math.sqrt(100 * 1000), 1)
         self.assertGreater(sum(x is not None for x in limit["x"]), 3)
         self.assertLessEqual(set(names["text"]), {row["label"] for row in growing})
@@ -200,6 +200,7 @@ class Reports(ProgramTest):
             places = [x for trace in choice["data"][:-1] for x in trace["x"]]
             self.assertEqual(sorted(places), sorted(float(row[choice["key"]]) for row in solved))
             self.assertEqual(choice["data"][-1]["x"], [float(best[choice["key"]])])
+
     def test_sensitivity(self):
         rows = self.rows("sensitivity", "sensitivities")
         chart = self.charts("sensitivity")["sensitivity"]
@@ -235,7 +236,7 @@ class Reports(ProgramTest):
             self.assertEqual(re.findall(r"url\((?!data:|none)[^)]{0,60}", text.split("</style>")[0]), [])
 
     def test_belongs_to_the_run(self):
-        """The next run takes the page away with the results that it shows."""
+        """The next run removes the page together with its results."""
         stability = self.folder / "stability"
         record = json.loads((stability / "run.json").read_text(encoding="utf-8"))
         self.assertEqual(record["files [byte]"]["report.html"], (stability / "report.html").stat().st_size)
@@ -245,7 +246,7 @@ class Reports(ProgramTest):
         self.assertFalse((again / "report.html").exists())
 
     def test_how_to_repeat_it(self):
-        """What the page shows goes into a shell as it is."""
+        """The command in the page runs in a shell."""
         for name, overrides in SCENES.items():
             command = html.unescape(re.search(r'<section id="repeat">.*?<pre>(.*?)</pre>', self.page(name), re.S)[1])
             self.assertEqual(shlex.split(command), [EXECUTABLE, "scene.prm", "--output", name, *settings(overrides)])
@@ -279,7 +280,7 @@ class Reports(ProgramTest):
             time.sleep(0.1)
         self.assertEqual([entry for entry in driver.get_log("browser") if entry["level"] == "SEVERE"], [])
         self.assertEqual(driver.find_element("id", "verdict").text, self.verdict(name))
-        # Nothing is wider than the screen, and no part lies on another
+        # Nothing is wider than the screen, and no parts overlap
         self.assertLessEqual(driver.execute_script("return document.documentElement.scrollWidth"), width)
         places = driver.execute_script("return [...document.querySelectorAll('main > *')].map(e => { const r = e.getBoundingClientRect();"
                                        " return [r.top, r.bottom]; })")
@@ -292,7 +293,7 @@ class Reports(ProgramTest):
             self.assertEqual(shown, len(traces))
 
     def use(self, driver, name):
-        """What does not depend on the width."""
+        """Checks that do not depend on the width."""
         self.assert_tables(driver, name)
         self.assert_sorts(driver, self.folder / name / f"{SORTED[name][0]}.csv", SORTED[name][1])
         if name == "stability":
@@ -306,7 +307,7 @@ class Reports(ProgramTest):
         self.assertIn("table-" + SORTED[name][0], [table for table, _ in shown])
 
     def assert_sorts(self, driver, path, name):
-        """A click on a head sorts its column, a second one the other way round."""
+        """A click on a header sorts its column, a second click reverses the order."""
         column = list(read_table(path)[0]).index(name)
         values = sorted(float(row[name]) for row in read_table(path) if row[name])
         head = driver.find_elements("css selector", f"#table-{path.stem} thead th")[column]

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What a run leaves behind, and that it can be repeated from it."""
+"""The files of a run, and its repetition from these."""
 
 import json
 import math
@@ -16,7 +16,7 @@ from program import COMPLEX_COLUMNS, EXECUTABLE, SAME, ProgramTest, distance, ei
 from squeal.parameter_file import read_parameters
 from squeal.vtu_file import VtuFile
 
-# Of displacements in files [-]
+# Resolution of displacements in files [-]
 STEP = 1 / 65536
 
 TABLES = ["component_modes.csv", "real_modes.csv", "complex_modes.csv"]
@@ -56,7 +56,7 @@ class Results(ProgramTest):
             shares = [float(value) for name, value in row.items() if name.startswith("strain energy")]
             self.assertAlmostEqual(sum(shares), 100, places=6)
             self.assertGreaterEqual(min(shares), 0)
-        # Ascending; of two that are equal to rounding the decaying one comes first.
+        # Ascending, except for modes that are equal to rounding
         for lower, upper in zip(frequencies, frequencies[1:]):
             self.assertLessEqual(lower, upper * (1 + SAME))
         self.assertLessEqual(frequencies[-1], 5000)
@@ -67,7 +67,7 @@ class Results(ProgramTest):
             self.assertAlmostEqual(damping, -2 * rate, delta=1e-9 * abs(rate))
             self.assertLessEqual(float(row["residual [-]"]), 1e-9)
             self.assertTrue(0 < float(row["share [-]"]) <= 1)
-        # Without dissipation growth and decay come in pairs.
+        # Without dissipation, growing and decaying modes form pairs
         values = eigenvalues(self.results)
         self.assertLess(distance([-value.conjugate() for value in values], values), 1e-9)
 
@@ -107,7 +107,7 @@ class Results(ProgramTest):
             self.assertEqual(set(VtuFile(picture).cell_types), {9})
 
     def test_energy(self):
-        """Of each growing mode all bodies together add up to its divergence rate; pins have friction, the disc has none by itself."""
+        """Contributions of all bodies add up to the divergence rate of a growing mode; friction is assigned to the pins."""
         rows = read_table(self.results / "energy.csv")
         modes = read_table(self.results / "complex_modes.csv")
         growing = [number for number, row in enumerate(modes, start=1) if row["unstable [-]"] == "1"]
@@ -139,12 +139,12 @@ class Results(ProgramTest):
                              [row["label"] for row in read_table(self.results / name)])
 
 
-# Of the complex modes the unstable ones, of the others all
+# Unstable complex modes, and all component and real modes
 SHAPES = ("Output/Mode shapes=unstable", "Output/Component mode shapes=true", "Output/Real mode shapes=true")
 
 
 class Repetition(ProgramTest):
-    """Files and folders may have any name, and standard streams may be closed: the parameters of a run repeat it."""
+    """The parameter file of a run repeats it, with any file names, and with closed standard streams."""
 
     BAND = ("--set", "Band/Maximum frequency=1000")
 
@@ -250,14 +250,14 @@ class Shapes(ProgramTest):
                     self.assertEqual([face.get("timestep") for face in faces], [entry.get("timestep") for entry in entries])
                     self.assertEqual([self.results / face.get("file") for face in faces], [path for path in everything if path not in files])
                 self.assertEqual([self.results / entry.get("file") for entry in entries], files)
-                # As texts, as ParaView finds them
+                # ParaView distinguishes times by their texts
                 times = [entry.get("timestep") for entry in entries]
                 self.assertEqual(len(set(times)), len(times))
                 self.assertEqual(sorted(times, key=float), times)
                 frequencies = real_frequencies(self.results, f"{table}.csv")
                 for path, time in zip(files, times):
                     number = next(int(word) for word in path.stem.split("_") if word.isdigit())
-                    # As far away as modes of one frequency are many
+                    # Times of modes with equal frequencies are shifted to be distinct
                     self.assertAlmostEqual(float(time) / frequencies[number - 1], 1, delta=2e-6 * len(times))
 
     @unittest.skipUnless(shutil.which("pvpython") and shutil.which("xvfb-run"), "ParaView is not installed")
@@ -283,5 +283,5 @@ class Shapes(ProgramTest):
         self.assertIn("ProgrammableFilter", session.read_text(encoding="utf-8"))
 
 def file_text(label):
-    """A label as it stands in the names of files."""
+    """A label as in file names."""
     return label.replace(" -", "_minus").replace(" +", "_plus")

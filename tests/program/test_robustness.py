@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Samples of uncertain parameters: against closed forms, and against runs at full order."""
+"""Samples of uncertain parameters, compared with closed forms and runs at full order."""
 
 import json
 import math
@@ -9,7 +9,7 @@ import unittest
 from program import ProgramTest, read_table, settings
 from squeal.reporting import content
 from squeal.results import Results
-import test_systems  # its classes of tests stay there
+import test_systems  # as a module, so that its tests are not run again
 from test_systems import FLUTTER, flutter_terms
 
 BOX = ("Operation/Friction coefficient = uniform 0.1 to 0.6; Pin material/Young modulus = normal 100 %, 5 % for each pin; "
@@ -17,7 +17,7 @@ BOX = ("Operation/Friction coefficient = uniform 0.1 to 0.6; Pin material/Young 
 
 
 def quantile(values, part, n):
-    """Value below which a part of n values lies, of which the largest may be missing; None where these lie."""
+    """Quantile of n values, of which the largest may be missing; None if it is among these."""
     place = part * (n - 1)
     number = int(place)
     values = sorted(values)
@@ -138,19 +138,19 @@ class SearchOfSystem(test_systems.SystemTest):
                 self.assertEqual(row["probability of squeal or doubt [%]"], row["probability of squeal [%]"] + row["undecided samples [%]"])
             best = min(rows, key=lambda row: row[column])
             self.assertEqual(rows[-1][f"best {column}"], best[column])
-            # The probability of 300 samples is constant over a range
+            # The probability from 300 samples is piecewise constant
             self.assertAlmostEqual(best["x"], 0.3, delta=0.01 if goal == "quantile" else 0.05)
 
             said = content.content(Results(results))
             self.assertIn(f"number {int(best['design [-]'])} is the best", json.dumps(said, ensure_ascii=False))
 
-            # The same samples once more
+            # The same samples again
             again = self.run_scene("again", "Robustness/Sobol indices=false", file=str(results / "best.prm"))
             squeal = self.rows(again, "probabilities")[0]
             self.assertEqual(squeal["probability of squeal [%]"], best["probability of squeal [%]"])
             rates = [row["divergence rate [%]"] or 0. for row in self.rows(again, "samples")]
             self.assertAlmostEqual(best["divergence rate at 90 % of the samples [%]"], quantile(rates, 0.9, 300), delta=1e-6)
-            # Other ones, and their worst at full order
+            # Other samples, and the worst of them at full order
             checked = self.rows(results, "best_design")
             self.assertEqual([row["seed [-]"] for row in checked], [1., 2.])
             self.assertEqual(checked[0][column], best[column])
@@ -226,7 +226,7 @@ class OfScene(ProgramTest):
         best = min(rows, key=lambda row: float(row[column]))
         for seed, row in zip((1, 2), read_table(results / "best_design.csv")):
             again = self.run_scene(f"again_{seed}", "Robustness/Sobol indices=false", f"Robustness/Seed={seed}", file=str(results / "best.prm"))
-            # But for samples that one of two bases does not decide
+            # Except for samples that one of the two bases does not decide
             squeal = read_table(again / "probabilities.csv")[0]
             for one, other in ((row, squeal), (squeal, row)):
                 doubt = float(other["undecided samples [%]"]) + 1e-6

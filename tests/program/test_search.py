@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Searches for quiet designs: budgets, what they report, held against single runs and full order; interrupted and resumed."""
+"""Searches for quiet designs: budget and report, compared with single runs and full order; interrupted and resumed."""
 
 import re
 import signal
@@ -43,7 +43,7 @@ class SearchTest(ProgramTest):
         found = max(float(row["divergence rate [%]"]) for row in read_table(sweep / "branches.csv"))
         self.assertAlmostEqual(found, best, delta=1e-3 * best)
         rows = read_table(self.search / "full_order.csv")
-        # The last one is where the sweep found it
+        # The last row is at the worst point of the sweep
         self.assertAlmostEqual(float(rows[-1]["divergence rate [%]"]), best, delta=1e-3 * best)
         for row in rows:
             self.assertLess(float(row["residual [-]"]), 1e-8)
@@ -63,14 +63,14 @@ class SearchTest(ProgramTest):
         n_known = len(self.known_designs("killed"))
         process = self.call("scene.prm", "--output", "killed", *settings(SEARCH))
         self.assertEqual(process.returncode, 0, process.stderr)
-        # Said once, not with every round that comes again
+        # Reported once, not in every repeated round
         self.assertEqual(re.findall("continuing an .*", process.stdout), [f"continuing an interrupted search: {n_known} designs are finished"])
         resumed = self.folder / "killed"
         self.assertEqual(read_table(resumed / "search.csv"), read_table(self.search / "search.csv"))
         self.assertFalse((self.folder / "killed.checkpoint").exists())
 
     def test_what_is_refused(self):
-        """tests/parameters has what is wrong with variables."""
+        """tests/parameters covers invalid variables."""
         for overrides, what in ((["Designs/Variables=Geometry/Pin height = 0.03, 0.04"], "a search needs ranges"),
                                 ([VARIABLES, "Search/Samples=20", "Search/Evaluations=10"], "20 samples"),
                                 ([VARIABLES, "Search/Smallest step=0.2"], "larger than the first")):
@@ -79,7 +79,7 @@ class SearchTest(ProgramTest):
                 self.assertFalse((self.folder / "none").exists())
 
     def test_designs_that_cannot_be_meshed_are_walls(self):
-        """A part of the range cannot be meshed: the search goes on, and ends at a design that can."""
+        """Part of the range cannot be meshed: the search continues and ends at a valid design."""
         folder = self.run_scene("walls", "Study=search", "Designs/Variables=Geometry/Pin diameter = 0.05 to 0.09", "Search/Samples=3",
                                 "Search/Evaluations=6", "Sweep/Number of friction coefficients=4", "Band/Maximum frequency=4000")
         rows = read_table(folder / "designs.csv")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""`Study = sensitivity`: derivatives held against differences of runs with other parameters, and its tables."""
+"""`Study = sensitivity`: derivatives compared with differences of runs, and its tables."""
 
 import math
 
@@ -10,7 +10,7 @@ from program import COARSE, ProgramTest, read_table
 STUDY = "Study=sensitivity"
 NO_THRESHOLDS, NO_GEOMETRY = "Sensitivity/Thresholds=false", "Sensitivity/Geometry=none"
 ITERATED = ["Complex modes/Solver=residual iteration", "Complex modes/Iteration tolerance=1e-12"]
-# Every parameter has a value other than zero
+# All parameters are nonzero
 RICH = ["Operation/Radial dissipation=consistent", "Operation/Friction slope=-0.002", "Operation/Gyroscopic forces=true",
         "Operation/Rotation speed=20", "Operation/Load per side=2000", "Disc material/Rayleigh alpha=2", "Disc material/Rayleigh beta=1e-8",
         "Pin material/Rayleigh alpha=3", "Pin material/Rayleigh beta=2e-8", "Mounts/Elastic mounts=disc_bore: 3e10, 7.8e10, 1.88e10"]
@@ -20,19 +20,19 @@ THRESHOLDS = ["Sweep/First friction coefficient=0.05", "Sweep/Last friction coef
               "Sweep/Tolerance=1e-8", "Sweep/Threshold tolerance=1e-10"]
 
 STEADY = "Steady sliding/Contact state=steady sliding"
-# Beside a travel of some 1e-5 m: two of 28 nodes are open
+# The travel is about 1e-5 m; two of 28 nodes are open
 GAPS = "Steady sliding/Gaps=pin_top_2: 1e-6, 5e-4, -3e-4; pin_bottom_1: 0, -2e-4, 4e-4"
 
-# Twelve digits are printed: what two of a frequency may leave of their difference, over twice the step [-]
+# Rounding of the difference of two frequencies with twelve printed digits, relative [-]
 PRINTED = 5e-12
 
-# Of a parameter, relative [-]
+# Relative step of a parameter [-]
 STEP = 3e-5
 
-# Of a parameter on which thresholds depend, relative [-]
+# Relative step of a parameter for thresholds [-]
 THRESHOLD_STEP = 2e-5
 
-# What the uncertainty of thresholds leaves open of their differences, with respect to ln p [-]
+# Uncertainty of differences of thresholds with respect to ln p [-]
 RESOLUTION = 2e-6
 
 
@@ -64,7 +64,7 @@ def override(path, value):
 # ---------------------------------------------------------------- moving nodes
 
 THICKNESS, HEIGHT, INNER, OUTER, DIAMETER = 0.0463, 0.0318, 0.1505, 0.3155, 0.052
-# Of the scene: component, side, angle [degree]; all pins at one distance from the axis
+# Component -> side, angle [degree]; all pins have the same distance from the axis
 PINS = {"pin_top_1": (1, -10), "pin_top_2": (1, 10), "pin_bottom_1": (-1, -10), "pin_bottom_2": (-1, 10)}
 PIN_RADIUS = 0.2275
 
@@ -78,7 +78,7 @@ GAP = min(2 * PIN_RADIUS * math.sin(math.radians(10)) - DIAMETER, PIN_RADIUS - D
 
 
 def share(pin, x, y, z, component):
-    """How far a node goes along with a pin: all of it, or falling to nothing at other pins, rims and the other face of the disc."""
+    """Share of the motion of a pin at a node: 1 on the pin, decreasing to 0 at other pins, rims and the other face of the disc."""
     if component not in ("disc", pin):
         return 0.0
     if component == pin:
@@ -88,7 +88,7 @@ def share(pin, x, y, z, component):
 
 
 def motion(path, pin):
-    """Velocity of a node by its place and component, as include/squeal/sensitivity/mesh_motions.h has it."""
+    """Velocity of a node by position and component, as in include/squeal/sensitivity/mesh_motions.h."""
     def radial(x, y, component, rim, nearest):
         r = math.hypot(x, y)
         s = max(0.0, (r - nearest) / (rim - nearest)) if component == "disc" else 0.0
@@ -132,7 +132,7 @@ def move_nodes(still, path, motions):
 
 
 def steps_of(slopes, step, most):
-    """Relative changes of parameters, all of which count in their sum, up to `most` steps; the largest slope alone would have one."""
+    """Relative changes of parameters with similar effects, up to `most` steps; a single parameter would have one step."""
     largest = {key: max(map(abs, of_key.values())) for key, of_key in slopes.items()}
     share = max(largest.values()) / len(largest)
     return {key: step * min(most, share / size) for key, size in largest.items()}
@@ -144,15 +144,15 @@ class Sensitivity(ProgramTest):
 
     @classmethod
     def mesh_of_scene(cls, *overrides):
-        """Results with the mesh; no mode of them is looked at."""
+        """Results of a minimal run, for its mesh."""
         return cls.shared("Band/Maximum frequency=1000", "Operation/Friction coefficient=0", *overrides)
 
     def eigenvalues_at(self, *overrides):
         return [eigenvalue(row) for row in read_table(self.run_scene("single", *ITERATED, *overrides) / "complex_modes.csv")]
 
     def check_modes(self, rows, keys, eigenvalues_at, most=100):
-        """Derivatives with respect to the parameters (path, pin), and those of the growth rate by themselves, beside central differences along
-        one direction: an error of any of them shows. `eigenvalues_at` takes changes of the parameters."""
+        """Compares derivatives with respect to the parameters (path, pin), also of the growth rate alone, with central differences along a
+        direction that depends on all of them. `eigenvalues_at` takes changes of the parameters."""
         slopes, here, values = {}, {}, {}
         for key in keys:
             of_key = [row for row in rows if (row["parameter"], row["body"]) == key]
@@ -172,7 +172,7 @@ class Sensitivity(ProgramTest):
                 self.assertLessEqual(abs(error.real), 1e-5 * sum(abs(part.real) for part in parts) + resolution)
 
     def check_parameters(self, scene, paths):
-        """Beside complete runs; returns the names of all parameters."""
+        """Compares with complete runs; returns the names of all parameters."""
         folder = self.run_scene("rich", STUDY, NO_THRESHOLDS, NO_GEOMETRY, "Sensitivity/Tolerance=1e-7",
                                 "Sensitivity/Largest number of modes=4", *scene)
         rows = read_table(folder / "sensitivities.csv")
@@ -183,14 +183,14 @@ class Sensitivity(ProgramTest):
         return set(values)
 
     def test_differences(self):
-        """With every kind of damping, a turning disc, and the reactions of steady sliding; tests/sensitivity has all of materials."""
+        """With all kinds of damping, a rotating disc and steady sliding; tests/sensitivity covers all material constants."""
         paths = [*(f"Operation/{name}" for name in ("Friction coefficient", "Friction slope", "Load per side", "Rotation speed")),
                  "Disc material/Young modulus", "Disc material/Rayleigh beta", "Pin material/Poisson ratio", "Pin material/Rayleigh alpha",
                  "Mounts/Elastic mounts: disc_bore axial"]
         self.assertEqual(len(self.check_parameters([*RICH, STEADY, GAPS], paths)), 17)
 
     def test_modal_damping(self):
-        """The modes to which the damping belongs change with the bodies, the ratios with their frequencies."""
+        """The damped modes change with the bodies, the ratios with their frequencies."""
         ratios = [f"Damping/Modal damping ratio: {frequency} Hz" for frequency in RATIOS]
         paths = ["Disc material/Density", "Operation/Friction coefficient", "Operation/Load per side",
                  "Mounts/Elastic mounts: disc_bore tangential", ratios[1]]
@@ -206,7 +206,7 @@ class Sensitivity(ProgramTest):
         self.check_orthotropic("disc", (210e9, 180e9, 150e9, 0.3, 0.25, 0.2, 80e9, 70e9, 60e9), 7850, "", ("E2", "nu12", "G23"))
 
     def check_orthotropic(self, volume, values, density, axes, checked=()):
-        """Constants compared with complete runs; with E1 all moduli change."""
+        """Compares constants with complete runs; E1 changes all moduli."""
         numbers = dict(zip(("E1", "E2", "E3", "nu12", "nu13", "nu23", "G12", "G13", "G23"), values))
 
         def scene(**changed):
@@ -232,7 +232,7 @@ class Sensitivity(ProgramTest):
         self.check_modes(rows, names, eigenvalues_at)
 
     def test_identities(self):
-        """The unit of force changes nothing, all pins together are the pins, and percentages are what they say."""
+        """Results are independent of the unit of force, derivatives of all pins are sums, and percentages are consistent."""
         folder = self.run_scene("plain", STUDY, NO_THRESHOLDS, "Sensitivity/Tolerance=1e-8")
         rows = read_table(folder / "sensitivities.csv")
         for mode in {row["mode [-]"] for row in rows}:
@@ -259,7 +259,7 @@ class Sensitivity(ProgramTest):
         self.assertEqual(ranking, sorted(ranking, key=abs, reverse=True))
 
     def test_thresholds(self):
-        """dmu_c/dp beside differences of the thresholds of sweeps, of lengths and places on meshes whose nodes have been moved here."""
+        """dmu_c/dp compared with differences of thresholds; for lengths and positions, the nodes of meshes are moved here."""
         folder = self.run_scene("thresholds", STUDY, *THRESHOLDS, "Sensitivity/Geometry=sizes and places")
         rows = [row for row in read_table(folder / "sensitivities_thresholds.csv") if row["derivative of"] != "none"]
         self.assertEqual({row["derivative of"] for row in rows}, {"squared difference of the pair"})
@@ -272,7 +272,7 @@ class Sensitivity(ProgramTest):
         self.check_thresholds(rows, [(poisson, ""), *places], overrides, most=10)
 
     def test_damped_thresholds(self):
-        """The same where damping, also of modes that change with the bodies, makes modes cease to decay one by one in steady sliding."""
+        """The same with damping in steady sliding, where modes lose stability individually."""
         light = {frequency: 0.1 * ratio for frequency, ratio in RATIOS.items()}
         scene = [*RICH, modal(light), STEADY]
         folder = self.run_scene("damped", STUDY, NO_GEOMETRY, *THRESHOLDS, *scene)
@@ -302,26 +302,26 @@ class Sensitivity(ProgramTest):
             before, after = (min((mu for mu, event in others if event == row["event"]), key=lambda mu, here=here: abs(mu - here)) for others in found)
             parts = {key: step * slopes[key][here] for key, step in steps.items()}
             with self.subTest(mu=here, label=row["label"]):
-                # Thresholds are known to 1e-10, that of A0-0 with its small slope of the growth rate to 4e-8
+                # Thresholds are known to 1e-10, that of A0-0, whose growth rate has a small slope, to 4e-8
                 tolerance = 1e-5 * sum(map(abs, parts.values())) + THRESHOLD_STEP * RESOLUTION
                 self.assertLessEqual(abs(sum(parts.values()) - (after - before) / 2), tolerance)
-        # An error of a thousandth of its largest slope stands out for each
+        # The tolerance would detect an error of a thousandth of the largest slope of each parameter
         for key in keys:
             largest = max(map(abs, slopes[key].values())) * steps[key]
             self.assertGreater(1e-3 * largest, 1e-5 * len(keys) * largest + THRESHOLD_STEP * RESOLUTION, key)
 
     def test_geometry(self):
-        """Lengths and places beside runs on meshes whose nodes have been moved here; gaps go along with their pins."""
+        """Lengths and positions compared with runs on meshes whose nodes are moved here; gaps move with their pins."""
         of_all = ("Disc thickness", "Pin height", "Disc inner radius", "Disc outer radius", "Pin diameter")
         self.check_geometry([*RICH, STEADY, GAPS], [*((path, "") for path in of_all), ("Top pin radii", "pin_top_2"),
                                                     ("Bottom pin angles", "pin_bottom_1")])
 
     def test_curved_elements(self):
-        """The same of elements whose edges follow the circle that grows."""
+        """The same with curved elements along the growing circle."""
         self.check_geometry([*RICH, "Discretization/Element=quadratic"], [("Pin diameter", "")], "sizes")
 
     def test_geometry_of_orthotropic_volumes(self):
-        """Cylindrical axes follow the nodes, fixed ones stay."""
+        """Cylindrical axes follow the nodes, fixed axes do not."""
         materials = ("disc: 210e9, 180e9, 150e9, 0.3, 0.25, 0.2, 80e9, 70e9, 60e9, 7850; "
                      "pin_bottom_1: 2e9, 1.5e9, 1e9, 0.25, 0.4, 0.3, 0.8e9, 0.4e9, 0.3e9, 3070; "
                      "pin_top_2: 2e9, 1.5e9, 1e9, 0.25, 0.4, 0.3, 0.8e9, 0.4e9, 0.3e9, 3070")
@@ -337,7 +337,7 @@ class Sensitivity(ProgramTest):
                          lambda changes: self.eigenvalues_at(*scene, *self.moved(changes, *element)), most=10)
 
     def moved(self, changes, *overrides):
-        """The setting that takes the mesh of the scene with its nodes moved."""
+        """The setting for the mesh of the model with moved nodes."""
         motions = [(motion(path.removeprefix("Geometry/"), pin), change) for (path, pin), change in changes.items()]
         move_nodes(self.mesh_of_scene(*overrides), self.folder / "moved.msh", motions)
         return ["Geometry/File=moved.msh"]

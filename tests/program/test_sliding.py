@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Runs about steady sliding: the state of contact, what it does to the modes, and damping."""
+"""Runs about steady sliding: the contact state, its effect on modes, and damping."""
 
 import cmath
 import importlib.util
@@ -16,10 +16,10 @@ CONSISTENT = "Operation/Radial dissipation=consistent"
 SHAPES = ["Output/Mode shapes=all", "Output/Animation frames=0"]
 PINS = ["pin_top_1", "pin_top_2", "pin_bottom_1", "pin_bottom_2"]
 
-# Of the default parameters
+# Default parameters
 FRICTION, SPEED, LOAD = 0.4, 4.0, 1000.0
 
-# Of a value that a field holds in single precision, relative to the largest [-]
+# Error of fields in single precision, relative to the largest value [-]
 SINGLE = 1e-6
 
 
@@ -67,7 +67,7 @@ class SlidingTest(ProgramTest):
     scene = COARSE
 
     def assert_close(self, actual, expected, tolerance):
-        """Holds lists against each other, errors relative to the largest expected number."""
+        """Compares lists, with errors relative to the largest expected number."""
         self.assertEqual(len(actual), len(expected))
         largest = max(map(abs, expected))
         self.assertLessEqual(max(abs(a - b) for a, b in zip(actual, expected)), tolerance * largest)
@@ -111,7 +111,7 @@ class State(SlidingTest):
         for name, pin in self.pins.items():
             with self.subTest(name):
                 self.assertEqual([pin[column] for column in ("nodes [-]", "open nodes [-]", "largest gap [m]", "c_t [N s/m]")], [7, 0, 0, 0])
-                # Friction turns a pin about its clamp: the centre of pressure of a stiff one lies mu times half its height ahead.
+                # Friction tilts a pin about its clamp: a stiff pin's centre of pressure moves by mu times half its height
                 self.assertAlmostEqual(pin["pressure offset along t [m]"], -FRICTION * height / 2, delta=0.05 * FRICTION * height / 2)
                 self.assertGreater(pin["backplate travel [m]"], 0)
                 self.assertGreater(pin["largest pressure [Pa]"], pin["load [N]"] / (math.pi * 0.026**2))
@@ -137,21 +137,21 @@ class State(SlidingTest):
         state = VtuFile(self.results / "sliding_state.vtu")
         ends = [(point, u) for point, u in zip(state.points, state.fields["displacement"]) if abs(abs(point[2]) - 0.05495) < 1e-6]
         self.assertGreater(len(ends), 0)
-        # The clamped ends of the pins have moved with their backplate.
+        # The clamped ends of the pins move with their backplate
         way = self.pins["pin_top_1"]["backplate travel [m]"]
         for (_, _, z), u in ends:
             self.assert_close(u, (0, 0, -math.copysign(way, z)), SINGLE)
 
     def test_state_does_not_matter_without_dissipation(self):
-        # As long as all nodes are closed, reactions enter through the dissipation only.
+        # If all nodes are closed, reactions only enter through the dissipation
         self.assert_same_eigenvalues(eigenvalues(self.run_scene("steady", STEADY)), eigenvalues(self.run_scene("plain")))
 
 
 class Gaps(SlidingTest):
-    """Pins that do not touch, or in part."""
+    """Pins without contact or in partial contact."""
 
     def assert_open_nodes(self, folder):
-        """The fields of state and modes, and the table, agree on what is open; numbers of open nodes."""
+        """Checks that fields and table agree on open nodes; returns the numbers of open nodes."""
         faces = ContactFaces(folder / "sliding_state_contact.vtu")
         modes = sorted((folder / "modes").glob("*_contact.vtu"))
         self.assertGreater(len(modes), 0)
@@ -172,7 +172,7 @@ class Gaps(SlidingTest):
         return [int(pin["open nodes [-]"]) for pin in pins(folder).values()]
 
     def test_short_and_worn_pins(self):
-        # Worn at its trailing edge, away from where friction presses it.
+        # Worn at its trailing edge, where friction reduces the pressure
         results = self.run_scene("results", STEADY, CONSISTENT, "Steady sliding/Gaps=pin_top_1: 2e-5; pin_bottom_2: 0, 4e-4, 0", *SHAPES)
         n_open = self.assert_open_nodes(results)
         self.assertEqual(n_open[:3], [7, 0, 0])
@@ -181,7 +181,7 @@ class Gaps(SlidingTest):
         offsets = [pin["pressure offset along t [m]"] for pin in table.values()]
         self.assertLess(offsets[3], min(offsets[1:3]))
         self.assertEqual([table["pin_top_1"][name] for name in ("load [N]", "largest pressure [Pa]", "c_b [N s/m]")], [0, 0, 0])
-        # Its lowest bending modes are those of a pin that is clamped at one end and free at the other.
+        # The lowest bending modes of the open pin are those of a clamped-free pin
         free = [float(row["frequency [Hz]"]) for row in read_table(results / "component_modes.csv")
                 if row["component"] == "pins" and row["contact"] == "free" and row["label"] == "F1"]
         lowest = [frequency for frequency in real_frequencies(results) if abs(frequency - free[0]) < 1e-6 * free[0]]
@@ -199,7 +199,7 @@ class Independent(SlidingTest):
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
-        # Equal load keeps all pairs; the mesh is that of every run.
+        # Equal load keeps all contact nodes; all runs have the same mesh
         cls.matrices = cls.run_scene("matrices", "Output/Write matrices=true")
 
     def run_case(self, friction, gaps, *overrides):
@@ -208,7 +208,7 @@ class Independent(SlidingTest):
                               "Output/Write matrices=true", *overrides)
 
     def assert_same_state(self, results, contact, friction, compressions, ways):
-        """Loads, ways and open nodes from the table, reactions from the dissipation, which is in proportion to them."""
+        """Compares loads, travel and open nodes of the table, and reactions, to which the dissipation is proportional."""
         import scipy.io
         table = pins(results)
         compression = {name: [p for p, pin in zip(compressions, contact.pins) if pin == name] for name in PINS}
@@ -255,7 +255,7 @@ class Independent(SlidingTest):
 
 
 class Damping(SlidingTest):
-    """Damping of materials, of given modes, and by a falling or rising friction coefficient."""
+    """Damping of materials, modal damping, and damping by the friction slope."""
 
     @classmethod
     def setUpClass(cls):
@@ -264,7 +264,7 @@ class Damping(SlidingTest):
         cls.values = eigenvalues(cls.results)
 
     def test_damping_of_the_mass(self):
-        # With friction too: lambda^2 + alpha lambda takes the place of lambda^2.
+        # With friction, too: lambda^2 + alpha lambda replaces lambda^2
         alpha = 20.0
         expected = []
         for value in self.values:
@@ -275,7 +275,7 @@ class Damping(SlidingTest):
 
     def test_damping_of_the_pins(self):
         beta = 1e-8
-        # Without friction it damps every mode, pins' most: theirs by beta omega / 2, since the disc hardly moves.
+        # Without friction it damps all modes: pin modes by beta omega / 2, since the disc hardly moves
         still = self.run_scene("still", "Operation/Friction coefficient=0", f"Pin material/Rayleigh beta={beta}")
         for value in eigenvalues(still):
             self.assertLessEqual(value.real, 1e-9)
@@ -286,7 +286,7 @@ class Damping(SlidingTest):
             self.assertAlmostEqual(value.real, -beta * abs(value) ** 2 / 2, delta=1e-3 * beta * abs(value) ** 2 / 2)
 
     def test_friction_slope(self):
-        # A rising coefficient resists the sliding, a falling one drives it.
+        # A rising friction coefficient is stabilising, a falling one destabilising
         for state in ([], [STEADY]):
             without = self.run_scene("without", *state) if state else self.results
             sums = {}
@@ -301,7 +301,7 @@ class Damping(SlidingTest):
             self.assertAlmostEqual(sums[-0.01], -sums[0.01], delta=1e-3 * sums[-0.01])
 
     def test_modal_damping(self):
-        # Without friction each mode by itself; 0.01 at 0 Hz, 0.03 at 5000 Hz.
+        # Without friction modes are uncoupled; the ratio is 0.01 at 0 Hz and 0.03 at 5000 Hz
         damped = self.run_scene("damped", "Operation/Friction coefficient=0", "Damping/Modal damping ratio=0: 0.01, 5000: 0.03")
         expected = []
         for frequency in real_frequencies(damped):
@@ -311,11 +311,11 @@ class Damping(SlidingTest):
 
 
 class Shoes(SlidingTest):
-    """Bodies that press on the rim of a ring: their contact normals are radial."""
+    """Bodies pressed on the rim of a ring, with radial contact normals."""
 
     @classmethod
     def write_shoes(cls, name, *parts, n_parts=24):
-        """A ring, and shoes from one part of the circle to another, as NAME.msh and NAME.prm."""
+        """Writes a ring with shoes, each from one part of the circle to another, as NAME.msh and NAME.prm."""
         mesh, levels = HexMesh(), [-0.02, 0, 0.02]
         disc = mesh.block("disc", [0.15, 0.2, 0.25, 0.3], angles(n_parts), levels, is_ring=True)
         mesh.name(disc["-a"].values(), "disc_bore")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Runs that sweep the friction coefficient, held against runs at single friction coefficients."""
+"""Sweeps of the friction coefficient, compared with runs at single friction coefficients."""
 
 import json
 import math
@@ -15,13 +15,13 @@ GRID = ["Sweep/First friction coefficient=0", "Sweep/Last friction coefficient=0
 MAP = ["Sweep/Number of map values=3", "Sweep/Map friction coefficients=4"]
 KRYLOV = ["Complex modes/Solver=Krylov", "Complex modes/Tolerance=1e-11"]
 
-# Of the default parameters
+# Default parameters
 SPEED, LOAD, TOLERANCE, THRESHOLD_TOLERANCE = 4.0, 1000.0, 1e-6, 1e-6
 
-# Twice the tolerance: an estimate is no bound [-]
+# Twice the tolerance, since estimates are not bounds [-]
 DEFAULT_ACCURACY = 2 * TOLERANCE
 
-# Of a growing mode, per radian, and what numbers of a table have lost [-]
+# Least growth per radian of a growing mode, and rounding of numbers in tables [-]
 GROWING, PRINTED = 1e-8, 1e-10
 
 
@@ -35,7 +35,7 @@ def divergence(value):
 
 
 def by_mu(rows):
-    """Rows of a table in lists by friction coefficient, ascending as in the table."""
+    """Friction coefficient -> rows of a table, ascending as in the table."""
     result = {}
     for row in rows:
         result.setdefault(float(row["mu [-]"]), []).append(row)
@@ -71,7 +71,7 @@ class SweepTest(ProgramTest):
         return eigenvalues(cls.alone(mu, *overrides))
 
     def assert_same_modes(self, actual, expected, tolerance):
-        """Holds lambda and growth per radian against those of another run."""
+        """Compares lambda and growth per radian with those of another run."""
         self.assert_same_eigenvalues(actual, expected, tolerance)
         left = list(expected)
         for value in actual:
@@ -80,7 +80,7 @@ class SweepTest(ProgramTest):
             self.assertAlmostEqual(divergence(value), divergence(nearest), delta=tolerance)
 
     def assert_complete(self, folder, suffix=""):
-        """As many modes as counts.csv says, each once, with everything it says in order."""
+        """Checks that branches have the numbers of modes in counts.csv, each branch once per friction coefficient."""
         rows = by_mu(read_table(folder / f"branches{suffix}.csv"))
         counts = read_table(folder / f"counts{suffix}.csv")
         self.assertEqual([float(row["mu [-]"]) for row in counts], list(rows))
@@ -101,14 +101,14 @@ class SweepTest(ProgramTest):
         return self.call_scene(output, SWEEP, *GRID, *overrides)
 
     def screen_of(self, output, *overrides):
-        """What a sweep that succeeds prints."""
+        """The output of a successful sweep."""
         process = self.call_sweep(output, *overrides)
         self.assertEqual(process.returncode, 0, process.stderr)
         return process.stdout + process.stderr
 
 
 class Sweep(SweepTest):
-    """A sweep with consistent radial dissipation, and without it beside."""
+    """A sweep with consistent radial dissipation, and its chart without."""
 
     @classmethod
     def setUpClass(cls):
@@ -142,10 +142,10 @@ class Sweep(SweepTest):
                 self.assertEqual(row["growing [-]"], "1" if rate > GROWING else "0", row)
                 if row["verdict"] == "unstable":
                     self.assertGreater(rate, 0)
-                # Close to where modes meet even larger rates are undecided.
+                # Near coalescence, even larger rates are undecided
                 elif row["refinement [-]"] == "0":
                     self.assertLess(rate, 10 * TOLERANCE, row)
-            # No branch ends before the band does, and each keeps its name.
+            # Branches are complete, and each keeps its label
             branches = {}
             for row in (row for here in rows.values() for row in here):
                 branches.setdefault(row["branch [-]"], []).append(row["label"])
@@ -160,7 +160,7 @@ class Sweep(SweepTest):
                     self.assert_same_modes(modes[mu], self.modes_at(mu, *overrides), DEFAULT_ACCURACY)
 
     def test_complex_plane(self):
-        """The modes of a run at that friction coefficient, also between the values of the sweep."""
+        """Modes agree with a run at that friction coefficient, also between values of the sweep."""
         rows = read_table(self.results / "complex_plane.csv")
         self.assertEqual(list(dict.fromkeys((float(row["mu [-]"]), row["radial dissipation"]) for row in rows)),
                          [(mu, dissipation) for mu in (0.33, 0.4) for dissipation in ("consistent", "none")])
@@ -187,14 +187,14 @@ class Sweep(SweepTest):
                 self.assertIn(row["event"], ("onset", "restabilisation"))
                 self.assertTrue(0 < row["uncertainty [-]"] < 1e-4, row)
                 self.assertEqual(row["partner [-]"] != "", mechanism == "coalescence")
-            # Where one mode of the disc meets one of the pins; of those of the pins several grow at nearly the same value.
+            # A mode that coalesces alone; several pin modes grow at nearly the same value
             row, = [row for row in found if row["label"] == "A1-2 +"]
             step = max(1e-5, row["uncertainty [-]"])
             below, above = (sum(divergence(value) > GROWING for value in self.modes_at(row["mu [-]"] + sign * step, *overrides)) for sign in (-1, 1))
             self.assertEqual(above - below, 1 if row["event"] == "onset" else -1, row)
 
     def test_thresholds_lie_between_the_values_of_the_sweep(self):
-        """The verdicts of a branch change at its thresholds only."""
+        """The verdicts of a branch only change at its thresholds."""
         for suffix in ("", "_without_dissipation"):
             rows = [row for row in read_table(self.results / f"branches{suffix}.csv") if row["refinement [-]"] == "0"]
             events = thresholds(self.results, f"thresholds{suffix}.csv")
@@ -207,14 +207,14 @@ class Sweep(SweepTest):
 
     def test_mode_shapes(self):
         modes = sorted(path.name for path in (self.results / "modes").iterdir())
-        # Named after the mode there, as in a run of its own; a branch is named after the mode with which it begins.
+        # Named after the mode at this friction coefficient, not after the start of the branch
         leader = max(read_table(self.alone(0.4, CONSISTENT) / "complex_modes.csv"), key=lambda row: float(row["divergence rate [%]"]))
         name = f"mu_0.4_{leader['label'].replace(' ', '_')}"
         self.assertEqual(modes, [f"{name}.vtu", f"{name}_contact.vtu"])
         self.assertEqual(sorted(path.name for path in (self.results / "animations").iterdir()), [f"{name}.pvd", f"{name}_frames"])
 
     def test_no_mode_shape_where_none_grows(self):
-        """Who asks for shapes of leading modes and for no complex plane gets the plane there."""
+        """Shapes of leading modes without a complex plane write the plane at the same friction coefficient."""
         screen = self.screen_of("quiet", "Sweep/Last friction coefficient=0.1", "Sweep/Number of friction coefficients=2", CONSISTENT,
                                 "Sweep/Compare dissipation=false", "Sweep/Mode shapes at=0.1", "Output/Mode shapes=unstable")
         self.assertIn("no mode grows at mu = 0.1", screen)
@@ -233,7 +233,7 @@ class Sweep(SweepTest):
             self.assert_same_modes(modes[mu], self.modes_at(mu, CONSISTENT), 2e-8)
 
     def test_maps(self):
-        """Contact damps in proportion to load over speed, and nothing else depends on either."""
+        """Contact damping is proportional to load over speed; nothing else depends on these."""
         by_load = read_table(self.results / "map.csv")
         fast = self.sweep("fast", CONSISTENT, "Sweep/Number of friction coefficients=4", "Sweep/Compare dissipation=false",
                           "Sweep/Map parameter=speed", "Sweep/First map value=1", "Sweep/Last map value=16", *MAP)
@@ -251,7 +251,7 @@ class Sweep(SweepTest):
         self.assertTrue(any(one["unstable modes [-]"] != "0" for one, _ in places.values()))
         for (mu, _), (one, other) in places.items():
             self.assertEqual(one["unstable modes [-]"], other["unstable modes [-]"])
-            # Which of several modes that do not grow is damped least is a matter of rounding.
+            # The least damped of several modes that do not grow depends on rounding
             if one["unstable modes [-]"] != "0":
                 self.assertLessEqual(distance([eigenvalue(one)], [eigenvalue(other)]), DEFAULT_ACCURACY, mu)
                 self.assertEqual(one["label"], other["label"])
@@ -266,7 +266,7 @@ class Sweep(SweepTest):
 
 
 class Onsets(SweepTest):
-    """Where squeal begins, of materials with unequal damping: the same in the summary, all tables and runs at single friction coefficients."""
+    """The onset of squeal with unequal material damping: the same in the summary, all tables and runs at single friction coefficients."""
 
     DAMPED = ["Disc material/Rayleigh beta=1.8e-8", "Pin material/Rayleigh beta=4.5e-7"]
 
@@ -307,7 +307,7 @@ class Onsets(SweepTest):
             self.assertGreater(above, level)
 
     def test_growth_at_the_only_value(self):
-        """It began below: the uncertainty says so, and so does the summary."""
+        """The onset lies below the only value; the uncertainty extends to zero."""
         results = self.sweep("late", *self.DAMPED, "Sweep/First friction coefficient=0.4", "Sweep/Number of friction coefficients=1")
         for row in read_table(results / "onsets.csv"):
             self.assertEqual((row["mu [-]"], row["uncertainty [-]"]), ("0.4", "0.4"))
@@ -323,12 +323,12 @@ class OtherSweeps(SweepTest):
     def test_small_basis(self):
         screen = self.screen_of("small", CONSISTENT, "Sweep/Compare dissipation=false", "Sweep/Maximum basis=40", "Sweep/Tolerance=1e-9",
                                 "Sweep/Count modes at=0.4", "Sweep/Mode shapes at=0.4", "Output/Mode shapes=unstable")
-        # Once, although three tables and files are about them
+        # Reported once, although three outputs are affected
         self.assertEqual(screen.count("at mu = 0.4 the modes miss the tolerance"), 1)
         self.assertIn("operating points miss the tolerance", screen)
         self.assertIn("Sweep/Maximum basis", screen)
         results = self.folder / "small"
-        # Without friction the real modes, which every basis has, are exact
+        # Without friction the real modes in the basis are exact
         self.assertEqual(list(grid_of(results)), [0.0])
         self.assertNotIn("stable: no mode", screen)
         self.assert_within_tolerance(results, 1e-9)
@@ -336,7 +336,7 @@ class OtherSweeps(SweepTest):
 
     def test_end_of_band(self):
         wide = self.sweep("wide", "Sweep/Number of friction coefficients=4")
-        # The branch whose frequency changes most, away from thresholds: the band shall end where that is half way.
+        # The band ends at the mean frequency of the branch whose frequency changes most
         branches = {}
         for row in read_table(wide / "branches.csv"):
             branches.setdefault(row["branch [-]"], []).append(float(row["frequency [Hz]"]))
@@ -378,7 +378,7 @@ class OtherSweeps(SweepTest):
             self.assert_same_modes(found[mu], self.modes_at(mu, STEADY, CONSISTENT), DEFAULT_ACCURACY)
 
     def test_chosen_values_between_contact_sets(self):
-        # Some nodes are open at 0.8, none at 0.4, and more at 1.2.
+        # Some nodes are open at 0.8, none at 0.4, and more at 1.2
         screen = self.screen_of("between", STEADY, "Sweep/First friction coefficient=0.4", "Sweep/Last friction coefficient=1.2",
                                 "Sweep/Number of friction coefficients=2", "Sweep/Count modes at=0.8", "Sweep/Mode shapes at=0.8",
                                 "Output/Mode shapes=unstable")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Systems of matrices in the place of a mesh: against dense eigenvalues and closed forms, written and read back."""
+"""Systems of matrices instead of a mesh: compared with dense eigenvalues and closed forms, written and read back."""
 
 import csv
 import importlib.util
@@ -77,7 +77,7 @@ def flutter_squares(mu):
 
 
 class Flutter(SystemTest):
-    """Two degrees of freedom by hand, with closed forms."""
+    """Two degrees of freedom with closed forms."""
 
     MU_C = (((FLUTTER[0] - FLUTTER[1]) / 2.) ** 2 + FLUTTER[2] ** 2) / (-FLUTTER[2] * FLUTTER[3])
 
@@ -121,7 +121,7 @@ class Flutter(SystemTest):
             self.assertAlmostEqual(2. * math.pi * row["frequency per unit [Hz]"], expected.imag, delta=1e-5 * abs(expected))
 
     def test_refusals(self):
-        """Each mistake gets one message with its file and entry."""
+        """Each mistake has one message with file and entry."""
         singular = [(2, "1", [[1., 0.], [0., 0.]], "symmetric"), (0, "1", [[1., 0.], [0., 0.]], "symmetric")]
         mass, stiffness, friction = flutter_terms()
         cases = [([mass, stiffness, (0, "1", [[1.]], "none")], ["1 rows", "A2.mtx", "terms[3].matrix"]),
@@ -155,7 +155,7 @@ class Flutter(SystemTest):
             self.assert_message(self.call("study.prm", "--output", "refused", "--set", override), mentions)
 
     def test_maximum_rate(self):
-        """Lightly and heavily damped modes, with and without a definite part: those of the QZ algorithm in the rectangle, and as many counted."""
+        """Lightly and heavily damped modes, with and without a definite part: the modes and their number agree with the QZ algorithm."""
         n, end = 16, 2. * math.pi * BAND
         chain = 200. * np.eye(n) - 90. * (np.eye(n, k=1) + np.eye(n, k=-1))
         damping = np.diag(np.where(np.arange(n) % 4 == 1, 24., 0.06 + 0.02 * np.arange(n)))
@@ -174,7 +174,7 @@ class Flutter(SystemTest):
                     self.assertEqual(counts["complex modes counted by the argument principle"], len(expected))
 
     def test_growth_beyond_the_maximum_rate(self):
-        """What grows faster is listed, but not counted; a contour through an eigenvalue is not taken."""
+        """Faster growing modes are listed but not counted; a contour through an eigenvalue is rejected."""
         identity = np.eye(3)
         self.write_system({}, [(2, "1", identity, "symmetric"), (1, "1", np.diag([-3., 0.5, 1.]), "symmetric"), (0, "1", np.diag([90., 100., 110.]), "symmetric")])
         found = self.lambdas(self.study("stability", "Band/Maximum rate=0.3"))
@@ -182,7 +182,7 @@ class Flutter(SystemTest):
         self.assert_message(self.call("study.prm", "--output", "refused", "--set", "Band/Maximum rate=0.5"), ["on the contour", "0.5 1/s", "change Band/Maximum rate"])
 
     def test_no_definite_part(self):
-        """Lagrange multipliers, follower forces and a stiffness without a sign, against the QZ algorithm."""
+        """Lagrange multipliers, follower forces and an indefinite stiffness, compared with the QZ algorithm."""
         n, rng = 12, np.random.default_rng(1)
         stiffness = 200. * np.eye(n) - 100. * (np.eye(n, k=1) + np.eye(n, k=-1))
         follower = 20. * np.triu(rng.uniform(-1., 1., (n, n)), 1)
@@ -219,7 +219,7 @@ class Flutter(SystemTest):
                             ["no definite part", "Output/Write system"])
 
     def test_flutter_with_multiplier(self):
-        """The flutter of two dofs, a third one held by a Lagrange multiplier: its threshold, map and samples, by full order."""
+        """Flutter of two dofs and a third one fixed by a Lagrange multiplier: threshold, map and samples at full order."""
         padded = [(power, coefficient, [[*row, 0., 0.] for row in A] + [[0.] * 4] * 2, symmetry) for power, coefficient, A, symmetry in flutter_terms()]
         mass, stiffness, friction = ([list(row) for row in term[2]] for term in padded)
         mass[2][2] = 1.
@@ -248,7 +248,7 @@ class Flutter(SystemTest):
         self.assertAlmostEqual(squeal_probability, 100. * (1. - self.MU_C), delta=5.)
 
     def test_derivatives_of_expressions(self):
-        """Fast, huge and tiny: the step of differences follows the expression."""
+        """Rapidly varying, huge and tiny values: the step of differences adapts to the expression."""
         for expression, value, theta, rate in (("exp(-t/1e-3)", 1e-3, 1. / math.e, -1e3 / math.e), ("sqrt(t)", 1e12, 1e6, 0.5e-6),
                                                ("1e-6/(t+1e-6)", 1e-6, 0.5, -0.25e6), ("t^1.5", 1e-5, 1e-5 ** 1.5, 1.5 * 1e-5 ** 0.5)):
             self.write_system({"t": (value, 0.5 * value, 2. * value)},
@@ -259,7 +259,7 @@ class Flutter(SystemTest):
             self.assertAlmostEqual(2. * math.pi * row["frequency per unit [Hz]"], expected, delta=1e-6 * abs(expected))
 
     def test_complete_basis(self):
-        """All modes in the band: a sweep needs no more vectors than dofs."""
+        """With all modes in the band, a sweep uses no more vectors than dofs."""
         n = 6
         K = [[200. if i == j else -90. if abs(i - j) == 1 else 0. for j in range(n)] for i in range(n)]
         F = [[40. if j == i + 1 else -25. if j == i - 2 else 0. for j in range(n)] for i in range(n)]
@@ -274,7 +274,7 @@ class Flutter(SystemTest):
         self.assert_message(self.call("study.prm", "--output", "refused"), ["no parameters", "system.json"])
 
     def test_strict_files(self):
-        """Numbers that lenient readers take for others."""
+        """Numbers that lenient readers misread."""
         self.write("study.prm", STUDY.format(study="stability", band=BAND))
         head = "%%MatrixMarket matrix coordinate real "
         for text, mentions in ((head + "general\n2 2 2\n1 1 1.5D2\n2 2 1\n", ["line 3", "1.5D2"]), (head + "general\n2 2 1\n1 1 3,5\n", ["3,5"]),
@@ -343,7 +343,7 @@ class Brake(SystemTest):
         """λ with 0 < Im λ up to the end of the band, from the dense companion form."""
         matrices = [np.zeros((self.N, self.N)) for _ in range(3)]
         for power, coefficient, A, _ in self.terms:
-            matrices[power] += eval(coefficient.replace("^", "**"), {"omega": omega}) * A  # of the lines above
+            matrices[power] += eval(coefficient.replace("^", "**"), {"omega": omega}) * A  # trusted input from setUp()
         K, C, M = matrices
         companion = np.block([[np.zeros_like(K), np.eye(self.N)], [-np.linalg.solve(M, K), -np.linalg.solve(M, C)]])
         values = np.linalg.eigvals(companion)
@@ -363,7 +363,7 @@ class Brake(SystemTest):
                 self.assert_same(found, self.eigenvalues(omega), 1e-8)
 
     def test_accuracy(self):
-        """Backward errors and condition numbers of a definite system have the columns of others."""
+        """Definite systems have backward errors and condition numbers, too."""
         self.write_system({"omega": (2., 1., 4.)}, self.terms)
         results, exact = self.study("stability"), self.eigenvalues(2.)
         for row, value in zip(self.rows(results, "complex_modes"), self.lambdas(results)):
@@ -373,7 +373,7 @@ class Brake(SystemTest):
             self.assertLess(min(abs(value - other) for other in exact), (10. * row["error of lambda [-]"] + 1e-10) * abs(value))
 
     def test_reduction(self):
-        """Bases of modes and their responses: each as good as it claims, the nonsymmetric stiffness being skew here."""
+        """Bases of modes and their responses meet their estimated errors."""
         self.write_system({"omega": (2., 1., 4.)}, self.terms)
         results = self.study("reduction", "Reduction/Snapshots=1, 2.5, 4", "Reduction/Grown tolerances=1e-4, 1e-7")
         bases = {row["basis"]: row for row in self.rows(results, "reduction_bases")}
@@ -417,7 +417,7 @@ class Brake(SystemTest):
             self.assertLess(abs(found - expected), 1e-5 * max(abs(expected), 1e-2 * abs(at[j])))
 
     def test_units(self):
-        """Dofs in units that differ by twelve decades and more, and a massless dof on a spring: the same eigenvalues."""
+        """Dofs in units that differ by up to 14 decades, and a massless dof on a spring, do not change eigenvalues."""
         reference = self.eigenvalues(2.)
         d = 10. ** np.linspace(-7., 7., self.N)
         scaled = [(power, coefficient, d[:, None] * A * d, symmetry) for power, coefficient, A, symmetry in self.terms]
@@ -429,7 +429,7 @@ class Brake(SystemTest):
 
 
 class RoundTrip(SystemTest):
-    """What a mesh writes, read back: the tables of the mesh."""
+    """Systems written by runs on a mesh and read back give the same tables."""
 
     def system_of(self, folder):
         self.write("again.prm", STUDY.format(study="stability", band=5000).replace("= system\n", f"= {folder}/system\n"))
@@ -448,7 +448,7 @@ class RoundTrip(SystemTest):
                     self.assertLess(abs(value - other), SAME * abs(other))
 
     def test_shapes(self):
-        """A point for each node that moves, with the displacement that the mesh has there; the bodies are groups."""
+        """A point for each free node with its displacement; bodies become groups."""
         results = self.run_scene("mesh", "Output/Write system=full", "Output/Mode shapes=all", "Output/Real mode shapes=true")
         again = self.run_scene("again", "Output/Mode shapes=all", "Output/Real mode shapes=true", "System=mesh/system")
         for name, field in (("complex_*", "displacement_real"), ("complex_*", "amplitude"), ("real_*", "amplitude")):
@@ -477,7 +477,7 @@ class RoundTrip(SystemTest):
             self.assertAlmostEqual(sum(row[column] for column in bodies), 100., places=3)
 
     def test_processes(self):
-        """Two processes write and read the points and groups that one does."""
+        """Two processes write and read the same points and groups as one."""
         self.run_scene("mesh", "Output/Write system=full")
         self.run_scene("mesh_2", "Output/Write system=full", n_processes=2)
         found = [self.run_scene(f"again_{n}", "Output/Mode shapes=all", f"System={mesh}/system", n_processes=n) for n, mesh in ((1, "mesh"), (2, "mesh_2"))]
@@ -489,7 +489,7 @@ class RoundTrip(SystemTest):
         self.assertEqual(set(points), set(others))
 
     def test_derivatives(self):
-        """Of the numbers of the parameter file that are factors of terms: the same by the mesh and by its system."""
+        """Derivatives with respect to factors of terms are the same for the mesh and its system."""
         damping = ["Pin material/Rayleigh beta=1e-7", "Disc material/Rayleigh alpha=2", "Materials/Volumes=pin_top_1: 2e9, 0.25, 3000",
                    "Operation/Gyroscopic forces=true", "Mounts/Dashpots=disc_bore: 0, 1e4, 1e4"]
         study = ["Study=sensitivity", "Sensitivity/Thresholds=false", "Sensitivity/Geometry=none", "Sensitivity/Tolerance=1e-10", "Sensitivity/Largest number of modes=3"]
@@ -532,7 +532,7 @@ class RoundTrip(SystemTest):
 
     @unittest.skipUnless(importlib.util.find_spec("scipy"), "needs SciPy")
     def test_independent_solver(self):
-        """SciPy on the files that a mesh writes, read by the Python module."""
+        """SciPy on the system of a mesh, read by the Python module."""
         results = self.run_scene("mesh", "Output/Write system=full", "Operation/Radial dissipation=consistent")
         system = squeal.System.read(results / "system")
         for value in self.lambdas(results)[::9]:

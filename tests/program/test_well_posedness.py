@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Growing waves of a sliding pad beside the continuum, which Chebyshev polynomials solve: doc/well_posedness.md."""
+"""Growing waves of a sliding pad, compared with the continuum solved by Chebyshev polynomials: doc/well_posedness.md."""
 
 import math
 import os
@@ -34,7 +34,7 @@ class Continuum(unittest.TestCase):
 
 class Ring(ProgramTest):
     def test_growth_rates_converge_to_those_of_the_layer(self):
-        """The three waves that grow fastest, on a ring of so many waves that its curvature matters little."""
+        """The three fastest growing waves, on a ring with several waves so that its curvature hardly matters."""
         exact = np.sort([max(values.real[abs(values.imag) < 2 * math.pi * 46e3])
                          for values in (PAD.eigenvalues(n / RADIUS, 1.5, 50) for n in (5, 6, 7))])[::-1]
         errors = []

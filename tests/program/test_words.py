@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What the program says: of wrong values and files, of parameters that a run does not use, and of its results."""
+"""Messages of the program on wrong values, unused parameters and results."""
 
 import os
 import pathlib
@@ -10,7 +10,7 @@ import sys
 
 from program import EXECUTABLE, ProgramTest, read_table, settings
 
-# The default disc and pins on a mesh of some thousand dofs
+# The default disc and pins on a mesh of a few thousand dofs
 COARSE = ["Geometry/Nodes per pin face=7", "Geometry/Element size=0.04", "Geometry/Pin layers=2", "Geometry/Disc layers=2",
           "Output/Mode shapes=none"]
 
@@ -23,7 +23,7 @@ class Words(ProgramTest):
         return process.stdout
 
     def test_reference_of_parameters(self):
-        """doc/parameters.md is what the program says."""
+        """doc/parameters.md agrees with the program."""
         script = pathlib.Path(__file__).resolve().parents[2] / "scripts" / "parameter_reference.py"
         process = subprocess.run([sys.executable, "-B", script, "--check"], capture_output=True, text=True, check=False,
                                  env={**os.environ, "SQUEAL": str(EXECUTABLE)})
@@ -32,7 +32,7 @@ class Words(ProgramTest):
     # ------------------------------------------------------------------ values
 
     def test_refused_values(self):
-        """Name, range, unit, and where the value stands; tests/parameters has every kind."""
+        """Messages have name, range, unit and location of the value; tests/parameters covers all kinds."""
         for value, words in {"Operation/Friction coefficient=-0.1": "Operation/Friction coefficient must lie in 0 ... 10, not -0.1\n",
                              "Operation/Load per side=heavy": "must be a number >= 0 N, not `heavy`\n"}.items():
             with self.subTest(value):
@@ -40,10 +40,10 @@ class Words(ProgramTest):
         name = self.write("value.prm", "subsection Operation\n  set Friction coefficient = 11\nend\n")
         self.dry_run_refused(["where:  file value.prm, line 2\n"], file=name)
 
-    # ------------------------------------------------------- parameters in vain
+    # ------------------------------------------------------- unused parameters
 
     def test_parameters_that_change_nothing(self):
-        """They are named once, before the work, and indeed change nothing."""
+        """Unused parameters are listed once, before the computation, and have no effect."""
         in_vain = {"Operation/Load per side": "500", "Operation/Rotation speed": "7", "Steady sliding/Gaps": "pin_top_1: 1e-5",
                    "Sweep/Tolerance": "1e-5", "Reduction/POD tolerance": "1e-3", "Complex modes/Iteration tolerance": "1e-5"}
         screen = self.screen(*(f"{name}={value}" for name, value in in_vain.items()), output="in_vain")
@@ -74,7 +74,7 @@ class Words(ProgramTest):
         self.assertEqual(sorted(tables.replace("  tables: ", "").split(", ")), sorted(path.name for path in results.glob("*.csv")))
 
     def test_growing_modes_of_the_disc_are_waves(self):
-        """The two of a pair travel opposite ways, and that with regard to the sense in which the disc turns."""
+        """The two modes of a pair travel in opposite directions, which depend on the rotation of the disc."""
         self.write("default.prm", "")
         for rotation in ("positive", "negative"):
             results = self.shared(*COARSE, f"Operation/Rotation={rotation}", file="default.prm")
@@ -87,7 +87,7 @@ class Words(ProgramTest):
             self.assertGreater(float(rows["A0-4 +"]["wave with rotation [-]"]), 0.8, rotation)
 
     def test_growing_modes_have_one_name(self):
-        """Of a doublet the one that grows is `+` in every study."""
+        """The growing mode of a doublet is `+` in every study."""
         self.write("default.prm", "")
         sweep = ["Study=sweep", "Sweep/First friction coefficient=0.3", "Sweep/Last friction coefficient=0.4",
                    "Sweep/Number of friction coefficients=3"]

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What counts as zero does not depend on the band, and a verdict knows how many digits an eigenvalue keeps."""
+"""The threshold for zero is independent of the band, and verdicts account for the digits of an eigenvalue."""
 
 import json
 import math
@@ -21,7 +21,7 @@ except ImportError:
 sys.path.insert(0, str(SOURCE / "scripts"))
 from squeal import exported_matrices
 
-STIFFNESS = 1e4  # of a very soft mount [N/m³]
+STIFFNESS = 1e4  # very soft mount [N/m³]
 BANDS = (1000, 5000)
 
 
@@ -42,7 +42,7 @@ def warnings(folder):
 
 
 def of_a_rigid_disc(folder, stiffness):
-    """Frequencies [Hz] of a rigid disc on its bore, a polygon, which slides on the pins: along x and y ω² = k A / m, about z ω² = k ∫r² dA / J."""
+    """Frequencies [Hz] of a rigid disc mounted at its polygonal bore: along x and y ω² = k A / m, about z ω² = k ∫r² dA / J."""
     nodes = [row for row in read_table(folder / "matrices" / "nodes.csv") if row["component"] == "disc"]
     points = np.array([[float(row[f"{axis} [m]"]) for axis in "xyz"] for row in nodes])
     radii, height = np.hypot(points[:, 0], points[:, 1]), np.ptp(points[:, 2])
@@ -88,7 +88,7 @@ class SoftMount(ProgramTest):
         for folder in self.runs.values():
             with self.subTest(folder.name):
                 rows = read_table(folder / "complex_modes.csv")
-                # Of all modes, and of the slow ones
+                # For all modes, and for slow modes
                 limits = [float(text) for text in re.findall(r"below ([-+.e0-9]+) %", warnings(folder))]
                 self.assertEqual(len(limits), 2, warnings(folder))
                 for row in rows:
@@ -99,7 +99,7 @@ class SoftMount(ProgramTest):
                 counts = record(folder)["counts"]
                 for verdict in ("unstable", "undecided"):
                     self.assertEqual(counts[f"{verdict} modes"], sum(row["verdict"] == verdict for row in rows))
-                # The mode that turns about the axis has neighbours along x and y, or not; along x and y there are two of one frequency
+                # The two modes along x and y have equal frequencies, hence undecided growth
                 self.assertGreater(counts["undecided modes"], 0)
 
 

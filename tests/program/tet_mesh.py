@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""A small brake of quadratic tetrahedra whose faces do not match, which tests write in several formats, move and spoil."""
+"""A small brake of quadratic tetrahedra with nonmatching faces, which tests write in several formats and modify."""
 
 import itertools
 import math
@@ -8,8 +8,9 @@ import random
 
 from hex_mesh import CORNERS, SIDES, angles, cylindrical, write
 
-EDGES = ((0, 1), (1, 2), (2, 0), (3, 0), (2, 3), (1, 3))  # of a tetrahedron in the order of Gmsh's middle nodes; the first three of a triangle
-KUHN = []  # six tetrahedra of a hexahedron, by its corners, all with the edge from the first to the last
+# Edges of a tetrahedron in the order of Gmsh's mid-side nodes; the first three are those of a triangle
+EDGES = ((0, 1), (1, 2), (2, 0), (3, 0), (2, 3), (1, 3))
+KUHN = []  # six tetrahedra of a hexahedron by its corners, which share its main diagonal
 for axes in itertools.permutations(range(3)):
     tetrahedron, corner = [(0, 0, 0)], [0, 0, 0]
     for axis in axes:
@@ -37,7 +38,7 @@ class TetMesh:
         return self._known[key]
 
     def block(self, volume, a, b, c, sides, body=None, is_ring=False):
-        """A grid over radii, angles and heights, cut into tetrahedra; `sides`: side -> name, as in SIDES. Blocks of a body share nodes."""
+        """Adds a grid over radii, angles and heights, cut into tetrahedra; `sides`: side of SIDES -> name. Blocks of a body share nodes."""
         n = [len(a) - 1, len(b) - 1, len(c) - 1]
         last = {"-": lambda axis: 0, "+": lambda axis: n[axis] - 1}
         for cell in itertools.product(*map(range, n)):
@@ -58,13 +59,13 @@ class TetMesh:
                         self.faces.append((name, nodes_of(face, EDGES[:3])))
 
     def moved(self, place, where=lambda volume: True):
-        """Nodes of some volumes move to place(x, y, z)."""
+        """Moves nodes of some volumes to place(x, y, z)."""
         for node in {node for volume, nodes in self.cells if where(volume) for node in nodes}:
             self.points[node] = place(*self.points[node])
         return self
 
     def renumbered(self, seed):
-        """Nodes and elements in another order."""
+        """Permutes nodes and elements."""
         rng = random.Random(seed)
         order = rng.sample(range(len(self.points)), len(self.points))
         self.points = [self.points[node] for node in order]
@@ -104,7 +105,7 @@ class TetMesh:
 
 
 def brake(n_parts=12, n_rings=2, pad_parts=3, backplate_parts=None, has_bond=False):
-    """A ring and two pads of lining and backplate, whose nodes are at other angles and radii than the disc's."""
+    """A ring and two nonmatching pads of lining and backplate."""
     mesh, t = TetMesh(), 0.012
     radii = [0.08 + 0.06 * i / n_rings for i in range(n_rings + 1)]
     mesh.block("disc", radii, angles(n_parts), [-t, t], {"-a": "disc_hub", "+c": "disc_top", "-c": "disc_bottom"}, is_ring=True)
@@ -124,7 +125,7 @@ def brake(n_parts=12, n_rings=2, pad_parts=3, backplate_parts=None, has_bond=Fal
 
 
 def clutch():
-    """Two discs on one axis and a pad between them, which rubs both."""
+    """Two coaxial discs with a pad between them in contact with both."""
     mesh, radii = TetMesh(), [0.08, 0.11, 0.14]
     for disc, low, high, face, side in (("disc_rear", -0.02, -0.008, "rear_face", "+c"), ("disc_front", 0.008, 0.02, "front_face", "-c")):
         mesh.block(disc, radii, angles(12), [low, high], {"-a": f"{disc}_hub", side: face}, body=disc, is_ring=True)
@@ -133,7 +134,7 @@ def clutch():
     return mesh
 
 
-# What a parameter file says of it
+# Parameter file of the brake
 BRAKE = """
 subsection Geometry
   set File = {file}

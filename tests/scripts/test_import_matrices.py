@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""scripts/import_matrices.py: the same matrices from every format give the same system; nothing is guessed."""
+"""scripts/import_matrices.py: the same matrices from all formats give the same system; ambiguous input is rejected."""
 
 import json
 import pathlib
@@ -34,7 +34,7 @@ LABELS = [(node, dof) for node in NODES for dof in (1, 2, 3)]
 
 
 def matrices():
-    """M and K symmetric, G skew, R without symmetry: 9 x 9, as of three nodes with three dofs."""
+    """M and K symmetric, G skew, R nonsymmetric: 9 x 9, for three nodes with three dofs."""
     random = np.random.default_rng(1)
     sparse_part = random.random((9, 9)) * (random.random((9, 9)) < 0.4)
     return {"M": np.diag(random.uniform(1, 2, 9)) + 0.01 * (sparse_part + sparse_part.T), "K": 1e6 * (np.diag(np.arange(1.0, 10)) + sparse_part + sparse_part.T),
@@ -76,7 +76,7 @@ class ImportMatrices(unittest.TestCase):
         (self.folder / name).write_text(text, encoding="utf-8")
 
     def call(self, files, more=None, **of_terms):
-        """The process of an import whose terms have these entries of the configuration."""
+        """The process of an import with these entries of its terms."""
         terms = [{"name": name, **TERMS[name], **source, **of_terms.get(name, {})} for name, source in files.items()]
         config = {"parameters": {"omega": {"value": "4*_pi", "lower": "2*_pi", "upper": "8*_pi", "unit": "rad/s"}, "mu": {"value": 0.5}}, "terms": terms,
                   **(more or {})}
@@ -118,7 +118,7 @@ class ImportMatrices(unittest.TestCase):
         self.assert_rejected_again(files, "`powr` is unknown", "term 2", G={"powr": 1})
 
     def assert_rejected_again(self, files, *words, **of_terms):
-        """After a success, whose folder is removed."""
+        """As assert_rejected(), after removing the folder of a previous success."""
         subprocess.run(["rm", "-rf", self.folder / "system"], check=True)
         self.assert_rejected(files, *words, **of_terms)
 
@@ -135,7 +135,7 @@ class ImportMatrices(unittest.TestCase):
             group["data"], group["ir"], group["jc"] = columns.data, columns.indices.astype("u8"), columns.indptr.astype("u8")
             group.attrs["MATLAB_sparse"] = np.uint64(9)
         head = b"MATLAB 7.3 MAT-file, Platform: GLNXA64".ljust(124) + b"\0\2IM"
-        # HDF5 begins behind a block of 512 bytes
+        # HDF5 begins after a block of 512 bytes
         (self.folder / "all.mat").write_bytes(head.ljust(512, b"\0") + (self.folder / "all.h5").read_bytes())
         self.assert_imported({name: {"file": "all.mat", "variable": name} for name in ("M", "R")})
 
@@ -157,7 +157,7 @@ class ImportMatrices(unittest.TestCase):
         self.assert_rejected_again({**files, "R": {"file": "R.rua"}}, "cannot be read", "R.rua")
 
     def test_abaqus(self):
-        """One triangle of symmetric matrices, rows by node and dof, held dofs left out."""
+        """One triangle of symmetric matrices, rows by node and dof, fixed dofs omitted."""
         for name, matrix in self.matrices.items():
             self.write(f"{name}.mtx", "** a comment\n" + abaqus(matrix, half=name in ("M", "K")))
         files = {name: {"file": f"{name}.mtx"} for name in self.matrices}
@@ -166,7 +166,7 @@ class ImportMatrices(unittest.TestCase):
         rows = (self.folder / "system" / "rows.csv").read_text(encoding="utf-8").splitlines()
         self.assertEqual(rows[:3] + rows[-1:], ["row,node,dof", "1,11,1", "2,11,2", "9,20,3"])
         self.assert_rejected_again(files, "one triangle", "K.mtx", K={"symmetry": "none"})
-        # A dof that is held
+        # A fixed dof
         self.write("K.mtx", abaqus(self.matrices["K"], half=True) + "11,2,11,2,1e36\n")
         process = self.call({**files, "K": {"file": "K.mtx", "scale": 1e-3}})
         self.assertIn("1 dofs are fixed", process.stdout)
@@ -211,7 +211,7 @@ class ImportMatrices(unittest.TestCase):
         self.assert_imported({"M": {"file": "model.op4", "variable": "MAA"}, "R": {"file": "model.op4", "variable": "RAA"}}, 1e-12)
 
     def test_configuration_of_the_page(self):
-        """That of doc/python.md imports matrices of four dofs."""
+        """The configuration in doc/python.md imports matrices of four dofs."""
         text, = re.findall(r"```yaml\n(.*?)```", (ROOT / "doc" / "python.md").read_text(encoding="utf-8"), flags=re.DOTALL)
         upper = np.triu(np.ones((4, 4)), 1)
         scipy.io.savemat(self.folder / "matrices.mat", {"M": np.eye(4), "G": upper - upper.T, "D": upper})

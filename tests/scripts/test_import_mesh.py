@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""scripts/import_mesh.py: what Exodus, MED and VTK call volumes and surfaces; formats that are not read are refused."""
+"""scripts/import_mesh.py: volumes and surfaces in Exodus, MED and VTK files; unsupported formats are rejected."""
 
 import pathlib
 import subprocess
@@ -30,7 +30,7 @@ EXODUS_SIDES = ((0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (0, 4, 7, 3), (0, 3, 2
 
 
 def places(points, elements):
-    """Names and corners of elements, whatever the numbers of nodes and elements."""
+    """Names and corners of elements, independent of numbering."""
     return {(name, frozenset(map(tuple, np.round(points[nodes], 9) + 0.0))) for name, nodes in elements}
 
 
@@ -49,7 +49,7 @@ class ImportMesh(unittest.TestCase):
         return subprocess.run([sys.executable, "-B", SCRIPTS / "import_mesh.py", *arguments], cwd=self.folder, text=True, capture_output=True, timeout=60)
 
     def imported(self, file, volumes, surfaces=None):
-        """The .msh that it becomes, and (name, nodes) of its elements."""
+        """The imported .msh, and (name, nodes) of its elements."""
         words = [word for option, names in (("--volume", volumes), ("--surface", surfaces or {})) for name, given in names.items()
                  for word in (option, f"{name}={given}")]
         process = self.imports(file, "imported.msh", "--unit", "m", *words)
@@ -85,7 +85,7 @@ class ImportMesh(unittest.TestCase):
         self.assert_is_mesh(path, BODIES, {name: f"S_{given}" for name, given in SURFACES.items()})
 
     def test_med(self):
-        """Groups: a family is a combination of them, so that a group may be several families."""
+        """Groups, which may consist of several families, since a family is a combination of groups."""
         tags, families, faces = {}, {}, [(names, nodes) for names, nodes in self.mesh.faces]
         for names, given in [((body,), BODIES) for body in BODIES] + [(names, SURFACES) for names, _ in faces]:
             families[tags.setdefault(names, -1 - len(tags))] = [given[name] for name in names]
@@ -103,7 +103,7 @@ class ImportMesh(unittest.TestCase):
         self.assert_is_mesh("brake.med", BODIES, {**SURFACES, "pin_clamp": "NODES"})
 
     def test_vtk(self):
-        """Integers of cells: a set for each value."""
+        """Integer cell data: a set for each value."""
         numbers = {name: i for i, name in enumerate([*BODIES, *SURFACES], 1)}
         blocks = [("hexahedron", name, nodes) for name, nodes in self.cells.items()] + [("quad", name, nodes) for name, nodes in self.faces.items()]
         mesh = meshio.Mesh(self.points, [(shape, nodes) for shape, _, nodes in blocks],
@@ -113,7 +113,7 @@ class ImportMesh(unittest.TestCase):
             self.assert_is_mesh(file, *({name: f"part:{numbers[name]}" for name in names} for names in (BODIES, SURFACES)))
 
     def test_quadratic_tetrahedra(self):
-        """Middle nodes stay on their edges, those of left-handed elements, too."""
+        """Mid-side nodes stay on their edges, also in left-handed elements."""
         source = brake(4, 1, 1)
         volumes, points = source.volumes(), np.array(source.points)
         straight = {volume: np.array([(*nodes[:8], nodes[9], nodes[8]) for v, nodes in source.cells if v == volume]) for volume in volumes}

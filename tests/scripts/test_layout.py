@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The rooms of the code include only from their own row of the table in doc/structure.md or from rows above."""
+"""Folders of the code include only from their own row of the table in doc/structure.md or from rows above."""
 
 import pathlib
 import re
@@ -10,7 +10,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 
 def rooms():
-    """Rooms in the order of the table."""
+    """Folders in the order of the table."""
     table = (ROOT / "doc" / "structure.md").read_text(encoding="utf-8")
     return re.findall(r"^\| `(\w+)/` \|", table, flags=re.MULTILINE)
 

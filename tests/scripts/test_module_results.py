@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""squeal.Results and squeal.run(): what the files hold, with a small program in place of squeal."""
+"""squeal.Results and squeal.run(), with a small program instead of squeal."""
 
 import json
 import math
@@ -108,7 +108,7 @@ class ModuleResults(unittest.TestCase):
             self.assertEqual(program.find_program(), self.folder / "squeal")
 
     def test_import_needs_nothing_else(self):
-        """Tables and parameters are read by the standard library alone."""
+        """Reading tables and parameters only requires the standard library."""
         code = textwrap.dedent(f"""
             import sys
             for name in ("numpy", "scipy", "pandas", "matplotlib", "meshio"):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Tests of scripts/paper.py on small tables; tests/program/test_paper.py has its command."""
+"""Tests of scripts/paper.py on small tables; tests/program/test_paper.py runs the script."""
 
 import csv
 import json
@@ -67,7 +67,7 @@ class TableOne(PaperTest):
         self.assertIsNone(row["with C_b [Hz]"])
 
     def test_groups_of_pin_modes(self):
-        """The 24 F1 modes, given in another order than that of their divergence rates -12, -11, ... 11 %."""
+        """The 24 F1 modes with divergence rates -12, -11, ... 11 % in another order."""
         modes = [("F1", 3600 + rate, rate, None) for rate in sorted(range(-12, 12), key=abs)]
         run = self.results("run", modes)
         for label, column, rate in (("F1 damped lowest", "with C_b", -12), ("F1 damped highest", "with C_b", -1),

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What scripts/paraview_modes.py says without ParaView: titles, which mode is meant, and what is refused."""
+"""scripts/paraview_modes.py without ParaView: selection of modes and rejected arguments."""
 
 import pathlib
 import subprocess

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Tests of squeal.plotting on small tables, where what has to be drawn is known; skipped where matplotlib is missing."""
+"""Tests of squeal.plotting on small tables with known figures; skipped without matplotlib."""
 
 import math
 import pathlib
@@ -27,7 +27,7 @@ THRESHOLDS = ("mu [-]", "event", "branch [-]", "partner [-]", "frequency [Hz]")
 
 
 def line_of(axes, label):
-    """Points of the line of a label, (NaN, NaN) where it breaks; none if there is no such line."""
+    """Points of the line with a label, (NaN, NaN) at breaks; empty if there is no such line."""
     for line in axes.get_lines():
         if line.get_label() == label:
             return list(zip(line.get_xdata(), line.get_ydata()))
@@ -35,7 +35,7 @@ def line_of(axes, label):
 
 
 def points_and_parts(line):
-    """Number of points, and of parts between breaks."""
+    """Numbers of points and of parts between breaks."""
     is_there = [not math.isnan(x) for x, _ in line]
     return sum(is_there), sum(here and not before for before, here in zip([False, *is_there], is_there))
 
@@ -86,18 +86,18 @@ class Charts(PlotTest):
     def test_curves_break_and_meet_at_thresholds(self):
         self.write_chart()
         upper, lower = branches.overview_figure(self.charts(), BAND).axes
-        # Both branches of the pair with the threshold between their five points; the third in two parts
+        # Both branches of the pair have five points and the threshold; the third is in two parts
         everything = line_of(upper, charts.WITHOUT)
         self.assertEqual(points_and_parts(everything), (6 + 6 + 4, 4))
         self.assertEqual(max(y for _, y in everything if not math.isnan(y)), 50)
-        # One branch grows, from the threshold on
+        # One branch grows beyond the threshold
         growing = line_of(lower, "growing, " + charts.WITHOUT)
         self.assertEqual(points_and_parts(growing), (3, 1))
         self.assertEqual(growing[0], (0.25, 0.0))
         self.assertAlmostEqual(growing[2][1], math.sqrt(0.15))
-        # That beyond the band is none of the picture
+        # The threshold beyond the band is omitted
         self.assertEqual(line_of(upper, "onset"), [(0.25, 10)])
-        # Families that grow
+        # Growing families
         figures = branches.family_figures(self.charts())
         self.assertEqual(list(figures), ["sweep_families"])
         upper, lower = figures["sweep_families"].axes
@@ -106,7 +106,7 @@ class Charts(PlotTest):
         self.assertEqual([text.get_text() for text in upper.texts], ["A0-4 -", "A0-4 +"])
 
     def test_one_value(self):
-        """A line of one point would not be seen."""
+        """A single point needs a mark to be visible."""
         self.write("branches", BRANCHES, [(0.4, 1, "F1", 50, 0.5, "unstable", 1)])
         self.write("thresholds", THRESHOLDS, [])
         self.write("counts", ("mu [-]",), [(0.4,)])
@@ -122,7 +122,7 @@ class ComplexPlane(PlotTest):
         return complex_plane.sweep_figure(Results(self.folder), self.charts(), BAND).axes
 
     def test_rings_squares_and_names(self):
-        """Of a sweep that asks for no value, at its last one; growth that is undecided has no ring."""
+        """Without given values, the last one of the sweep is drawn; undecided modes have no ring."""
         for undecided, growing in (((3, 4), [(0.010, math.sqrt(0.15))]), ((1, 4), [])):
             self.write_chart(undecided=[undecided])
             axes, = self.sweep_axes()
@@ -132,7 +132,7 @@ class ComplexPlane(PlotTest):
             self.assertEqual([text.get_text() for text in axes.texts], ["A0-4 -"] if growing else [])
 
     def test_values_that_are_asked_for(self):
-        """They need not be values of the chart."""
+        """Values in the table complex_plane need not be values of the chart."""
         self.write_chart()
         self.write("complex_plane", self.COLUMNS, [(0.33, "published", "A0-4 +", 20, 0.5, "unstable"),
                                                    (0.33, "none", "A0-4 +", 21, 0.7, "unstable"),
@@ -167,7 +167,7 @@ class Maps(PlotTest):
                "open contact nodes [-]")
 
     def read(self, change=lambda mu, load, row: row):
-        """Unstable from 0.2 on under the larger load alone, undecided before."""
+        """Unstable from 0.2 at the larger load only, undecided at 0.1."""
         rows = []
         for load in (100, 1000):
             for mu in (0, 0.1, 0.2, 0.3):
@@ -195,7 +195,7 @@ class Maps(PlotTest):
             self.assertEqual(line_of(axes, "change of the contact set"), [])
         self.assertEqual([text.get_text() for text in panel.texts], ["F1"])
         self.assertEqual([text.get_text() for text in counts.texts], ["2", "2"])
-        # Half-way to the neighbours, on a logarithmic axis in their ratio
+        # Halfway between neighbours, geometrically on a logarithmic axis
         edges = stability_map.StabilityMap(table)
         self.assertAlmostEqual(edges.x_edges[2], 0.15)
         self.assertAlmostEqual(edges.y_edges[1], math.sqrt(1e5))
@@ -215,7 +215,7 @@ class Maps(PlotTest):
 
 class Reduction(PlotTest):
     def write_bases(self, errors):
-        """One group; rows of basis, component modes, solve time, and the four errors."""
+        """Writes one group from rows of basis, component modes, solution time and the four errors."""
         self.write("reduction_bases", ("basis", "component modes", "build time [s]", "solve time [s]"),
                    [(name, truncation, 10 * seconds, seconds) for name, truncation, seconds, *_ in errors])
         self.write("reduction_errors", ("basis", "component modes", "group", "res [-]", "mac [-]", "frq [-]", "div [-]"),

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Formulas of the documentation's site: subscripts and superscripts in text and formulas, none in code."""
+"""Formulas in the documentation site: subscripts and superscripts in text and formulas, but not in code."""
 
 import pathlib
 import sys

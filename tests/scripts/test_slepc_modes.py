@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Tests of scripts/slepc_modes.py: its formulations on a small problem beside a dense solver, and which of them fit."""
+"""Tests of scripts/slepc_modes.py: its formulations compared with a dense solver, and their applicability."""
 
 import math
 import pathlib
@@ -12,7 +12,7 @@ import two_blocks
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "scripts"))
 
-import slepc_modes  # and where the module is
+import slepc_modes  # adds the path of the module squeal
 from squeal import exported_matrices
 
 BAND = 20000.0

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""squeal.System: reads and writes systems, solves them, and rejects bad ones with file and entry."""
+"""squeal.System: reads, writes and solves systems, and rejects invalid ones with file and entry."""
 
 import json
 import math
@@ -41,7 +41,7 @@ def closed_form(mu, k):
 
 
 def chain(n):
-    """Springs and masses over many decades, with a gyroscopic, a damping and a nonsymmetric part."""
+    """A chain of springs and masses with gyroscopic, damping and nonsymmetric terms."""
     random = np.random.default_rng(3)
     stiffness = sparse.diags([2 * np.ones(n), -np.ones(n - 1), -np.ones(n - 1)], [0, 1, -1]) * 1e9
     upper = sparse.random(n, n, 0.01, random_state=3)
@@ -54,7 +54,7 @@ def chain(n):
 
 
 def distances(found, expected):
-    """Of every eigenvalue found to the closest one expected, relative."""
+    """Relative distances of the eigenvalues found from the nearest expected ones."""
     return np.array([abs(expected - value).min() / abs(value) for value in found])
 
 
@@ -121,7 +121,7 @@ class Files(InFolder):
             self.assertEqual(again.reduction["points"], system.reduction["points"])
 
     def test_points_without_a_speed(self):
-        """As the program writes them, where a sweep has no speed."""
+        """Points as written by the program for a sweep without speed."""
         flutter(reduction={"points": [{"mu": 0.1, "speed": math.nan}]}).write(self.folder)
         self.assertEqual((self.folder / "points.csv").read_text(encoding="utf-8"), "mu,speed\n0.1,\n")
         self.assertTrue(math.isnan(System.read(self.folder).reduction["points"][0]["speed"]))
@@ -215,7 +215,7 @@ class Solutions(InFolder):
         system = chain(quadratic.DENSE_SIZE + 50)
         A, B = (matrix.toarray() for matrix in system.linearise())
         n = system.size
-        scale = 1e6  # of λ, which brings both halves of the state to one size
+        scale = 1e6  # of λ, which balances both halves of the state
         A[:n, n:], A[n:, :n] = A[:n, n:] * scale, A[n:, :n] / scale
         expected = np.linalg.eigvals(np.linalg.solve(B, A))
         bounds = {"number": 12, "largest": 4e5, "region": ((-1500.0, 100.0), (2e5, 6e5))}

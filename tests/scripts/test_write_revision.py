@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The revision that a build gives to the program."""
+"""The revision that a build compiles into the program."""
 
 import os
 import pathlib
@@ -45,7 +45,7 @@ class WriteRevision(unittest.TestCase):
         self.git("commit", "-m", "first")
         first = self.revision()
         self.assertTrue(self.git("rev-parse", "HEAD").startswith(first))
-        # What has not changed is not compiled anew.
+        # An unchanged file is not written, so that nothing is recompiled
         time = self.file.stat().st_mtime_ns
         self.assertEqual(self.revision(), first)
         self.assertEqual(self.file.stat().st_mtime_ns, time)

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""A run as squeal exports it, made without squeal: a plate on springs rubbed by a block whose top is clamped.
+"""Exported results of a run, made without squeal: a plate on springs in frictional contact with a block whose top is clamped.
 
-Both are lattices of point masses that springs join along edges and diagonals. The contact normal is z, the plate slides along x, hence b = n x t = y.
+Both are lattices of point masses with springs along edges and diagonals. The contact normal is z and the plate slides along x, hence
+b = n x t = y.
 """
 
 import csv
@@ -19,13 +20,13 @@ EDGE, PLATE, BLOCK, FRICTION_COEFFICIENT = 0.01, (5, 4, 1), (2, 2, 2), 0.4
 
 
 def lattice(cells, young_modulus, density):
-    """Stiffness, mass and places of the masses."""
+    """Stiffness, mass and positions of the point masses."""
     places = EDGE * np.array(list(itertools.product(*(range(n + 1) for n in cells))), dtype=float)
     pairs = scipy.spatial.cKDTree(places).query_pairs(1.8 * EDGE, output_type="ndarray")
     lengthening = sparse.lil_matrix((len(pairs), places.size))
     for row, (i, j) in enumerate(pairs):
-        way = (places[j] - places[i]) / np.linalg.norm(places[j] - places[i])
-        lengthening[row, 3 * i:3 * i + 3], lengthening[row, 3 * j:3 * j + 3] = -way, way
+        direction = (places[j] - places[i]) / np.linalg.norm(places[j] - places[i])
+        lengthening[row, 3 * i:3 * i + 3], lengthening[row, 3 * j:3 * j + 3] = -direction, direction
     return young_modulus * EDGE * (lengthening.T @ lengthening), density * EDGE**3 * sparse.identity(places.size), places
 
 
@@ -35,7 +36,7 @@ def write_run(directory, band=20000.0):
     K_p, M_p, x_p = lattice(BLOCK, 1.9e9, 3070.0)
     x_p = x_p + EDGE * np.array([(PLATE[0] - BLOCK[0]) // 2, (PLATE[1] - BLOCK[1]) // 2 + 1, PLATE[2]])
 
-    # The plate stands on springs; uneven ones, so that no eigenvalue is double.
+    # The plate is on uneven springs, so that eigenvalues are simple
     foot = np.flatnonzero(x_d[:, 2] < EDGE / 2)
     springs = np.zeros(x_d.size)
     for direction, value in enumerate((2.0e6, 2.2e6, 5.0e6)):
@@ -85,9 +86,9 @@ def write_run(directory, band=20000.0):
 
 
 def dense_eigenvalues(M, C_b, K, P_n, P_t, T_c, band):
-    """Eigenvalues of the band from the definition, all matrices dense.
+    """Eigenvalues of the band from dense matrices.
 
-    The reciprocals come from a standard eigenvalue problem, which makes the small eigenvalues the accurate ones.
+    They are reciprocals of those of a standard eigenvalue problem, so that small eigenvalues are accurate.
     """
     M, C_b, K, P_n, P_t, T_c = (matrix.toarray() for matrix in (M, C_b, K, P_n, P_t, T_c))
     friction = np.eye(K.shape[0]) - FRICTION_COEFFICIENT / 2 * P_t.T @ P_n
