@@ -22,6 +22,7 @@ import slepc_modes
 from squeal import exported_matrices
 from squeal.command_line import exit_on_error
 from squeal.errors import Error
+from squeal.results import Table
 
 
 def squeal_times(core, directory):
@@ -45,7 +46,7 @@ def main():
     matrices = exported_matrices.read_matrices(arguments.directory)
     problem = exported_matrices.couple(matrices, exported_matrices.run_parameter(arguments.directory, "Operation/Friction coefficient"))
     formulations = arguments.formulations.split(",") if arguments.formulations else slepc_modes.applicable(problem)
-    n_modes = benchmarking.n_rows(arguments.directory / "complex_modes.csv")
+    n_modes = len(Table(arguments.directory / "complex_modes.csv"))
 
     print(benchmarking.describe_machine(arguments.core), flush=True)
     rounds = benchmarking.Rounds(f"{problem.size} dofs, {n_modes} modes, {'no damping' if slepc_modes.is_undamped(problem) else 'damped'}")

@@ -15,7 +15,7 @@ from squeal.command_line import Parser
 from squeal.errors import Error
 from squeal.parameter_file import read_parameters
 from squeal.program import SOURCE, find_program, words_of
-from squeal.results import read_table
+from squeal.results import Table
 
 PEER = SOURCE / "scripts" / "slepc_modes.py"
 PARTS = (0.1, 0.3, 0.5, 0.7, 0.9)  # positions in the range of a sweep at which SLEPc solves
@@ -100,11 +100,6 @@ def parameter(directory, name):
     return read_parameters(pathlib.Path(directory) / "parameters.prm")[name]
 
 
-def n_rows(table):
-    """Number of rows of a table."""
-    return len(read_table(table))
-
-
 def spread(values, digits=1):
     """Median with the smallest and largest value."""
     return f"{statistics.median(values):.{digits}f} ({min(values):.{digits}f} to {max(values):.{digits}f})"
@@ -129,7 +124,7 @@ def matrices_of(directory, parameter_file, settings, core):
     """The folder with the matrices of a model for SLEPc, written once, and the number of modes."""
     if not directory.exists():
         run_squeal(core, parameter_file, directory, [*settings, "Study=stability", "Output/Write matrices=true", "Output/Mode shapes=none"])
-    return directory, n_rows(directory / "real_modes.csv")
+    return directory, len(Table(directory / "real_modes.csv"))
 
 
 def mean_peer(rounds, core, matrices, chosen):

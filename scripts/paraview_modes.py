@@ -24,14 +24,14 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "python"))
 from paraview_scenes import VIEWS, WIDTH, scene_of_all, scene_of_energy, scene_of_one, write_film
 from squeal.command_line import Parser, ensure_display, exit_on_error
 from squeal.errors import Error
-from squeal.results import read_table, shape_files
+from squeal.results import Table, shape_files
 
 
 def rows_of(results):
     """Rows of complex_modes.csv."""
     if not (results / "complex_modes.csv").is_file():
         raise Error("there is no complex_modes.csv", results, "name the folder of a stability run")
-    return read_table(results / "complex_modes.csv")
+    return Table(results / "complex_modes.csv").rows
 
 
 def title_of(row):

@@ -45,14 +45,6 @@ class Eigenpairs:
         return len(self.eigenvalues)
 
 
-def eigenpairs(M, C, K, eigenvalues, vectors):
-    """Eigenpairs by increasing imaginary part with their errors."""
-    order = np.lexsort((eigenvalues.real, eigenvalues.imag))
-    eigenvalues, vectors = eigenvalues[order], vectors[:, order]
-    vectors = vectors / np.linalg.norm(vectors, axis=0)
-    return Eigenpairs(eigenvalues, vectors, *errors(M, C, K, eigenvalues, vectors))
-
-
 def errors(M, C, K, eigenvalues, vectors):
     """Residuals and backward errors as in Eigenpairs."""
     parts = [M @ (vectors * eigenvalues**2), C @ (vectors * eigenvalues), K @ vectors]
@@ -262,7 +254,7 @@ def collect(solve, n_agreeing=2, n_runs=8):
 
 
 def solve(M, C, K, number=None, largest=None, region=None, shift=None, where="system"):
-    """Eigenpairs of a quadratic pencil of real sparse matrices: those selected, or all of a small system.
+    """Eigenpairs of a quadratic pencil of real sparse matrices by increasing Im λ: those selected, or all of a small system.
 
     region: ((lower, upper) real part, (lower, upper) imaginary part) [1/s]; largest: those with |λ| up to it; number: that many nearest
     to `shift` (default 0). Raises Error if M = 0, if the pencil is singular or if nothing is selected in a large system.
@@ -296,4 +288,7 @@ def solve(M, C, K, number=None, largest=None, region=None, shift=None, where="sy
         chosen = abs(eigenvalues) <= largest
     else:
         chosen = np.argsort(abs(eigenvalues - (shift or 0.0)), kind="stable")[:number]
-    return eigenpairs(M, C, K, eigenvalues[chosen], vectors[:, chosen])
+    eigenvalues, vectors = eigenvalues[chosen], vectors[:, chosen]
+    order = np.lexsort((eigenvalues.real, eigenvalues.imag))
+    eigenvalues, vectors = eigenvalues[order], vectors[:, order] / np.linalg.norm(vectors[:, order], axis=0)
+    return Eigenpairs(eigenvalues, vectors, *errors(M, C, K, eigenvalues, vectors))

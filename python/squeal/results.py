@@ -105,11 +105,6 @@ class Table:
         return frame
 
 
-def read_table(path):
-    """Rows of a table as dictionaries of texts."""
-    return Table(path).rows
-
-
 def shape_files(folder):
     """Row of complex_modes.csv, from 1 -> file of the shape of this mode."""
     return {int(match[1]): path for path in sorted((pathlib.Path(folder) / "modes").glob("complex_*.vtu"))

@@ -15,7 +15,7 @@ from extremes import oracle, scaling
 from extremes.cases import BASE, RIGHT
 from squeal import exported_matrices, parameter_file, quadratic
 from squeal.program import find_program, words_of
-from squeal.results import Table, read_table
+from squeal.results import Table
 
 # Largest relative difference of an eigenvalue from the oracle's
 TOLERANCE = 1e-6
@@ -74,14 +74,14 @@ def eigenvalues_of(folder):
     """lambda of the complex modes and the real eigenvalues in the tables."""
     modes = Table(folder / "complex_modes.csv").eigenvalues()
     path = folder / "real_eigenvalues.csv"
-    real = [float(row["growth rate [1/s]"]) for row in read_table(path)] if path.exists() else []
+    real = Table(path).numbers("growth rate [1/s]") if path.exists() else []
     return np.array(modes, dtype=complex), np.array(real, dtype=float)
 
 
 def check_numbers(folder):
     """Raises Wrong if a cell of a table is infinite or not a number."""
     for path in folder.glob("*.csv"):
-        for row in read_table(path):
+        for row in Table(path).rows:
             for column, cell in row.items():
                 if cell and cell.strip().lower().lstrip("+-") in ("nan", "inf", "infinity"):
                     raise Wrong(f"{path.name} has {cell} in {column}")
@@ -127,8 +127,7 @@ def judge_results(case, process, folder, row):
     row.modes = f"{len(modes)}" + (f" + {len(real)} real" if len(real) else "")
 
     # ------------------------------------------------ self-consistency
-    table = read_table(run / "complex_modes.csv")
-    residual = max(float(line["residual [-]"]) for line in table)
+    residual = max(Table(run / "complex_modes.csv").numbers("residual [-]"))
     row.residual = f"{residual:.0e}"
     found, counted = map(int, re.search(r"Real modes .* (\d+) found, (\d+) counted by inertia", process.stdout).groups())
     row.count = f"inertia {counted}"
@@ -143,7 +142,7 @@ def judge_results(case, process, folder, row):
     for what, mu, actual in (("real modes", 0.0, None), ("complex modes", friction_coefficient, np.concatenate([modes, real]))):
         if actual is None:
             matrices_here = {**matrices, "C": 0 * matrices["C"], "C_b": 0 * matrices["C_b"], "G": 0 * matrices["G"]}
-            actual = 2j * math.pi * np.array([float(line["frequency [Hz]"]) for line in read_table(run / "real_modes.csv")])
+            actual = 2j * math.pi * np.array(Table(run / "real_modes.csv").numbers("frequency [Hz]"))
             radius = band
         else:
             matrices_here, radius = matrices, 1.01**0.5 * band
@@ -179,7 +178,7 @@ def compare_units(case, folder, row):
     process = call("scene.prm", "--output", "metres", *words_of(case.unit), folder=folder)
     if process.returncode != 0:
         raise Wrong(f"refused in metres: {process.stderr}")
-    largest = max(scaling.difference(read_table(folder / "metres" / name), read_table(folder / "run" / name), case.scale)
+    largest = max(scaling.difference(Table(folder / "metres" / name).rows, Table(folder / "run" / name).rows, case.scale)
                   for name in ("complex_modes.csv", "real_modes.csv", "component_modes.csv"))
     if largest > SAME_IN_ALL_UNITS:
         raise Wrong(f"differs by {largest:.1e} from the model in metres")
@@ -213,7 +212,7 @@ def argument_count(case, folder, modes, band):
     if process.returncode != 0:
         return f", argument refused ({process.stderr.strip().splitlines()[0][7:]})"
     check_numbers(folder / "count")
-    counted = int(read_table(folder / "count" / "argument_counts.csv")[0]["modes counted [-]"])
+    counted = int(Table(folder / "count" / "argument_counts.csv").rows[0]["modes counted [-]"])
     n_inside = sum(abs(mode.real) <= 0.1 * band and 1e-3 * band <= mode.imag <= band for mode in modes)
     n_on_edge = sum(abs(mode.imag - band) <= EDGE * band for mode in modes)
     if not n_inside - n_on_edge <= counted <= n_inside:

@@ -119,7 +119,7 @@ class ProgramTest(unittest.TestCase):
 
     @classmethod
     def call_scene(cls, output, *overrides):
-        """The finished process of the scene with overrides "Section/Name=value"."""
+        """The finished process of scene.prm with overrides "Section/Name=value"."""
         return cls.call("scene.prm", "--output", output, *settings(overrides))
 
     @classmethod

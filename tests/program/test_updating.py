@@ -35,7 +35,7 @@ class OfScene(ProgramTest):
     scene = COARSE
 
     def measure(self, states, *truth):
-        """Modes of the scene with true values of the fitted parameters."""
+        """Modes of the model with true values of the fitted parameters."""
         results = self.shared(*truth)
         return [mode for state in states for mode in unique_modes(results, state)]
 

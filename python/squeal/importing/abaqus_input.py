@@ -57,21 +57,21 @@ class AbaqusInput:
             for label in self._known(self.element_sets, elements, "*SOLID SECTION"):
                 self.materials[label] = value if self.materials.get(label, value) == value else None
 
-    def _refused(self, what, change, where=None):
+    def _error(self, what, change, where=None):
         return Error(what, where or self._path, change)
 
     def _lines(self, path, above=()):
         """(where, line) of a file and its includes, without comments; joins keyword lines that end in a comma with the next line."""
         if path in above or not path.is_file():
             what = "includes itself" if path in above else "is missing"
-            raise self._refused(f"the included file {path} {what}", "correct the INPUT parameter, or put the file there")
+            raise self._error(f"the included file {path} {what}", "correct the INPUT parameter, or put the file there")
         begun = ""
         for number, line in enumerate(read_text(path).split("\n"), 1):
             line = line.strip()
             if line.startswith("**") or not line:
                 continue
             if begun and line.startswith("*"):
-                raise self._refused("the previous keyword line ends in a comma", "remove the comma", f"{path}, line {number}")
+                raise self._error("the previous keyword line ends in a comma", "remove the comma", f"{path}, line {number}")
             begun += line
             if line.endswith(",") and begun.startswith("*"):
                 continue
@@ -91,7 +91,7 @@ class AbaqusInput:
             try:
                 self._take(keyword, options, rows)
             except (ValueError, IndexError, KeyError, TypeError) as error:
-                raise self._refused(f"*{keyword} cannot be read ({error})", "check this line and its data lines", where) from error
+                raise self._error(f"*{keyword} cannot be read ({error})", "check this line and its data lines", where) from error
             where, (keyword, *words) = place, split(line[1:])
             keyword = " ".join(keyword.upper().split())
             options = {key.strip().upper(): value.strip().strip('"') for key, _, value in (word.partition("=") for word in words)}
@@ -100,11 +100,11 @@ class AbaqusInput:
 
     def _take(self, keyword, options, rows):
         if keyword in GENERATORS or keyword == "NODE" and options.get("SYSTEM", "R") != "R":
-            raise self._refused(f"*{keyword} generates or moves nodes or elements", "let the pre-processor write them out")
+            raise self._error(f"*{keyword} generates or moves nodes or elements", "let the pre-processor write them out")
         if keyword in ("PART", "INSTANCE"):
             self._parts += keyword == "PART"
             if self._parts > 1 or keyword == "INSTANCE" and (self._instance or any(float(word) for row in rows for word in row if word)):
-                raise self._refused("there are several parts or instances, or one that is moved", WITHOUT_PARTS)
+                raise self._error("there are several parts or instances, or one that is moved", WITHOUT_PARTS)
             if keyword == "INSTANCE":
                 self._instance = options["NAME"] + "."
         elif keyword == "END INSTANCE":
@@ -128,7 +128,7 @@ class AbaqusInput:
             sets = self.node_sets if options.get("TYPE") == "NODE" else self.surfaces
             new = [self._member(row[0]) for row in rows] if sets is self.node_sets else [(self._member(row[0]), *row[1:2]) for row in rows]
             if options["NAME"] in sets and not (sets is self.node_sets and new == [options["NAME"]]):
-                raise self._refused(f"surface {options['NAME']} is defined twice, or is also a node set", "rename one of them")
+                raise self._error(f"surface {options['NAME']} is defined twice, or is also a node set", "rename one of them")
             sets.setdefault(options["NAME"], new)
         elif keyword == "SURFACE":
             self.dropped.append(f"surface {options['NAME']}, which consists neither of faces nor of nodes")
@@ -165,14 +165,14 @@ class AbaqusInput:
     def _add_unique(self, known, new, what, sets, name):
         for label, value in new:
             if label in known:
-                raise self._refused(f"{what} {label} is defined twice, as in parts with separate numbering", WITHOUT_PARTS)
+                raise self._error(f"{what} {label} is defined twice, as in parts with separate numbering", WITHOUT_PARTS)
             known[label] = value
         if name:
             self._add(sets, name, [label for label, _ in new])
 
     def _add(self, sets, name, members):
         if (id(sets), name) in self._of_part:
-            raise self._refused(f"set {name} is in the part and in the assembly", f"rename one of them, or {WITHOUT_PARTS}")
+            raise self._error(f"set {name} is in the part and in the assembly", f"rename one of them, or {WITHOUT_PARTS}")
         sets.setdefault(name, []).extend(members)
 
     def _member(self, word):
@@ -182,7 +182,7 @@ class AbaqusInput:
 
     def _known(self, sets, name, where):
         if name not in sets:
-            raise self._refused(f"{where} names `{name}`, which is not in the file", "define it, or remove the reference")
+            raise self._error(f"{where} names `{name}`, which is not in the file", "define it, or remove the reference")
         return sets[name]
 
     def _labels(self, sets, known, name, above=()):
@@ -191,7 +191,7 @@ class AbaqusInput:
         for member in self._known(sets, name, f"set {above[-1] if above else name}"):
             if isinstance(member, str):
                 if member in above or member == name:
-                    raise self._refused(f"set {name} contains itself", "list its members")
+                    raise self._error(f"set {name} contains itself", "list its members")
                 member = self._labels(sets, known, member, (*above, name))
             elif isinstance(member, tuple):
                 member = [node for element in self._known(self.element_sets, member[0], f"set {name}") for node in self.elements[element][1]]
@@ -210,6 +210,6 @@ class AbaqusInput:
             if not faces or len(faces) == 1 and side.upper().startswith("E"):
                 yield None
             elif side and side.upper() not in sides:
-                raise self._refused(f"surface {surface} names side {side} of element {label}", "give faces of solids, S1 to S6, or SPOS of shells")
+                raise self._error(f"surface {surface} names side {side} of element {label}", "give faces of solids, S1 to S6, or SPOS of shells")
             else:
                 yield from ((label, number) for number in ([sides.index(side.upper()) % len(faces)] if side else range(len(faces))))

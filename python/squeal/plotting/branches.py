@@ -16,8 +16,6 @@ LOOKS = ({"color": style.BLACK, "linestyle": "-"}, {"color": style.GREY, "linest
 GROWING_LOOKS = ({"color": style.VERMILLION, "linestyle": "-"}, {"color": style.ORANGE, "linestyle": (0, (3, 1))})
 WIDTHS, GROWING_WIDTHS = (0.9, 1.5), (2.4, 4.2)  # [points]
 EVENTS = {"onset": "^", "restabilisation": "v"}
-
-
 BREAK = (math.nan, math.nan)
 
 
@@ -67,11 +65,11 @@ def add_names(panel, chart, branches):
         # A label that several branches share only repeats the title
         if labels.count(chart.labels[branch]) == 1:
             points = [point for point in chart.curve(branch) if point.is_shown]
-            beside = [point.frequency for point in points if point.mu <= points[0].mu + length]
-            starts.append((points[0].frequency, points[0].mu, beside, chart.labels[branch]))
-    for i, (_, mu, beside, label) in enumerate(sorted(starts)):
+            nearby = [point.frequency for point in points if point.mu <= points[0].mu + length]
+            starts.append((points[0].frequency, points[0].mu, nearby, chart.labels[branch]))
+    for i, (_, mu, nearby, label) in enumerate(sorted(starts)):
         is_below = i == 0 and len(starts) > 1
-        panel.annotate(label, (mu, min(beside) if is_below else max(beside)), xytext=(4, -4 if is_below else 4), textcoords="offset points",
+        panel.annotate(label, (mu, min(nearby) if is_below else max(nearby)), xytext=(4, -4 if is_below else 4), textcoords="offset points",
                        fontsize=style.SMALL, verticalalignment="top" if is_below else "bottom", zorder=8)
 
 

@@ -43,12 +43,10 @@ def figures(results):
 def cloud(panel, modes):
     style.prepare(panel, "", style.FREQUENCY, style.DIVERGENCE)
     style.zero_line(panel)
-    frequencies, rates, verdicts = modes.numbers("frequency [Hz]"), modes.numbers(RATE), modes.texts("verdict")
-    for verdict in ("stable", "neutral", "undecided", "unstable"):
-        chosen = [number for number, said in enumerate(verdicts) if said == verdict]
-        if chosen:
-            panel.plot([frequencies[number] for number in chosen], [rates[number] for number in chosen], linestyle="", marker=".", markersize=3,
-                       color=COLOURS[verdict], label=verdict, rasterized=True)
+    points = list(zip(modes.numbers("frequency [Hz]"), modes.numbers(RATE), modes.texts("verdict")))
+    for verdict, colour in COLOURS.items():
+        chosen = [point for *point, of_point in points if of_point == verdict]
+        style.draw_points(panel, chosen, marker=".", markersize=3, color=colour, label=verdict, rasterized=True)
 
 
 def cumulative(panel, onsets):
