@@ -30,20 +30,14 @@ def difference(rows, others, s):
     largest = 0.0
     for row, other in zip(rows, others):
         for column, cell in row.items():
-            if column == "frequency [Hz]" or column == "growth rate [1/s]":
-                size = float(row["frequency [Hz]"]) or 1.0
-                largest = max(largest, abs(float(cell) - s * float(other[column])) / size)
-            elif is_number(cell) and is_number(other[column]):
-                part = 100 if "[%]" in column else 1
-                largest = max(largest, abs(float(cell) - float(other[column])) / part)
-            elif cell != other[column]:
-                return float("inf")
+            try:
+                one, two = float(cell), float(other[column])
+            except ValueError:
+                if cell != other[column]:
+                    return float("inf")
+                continue
+            if column in ("frequency [Hz]", "growth rate [1/s]"):
+                largest = max(largest, abs(one - s * two) / (float(row["frequency [Hz]"]) or 1.0))
+            else:
+                largest = max(largest, abs(one - two) / (100 if "[%]" in column else 1))
     return largest
-
-
-def is_number(text):
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True

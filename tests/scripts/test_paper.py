@@ -97,7 +97,7 @@ class Statements(PaperTest):
 
     def test_that_hold(self):
         self.statements({"unstable disc modes": (1, "does not hold"), "unstable modes have a stable partner": (0, "holds"),
-                         "A0-4 + looks like a rotating wave": (0.9, "holds"), "its partner A0-4 - rotates in the opposite sense": (0.9, "holds"),
+                         "A0-4 + looks like a rotating wave": (0.9, "holds"), "its partner A0-4 -": (0.9, "holds"),
                          "further unstable modes": None, "C_b breaks the symmetry": (-0.03, "holds"),
                          "C_b reduces the divergence rate of the growing A0-4": (-0.01, "holds"),
                          "unstable modes with C_b": (1, "does not hold"), "coupling spreads the bending modes": (0.2, "holds"),

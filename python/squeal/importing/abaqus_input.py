@@ -210,6 +210,6 @@ class AbaqusInput:
             if not faces or len(faces) == 1 and side.upper().startswith("E"):
                 yield None
             elif side and side.upper() not in sides:
-                raise self._error(f"surface {surface} names side {side} of element {label}", "give faces of solids, S1 to S6, or SPOS of shells")
+                raise self._error(f"surface {surface} names side {side} of element {label}", "use S1 to S6 of solids, or SPOS of shells")
             else:
                 yield from ((label, number) for number in ([sides.index(side.upper()) % len(faces)] if side else range(len(faces))))

@@ -150,12 +150,8 @@ def read_output4(path, variable):
     return Entries.of(matrix, path)
 
 
-def read_harwell_boeing(path, variable):
-    return Entries.of(scipy.io.hb_read(path), path)
-
-
 READERS = {"matlab": read_matlab, "numpy": read_numpy, "text": read_text_matrix, "dmig": read_dmig, "output4": read_output4,
-           "harwell-boeing": read_harwell_boeing}
+           "harwell-boeing": lambda path, _: Entries.of(scipy.io.hb_read(path), path)}
 ENDINGS = {".mat": "matlab", ".npy": "numpy", ".npz": "numpy", ".mtx": "text", ".mm": "text", ".op4": "output4",
            **dict.fromkeys((".bdf", ".nas", ".dat", ".pch", ".dmig"), "dmig"), **dict.fromkeys((".hb", ".rua", ".rsa", ".rza", ".rb"), "harwell-boeing")}
 
