@@ -168,7 +168,7 @@ TEST(ModeMatching, ByEquation17OneReducedModeMayServeTwice)
   // matching gives e_2 the other reduced mode.
   Masses             masses({1., 4., 1.2, 9.});
   const MultiVector &I = masses.I;
-  MultiVector T(I.map(), 2), exact(I.map(), 2);
+  MultiVector        T(I.map(), 2), exact(I.map(), 2);
   exact.col(0) = I.col(0);
   exact.col(1) = I.col(2);
   T.col(0)     = 0.8 * I.col(0) + 0.6 * I.col(2);
