@@ -79,7 +79,7 @@ namespace Squeal
     clear();
   }
 
-  void ProjectedResiduals::use_sketch()
+  bool ProjectedResiduals::use_sketch()
   {
     MultiVector     white(inverse.map(), size_of_sketch, false), V(inverse.map(), size_of_sketch);
     std::mt19937_64 random;
@@ -88,6 +88,7 @@ namespace Squeal
       entry = random() % 2 == 0 ? size : -size;
     if (inverse.frictionless().half_solve(white, V))
       sketch = std::move(V);
+    return sketch.has_value();
   }
 
   DenseMatrix ProjectedResiduals::factor_products(const MultiVector &X) const

@@ -221,6 +221,7 @@ namespace Squeal
                          with_rows(orthonormal_in_clusters(set.chart->right(Eigen::placeholders::all, set.modes), lambda), model.size()),
                          with_rows(orthonormal_in_clusters(set.chart->left(Eigen::placeholders::all, set.modes), lambda), model.size())});
       }
+    residuals.extend(model);
     std::optional<MultiVector> responses = residuals.principal_responses(model, modes, compression_tolerance);
     if (!responses)
       return {};

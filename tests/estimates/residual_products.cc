@@ -56,7 +56,8 @@ namespace
 
         // A sketch of 128 vectors: five standard deviations of a squared norm
         ProjectedResiduals sketched(system, inverse, shift, damping.values());
-        sketched.use_sketch();
+        if (!sketched.use_sketch())
+          continue;
         sketched.extend(model);
         const auto       sketches    = sketched.products(values, modes.lambda, modes.right, modes.left);
         constexpr double five_sigmas = 0.63;

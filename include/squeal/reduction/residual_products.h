@@ -55,9 +55,11 @@ namespace Squeal
      *   Lᵀ S⁻¹ R ≈ (VᵀL)ᵀ (VᵀR),   VᵀR = Z y,   Z = VᵀW − VᵀST (TᵀST)⁻¹ TᵀW.
      *
      * Z has s rows in place of the columns of W, and takes no solves. The standard deviation of a norm is 6 % of it, that of a product 9 %
-     * of the product of the norms. Without effect if the library of the factor cannot draw V. Call before extend().
+     * of the product of the norms. Call before extend().
+     *
+     * @return false if the library of the factor cannot draw V: products remain exact
      */
-    void use_sketch();
+    bool use_sketch();
 
     /// Adds the vectors that were appended to the basis of @p model.
     void extend(const ReducedModel &model);

@@ -125,6 +125,6 @@ namespace Squeal
     double                     shift, largest_circular_frequency, largest_decay = std::numeric_limits<double>::infinity();
     bool                       allows_cancellation = true;
     ReducedModel               model;
-    mutable ProjectedResiduals residuals; ///< extended by prepare()
+    mutable ProjectedResiduals residuals; ///< extended when needed
   };
 } // namespace Squeal
