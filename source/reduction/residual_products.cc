@@ -15,7 +15,8 @@ namespace Squeal
   {
     using Complex = std::complex<double>;
 
-    /// Number of random vectors.
+    /// Number of random vectors. As many others choose new basis vectors: residuals that these underestimate remain, and must not be
+    /// measured with the same vectors.
     constexpr int size_of_sketch = 128;
 
     /// Diagonal of Xᴴ Y for matrices of real and imaginary halves, at least zero despite rounding.
@@ -81,7 +82,7 @@ namespace Squeal
 
   bool ProjectedResiduals::use_sketch()
   {
-    MultiVector     white(inverse.map(), size_of_sketch, false), V(inverse.map(), size_of_sketch);
+    MultiVector     white(inverse.map(), 2 * size_of_sketch, false), V(inverse.map(), 2 * size_of_sketch);
     std::mt19937_64 random;
     const double    size = 1. / std::sqrt(double(size_of_sketch));
     for (double &entry : white.local().reshaped())
@@ -231,7 +232,7 @@ namespace Squeal
     is_prepared                 = true;
     if (sketch)
       {
-        Z = DenseMatrix(size_of_sketch, n_columns);
+        Z = DenseMatrix(2 * size_of_sketch, n_columns);
         for (const Block &b : blocks)
           Z.middleCols(b.first, b.n) = b.sparse >= 0 ?
                                          sparse[b.sparse].sketched :
@@ -363,7 +364,7 @@ namespace Squeal
       {
         DenseMatrix sum = DenseMatrix::Zero(size_of_sketch, rows[g].rows());
         for (const auto &[block, factor] : found[g].blocks)
-          sum += factor * Z.middleCols(block->first, block->n);
+          sum += factor * Z.topRows(size_of_sketch).middleCols(block->first, block->n);
         result += sparing_zeros(halves(rows[g]), [&sum](const DenseMatrix &X) -> DenseMatrix { return sum * X; });
       }
     return result;
@@ -469,7 +470,8 @@ namespace Squeal
         Y = append_columns(Y, coordinates(some));
     if (Y.cols() == 0)
       return {};
-    const DenseMatrix energies = sketch ? DenseMatrix((Z * Y).transpose() * (Z * Y)) : DenseMatrix(Y.transpose() * bracket * Y);
+    const DenseMatrix sketched = sketch ? DenseMatrix(Z.bottomRows(size_of_sketch) * Y) : DenseMatrix();
+    const DenseMatrix energies = sketch ? DenseMatrix(sketched.transpose() * sketched) : DenseMatrix(Y.transpose() * bracket * Y);
     const auto [squares, axes] =
       agreed(inverse.map().communicator(), symmetric_eigenpairs(0.5 * (energies + energies.transpose()))); // ascending
     if (!(squares.back() > 0.))
