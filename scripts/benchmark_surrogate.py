@@ -26,6 +26,7 @@ os.environ.update(benchmarking.environment())  # before NumPy loads OpenBLAS
 
 import numpy as np
 
+from squeal import quadratic
 from squeal.command_line import exit_on_error
 from squeal.errors import Error
 from squeal.program import SOURCE
@@ -142,9 +143,12 @@ def main():
     n_names = len({label for modes in by_sample for label in modes})
     print("| surrogate | full-order solutions | training [s] | modes of | relative error of lambda: median | 95 % | largest | wrong verdicts [%] |")
     print("|---|---|---|---|---|---|---|---|")
-    # By frequency: names of mixed modes may differ between two bases
-    pairs = [pair for exact, found in list(zip(by_sample, reduced))[fresh]
-             for pair in zip(*(sorted(sum(modes.values(), []), key=lambda value: value.imag) for modes in (exact, found)))]
+    # By distance: names of mixed modes may differ between two bases
+    pairs = []
+    for exact, found in list(zip(by_sample, reduced))[fresh]:
+        exact, found = (np.array(sum(modes.values(), [])) for modes in (exact, found))
+        rows, columns, _ = quadratic.match(exact, found)
+        pairs.extend(zip(exact[rows], found[columns]))
     print(f"| one reduced model, {record['counts']['basis vectors']} vectors | 0; all samples: {seconds:.0f} s | 0 | {n_names} of {n_names} names "
           f"| {row_of(pairs)} | {wrong_verdicts(by_sample[fresh], (modes.values() for modes in reduced[fresh])):.1f} |", flush=True)
     for name, make in (("polynomial chaos", chaos), ("Kriging", kriging)):
