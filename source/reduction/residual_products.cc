@@ -15,8 +15,7 @@ namespace Squeal
   {
     using Complex = std::complex<double>;
 
-    /// Number of random vectors. As many others choose new basis vectors: residuals that these underestimate remain, and must not be
-    /// measured with the same vectors.
+    /// Number s of random vectors. New basis vectors are chosen with others, because residuals that those underestimate remain.
     constexpr int size_of_sketch = 128;
 
     /// Diagonal of Xᴴ Y for matrices of real and imaginary halves, at least zero despite rounding.

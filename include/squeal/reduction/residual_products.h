@@ -54,8 +54,9 @@ namespace Squeal
      *
      *   Lᵀ S⁻¹ R ≈ (VᵀL)ᵀ (VᵀR),   VᵀR = Z y,   Z = VᵀW − VᵀST (TᵀST)⁻¹ TᵀW.
      *
-     * Z has s rows in place of the columns of W, and takes no solves. The standard deviation of a norm is 6 % of it, that of a product 9 %
-     * of the product of the norms. Call before extend().
+     * Z has s rows in place of the columns of W, and a larger basis requires no further solves. As many independent vectors choose the
+     * principal_responses(). The standard deviation of a norm is 6 % of it, that of a product 9 % of the product of the norms. Call before
+     * extend().
      *
      * @return false if the library of the factor cannot draw V: products remain exact
      */
@@ -188,8 +189,8 @@ namespace Squeal
     mutable int                                  n_columns   = 0; ///< of W
     mutable bool                                 is_prepared = false;
     mutable DenseMatrix                          bracket;         ///< none with a sketch
-    std::optional<MultiVector>                   sketch;          ///< V, n × s
+    std::optional<MultiVector>                   sketch;          ///< V, n × 2 s: for products, and for principal_responses()
     DenseMatrix                                  sketched_pencil; ///< VᵀS T
-    mutable DenseMatrix                          Z;               ///< s × n_columns
+    mutable DenseMatrix                          Z;               ///< 2 s × n_columns
   };
 } // namespace Squeal
