@@ -134,6 +134,12 @@ namespace Squeal
       }
   }
 
+  std::shared_ptr<const SparseMatrix> inertia_square(const CoupledSystem &system, const double value, const double omega_max)
+  {
+    const auto M = sparse_matrices(system.terms, system.at(value)).mass;
+    return add(omega_max * omega_max, *multiply(*transpose(*M), *M), 0., *M);
+  }
+
   JudgedModes direct_modes(const CoupledSystem    &system,
                            const double            value,
                            const Band             &band,

@@ -101,6 +101,19 @@ namespace Squeal
                                           const ComplexModes   &reference,
                                           const double          cluster_tolerance)
   {
+    return reduction_errors(
+      *system.mass, model, modes, reference,
+      [&](const ReducedModes &chosen) { return estimate_eigenvalues(chosen, residual_vectors(system, inverse, model, chosen).products()); },
+      cluster_tolerance);
+  }
+
+  std::vector<ModeError> reduction_errors(const SparseMatrix                                             &mass,
+                                          const ReducedModel                                             &model,
+                                          const ReducedModes                                             &modes,
+                                          const ComplexModes                                             &reference,
+                                          const std::function<EigenvalueEstimates(const ReducedModes &)> &estimate,
+                                          const double                                                    cluster_tolerance)
+  {
     const int k = reference.lambda.size(), n_reduced = modes.lambda.size();
     if (k == 0)
       return {};
@@ -110,7 +123,7 @@ namespace Squeal
 
     // Inner products in the mass matrix among reference modes, among reduced modes, and between them
     const MultiVector        X  = join({reference.real_part.get(), reference.imaginary_part.get()});
-    const MultiVector        MX = *system.mass * X;
+    const MultiVector        MX = mass * X;
     const ComplexDenseMatrix A  = hermitian_products(gram(X, MX));
     const ComplexDenseMatrix B  = modes.right.adjoint() * multiply(modes.mass, modes.right);
     const DenseMatrix        XT = gram(MX, model.basis());
@@ -143,7 +156,7 @@ namespace Squeal
     for (std::vector<int> *choice : {&match, &closest})
       agree(X.communicator(), choice->data(), k); // ties are decided by rounding
     const ReducedModes        chosen    = selected(modes, match);
-    const EigenvalueEstimates estimates = estimate_eigenvalues(chosen, residual_vectors(system, inverse, model, chosen).products());
+    const EigenvalueEstimates estimates = estimate(chosen);
 
     std::vector<ModeError> errors(k);
     for (const std::vector<int> &all : members)

@@ -20,10 +20,18 @@ namespace Squeal
           matrix.col(j).head(j + 1) = new_columns.col(j - old).head(j + 1);
         }
     }
+
+    std::shared_ptr<const SparseMatrix> as_sparse(const DenseMatrix &A, const RowMap &rows, const RowMap &columns)
+    {
+      return std::make_shared<SparseMatrix>(rows, columns, [&](const int i, SparseMatrix::Row &row) {
+        for (Eigen::Index j = 0; j < A.cols(); ++j)
+          row.emplace_back(static_cast<int>(j), A(rows.number(i), j));
+      });
+    }
   } // namespace
 
   ReducedModel::ReducedModel(const CoupledSystem &system)
-    : system(&system)
+    : full(&system)
     , matrices(system.terms.size())
   {}
 
@@ -43,7 +51,7 @@ namespace Squeal
     std::map<const LowRankFactor *, bool> is_extended;
     for (std::size_t k = 0; k < matrices.size(); ++k)
       {
-        const Term &term = system->terms[k];
+        const Term &term = full->terms[k];
         if (term.matrix)
           {
             border(matrices[k], weighted_gram(*T, *term.matrix, vectors), term.symmetry == Symmetry::skew ? -1. : 1.);
@@ -62,10 +70,10 @@ namespace Squeal
   {
     DenseMatrix sums[2];
     for (std::size_t k = 0; k < matrices.size(); ++k)
-      if (const Term &term = system->terms[k]; term.matrix && term.is_frictionless() && term.power != 1)
+      if (const Term &term = full->terms[k]; term.matrix && term.is_frictionless() && term.power != 1)
         {
           DenseMatrix      &sum  = sums[term.power / 2];
-          const DenseMatrix part = term.coefficient.at(system->values) * matrices[k];
+          const DenseMatrix part = term.coefficient.at(full->values) * matrices[k];
           sum                    = sum.size() == 0 ? part : DenseMatrix(sum + part);
         }
     stiffness_matrix = sums[0];
@@ -75,7 +83,7 @@ namespace Squeal
 
   ReducedModel ReducedModel::restricted(const DenseMatrix &Z) const
   {
-    ReducedModel result(*system);
+    ReducedModel result(*full);
     for (const auto &[factor, motions] : factors)
       result.factors[factor] = motions * Z;
     for (std::size_t k = 0; k < matrices.size(); ++k)
@@ -101,12 +109,45 @@ namespace Squeal
     return *modes;
   }
 
+  CoupledSystem ReducedModel::system() const
+  {
+    const MPI_Comm communicator = full->map().communicator();
+    const RowMap   map          = RowMap::even(size(), communicator);
+    CoupledSystem  result;
+    result.values = full->values;
+    result.varied = full->varied;
+    result.kernel = as_sparse(DenseMatrix::Identity(size(), size()), map, map);
+    std::map<const LowRankFactor *, std::shared_ptr<const LowRankFactor>> of_full_order;
+    const auto reduced_factor = [&](const std::shared_ptr<const LowRankFactor> &factor) {
+      auto &entry = of_full_order[factor.get()];
+      if (!entry)
+        entry = std::make_shared<LowRankFactor>(as_sparse(motions(*factor), RowMap::even(factor->rank(), communicator), map));
+      return entry;
+    };
+    for (std::size_t k = 0; k < matrices.size(); ++k)
+      {
+        Term term = full->terms[k];
+        if (!term.weights.empty())
+          {
+            term.left  = reduced_factor(term.left);
+            term.right = reduced_factor(term.right);
+            result.terms.push_back(term);
+            continue;
+          }
+        term.left = term.right = nullptr;
+        term.matrix            = as_sparse(matrices[k], map, map);
+        for (Term &part : split_by_symmetry(term))
+          result.terms.push_back(std::move(part));
+      }
+    return result;
+  }
+
   ReducedPencil ReducedModel::at(const ParameterValues &values) const
   {
     std::array<DenseMatrix, 3> sums;
     for (std::size_t k = 0; k < matrices.size(); ++k)
       {
-        const Term &term = system->terms[k];
+        const Term &term = full->terms[k];
         if (term.vanishes(values))
           continue;
         DenseMatrix &sum = sums[term.power];

@@ -212,11 +212,31 @@ class Flutter(SystemTest):
                 for row, below, above in zip(rates, *ends):
                     rate = complex(row["growth rate per unit [1/s]"], 2. * math.pi * row["frequency per unit [Hz]"])
                     self.assertLess(abs(rate - (above - below) / (2. * step)), 1e-5 * abs(rate))
+                self.check_reduction(n)
         self.write("study.prm", STUDY.format(study="reduction", band=BAND))
-        self.assert_message(self.call("study.prm", "--output", "refused"), ["negative eigenvalues", "all studies except reduction"])
-        self.write("study.prm", STUDY.format(study="sweep", band=BAND))
-        self.assert_message(self.call("study.prm", "--output", "refused", "--set", "Sweep/Parameter=p, 0.5, 2, 4", "--set", "Output/Write system=reduced"),
-                            ["no definite part", "Output/Write system"])
+        self.assert_message(self.call("study.prm", "--output", "refused", "--set", "Reduction/Bases=real"), ["no definite part", "POD"])
+
+    def check_reduction(self, n):
+        """POD and a written reduced model against the modes at full order of a system without a definite part."""
+        results = self.study("reduction", "Band/Maximum frequency=1.5", "Reduction/Snapshots=0.6, 1.5", "Reduction/POD tolerance=1e-9")
+        for row in self.rows(results, "reduction_modes"):
+            self.assertLess(row["error of lambda [-]"], 1e-5)
+            if row["error of lambda [-]"] > 1e-10:
+                self.assertLess(abs(math.log(row["estimated error of lambda [-]"] / row["error of lambda [-]"])), math.log(3.))
+        band, sweep = "Band/Maximum frequency=1.5", ("Sweep/Parameter=p, 0.5, 2, 7", "Output/Write system=reduced", "Sweep/Tolerance=1e-8")
+        results = self.study("sweep", band, *sweep)
+        reduced = squeal.System.read(results / "system")
+        self.assertLessEqual(reduced.size, n + 1)
+        points = self.rows(results / "system", "points")
+        self.assertGreaterEqual(len(points), 7)
+        full, omega = squeal.System.read(self.folder / "system"), 3. * math.pi
+        for point in points:
+            self.assertLessEqual(point["largest error of lambda [-]"], 1e-8)
+            found, expected = ([value for value in system.solve({"p": point["p [-]"]}).eigenvalues
+                                if 1e-6 < value.imag < omega and abs(value) < 10. * omega] for system in (reduced, full))
+            self.assertEqual(len(found), len(expected))
+            for value in found:
+                self.assertLess(min(abs(value - other) for other in expected), 2e-8 * abs(value))
 
     def test_flutter_with_multiplier(self):
         """Flutter of two dofs and a third one fixed by a Lagrange multiplier: threshold, map and samples at full order."""

@@ -29,4 +29,8 @@ namespace Squeal
                            const SolverParameters &solvers,
                            const std::string      &source,
                            Progress               &progress);
+
+  /// ω_max² MᵀM at a value of the varied parameter: an inner product for bases of such systems, which ignores massless dofs and forces of
+  /// constraints; combinations of modes that consist of these only make a projection singular.
+  std::shared_ptr<const SparseMatrix> inertia_square(const CoupledSystem &system, double value, double omega_max);
 } // namespace Squeal

@@ -6,6 +6,7 @@
 #include <squeal/estimates/eigenvalue_estimates.h>
 
 #include <complex>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -56,13 +57,22 @@ namespace Squeal
    * Reduced modes are then ranked by their share in the span of the cluster, and angles between the subspaces are given in addition to
    * ε_mac, all in the complex M-inner product. A reference mode without image in a poor basis gets the best match within 30 % of its λ.
    *
-   * @param system    the frictionless problem: undamped()
-   * @param inverse   factor of K_c, or of the shifted stiffness that replaces it
+   * @param mass      M
    * @param modes     with BandEnd::open; otherwise modes near the end of the band may lack counterparts
    * @param reference undamped_modes() for the frictionless problem
+   * @param estimate  errors of reduced modes from their residuals
    *
    * Throws SolverError if there are fewer reduced than reference modes.
    */
+  std::vector<ModeError> reduction_errors(const SparseMatrix                                             &mass,
+                                          const ReducedModel                                             &model,
+                                          const ReducedModes                                             &modes,
+                                          const ComplexModes                                             &reference,
+                                          const std::function<EigenvalueEstimates(const ReducedModes &)> &estimate,
+                                          double                                                          cluster_tolerance = 1e-3);
+
+  /// The same for a @p system with a definite part, undamped() for the frictionless problem, with the factor of K_c or of the shifted
+  /// stiffness that replaces it.
   std::vector<ModeError> reduction_errors(const CoupledSystem  &system,
                                           const UpdatedInverse &inverse,
                                           const ReducedModel   &model,

@@ -50,11 +50,15 @@ namespace Squeal
 
     const CoupledSystem &full_order() const
     {
-      return *system;
+      return *full;
     }
 
     /// Σ θ TᵀAT, grouped by powers of λ.
     ReducedPencil at(const ParameterValues &values) const;
+
+    /// The model as a system of r dofs with terms TᵀAT, and FᵀT of the factors of low-rank terms with weights; other low-rank terms are
+    /// multiplied out.
+    CoupledSystem system() const;
 
     /// TᵀM_cT and TᵀK_cT.
     const DenseMatrix &mass() const
@@ -86,7 +90,7 @@ namespace Squeal
     /// Computes TᵀM_cT and TᵀK_cT from the terms.
     void find_norms();
 
-    const CoupledSystem                         *system;
+    const CoupledSystem                         *full;
     std::shared_ptr<MultiVector>                 T;        ///< null in a restricted model
     std::vector<DenseMatrix>                     matrices; ///< TᵀAT of each term; empty for terms with weights
     std::map<const LowRankFactor *, DenseMatrix> factors;

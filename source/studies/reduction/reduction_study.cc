@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 #include <squeal/base/exceptions.h>
+#include <squeal/studies/reduction/direct_reduction.h>
 #include <squeal/studies/reduction/reduction_tables.h>
 #include <squeal/studies/steps/imported_modes.h>
 #include <squeal/studies/steps/parameter_usage.h>
@@ -55,9 +56,8 @@ namespace Squeal
               frictionless.solution.cpu_seconds};
     }
 
-    ReferenceSolution reference_of_system(const GivenSystem &given, const FrictionlessModes &frictionless, Run &run)
+    ReferenceSolution reference_of_system(const FrictionModes &full)
     {
-      const FrictionModes      full = friction_modes(frictionless, given.value, run);
       std::vector<std::string> groups;
       for (const bool grows : full.unstable)
         groups.emplace_back(grows ? "unstable" : "other");
@@ -152,6 +152,19 @@ namespace Squeal
           measure(recipe, "");
       return result;
     }
+
+    /// Writes the tables of measured bases for a system with @p n uncoupled dofs.
+    void write_tables(const std::vector<MeasuredBasis> &candidates, const ReferenceSolution &reference, const int n, Run &run)
+    {
+      run.write_table("reduction_bases", reduction_basis_table(candidates, n, reference.seconds));
+      run.write_table("reduction_errors", reduction_error_table(candidates, reference));
+      run.write_table("reduction_estimates", reduction_estimate_table(candidates, reference));
+      run.store_table("reduction_modes", reduction_mode_table(candidates, reference));
+      run.screen << '\n';
+      run.progress.note(text("  full order: ", reference.seconds, " s of CPU for ", reference.labels.size(), " modes"));
+      run.finish();
+    }
+
     /// Measures all bases for a system with @p n uncoupled dofs, and writes the tables.
     void measure_bases(const ReductionPlan     &plan,
                        const FrictionlessModes &frictionless,
@@ -164,17 +177,10 @@ namespace Squeal
       std::vector<TruncatedModes> truncations;
       reference.seconds += sets.full_order_factorisation();
       const std::vector<MeasuredBasis> candidates = all_measured(sets, reference, truncations);
-
-      run.write_table("reduction_bases", reduction_basis_table(candidates, n, reference.seconds));
       if (!truncations.empty())
         run.write_table("reduction_truncations", reduction_truncation_table(truncations));
       run.write_table("reduction_costs", sets.cost_table());
-      run.write_table("reduction_errors", reduction_error_table(candidates, reference));
-      run.write_table("reduction_estimates", reduction_estimate_table(candidates, reference));
-      run.store_table("reduction_modes", reduction_mode_table(candidates, reference));
-      run.screen << '\n';
-      run.progress.note(text("  full order: ", reference.seconds, " s of CPU for ", reference.labels.size(), " modes"));
-      run.finish();
+      write_tables(candidates, reference, n, run);
     }
   } // namespace
 
@@ -193,10 +199,17 @@ namespace Squeal
   /// `Study = reduction` for a system file: bases of its modes and of their responses.
   static void run_reduction_of_system(Run &run)
   {
-    const GivenSystem       given        = given_system(run);
-    const ReductionPlan     plan         = reduction_plan(run.parameters, given.file, given.coupled, given.value);
+    const GivenSystem   given = given_system(run);
+    const ReductionPlan plan  = reduction_plan(run.parameters, given.file, given.coupled, given.value);
+    if (!given.coupled.stiffness)
+      {
+        const ReferenceSolution reference = reference_of_system(direct_solution(given, run));
+        write_tables({direct_pod(given, plan, reference.modes, run)}, reference, given.file.map.n(), run);
+        return;
+      }
     const FrictionlessModes frictionless = imported_modes(given.coupled, given.coupled, run);
-    measure_bases(plan, frictionless, given.coupled, reference_of_system(given, frictionless, run), given.file.map.n(), run);
+    measure_bases(plan, frictionless, given.coupled, reference_of_system(friction_modes(frictionless, given.value, run)),
+                  given.file.map.n(), run);
   }
 
   extern const Study reduction_study = [] {

@@ -57,8 +57,7 @@ namespace Squeal
       throw SolverError(
         "the symmetric part of the stiffness has negative eigenvalues, or it and the mass are singular for the same motion",
         "file " + run.parameters.system.path(),
-        "mark terms that may destabilise by \"kind\": \"friction\", eliminate constraints, and check the signs of the terms; all studies "
-        "except reduction can solve such systems");
+        "mark terms that may destabilise by \"kind\": \"friction\", eliminate constraints, and check the signs of the terms");
     const auto count = number_of_modes(system, (1. + margin) * omega_max, solvers, run.progress);
 
     FrictionlessModes result;

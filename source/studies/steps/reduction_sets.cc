@@ -22,13 +22,14 @@ namespace Squeal
         , has_contact_nodes(!p.system)
       {}
 
-      bool has_friction, has_damping, has_contact_nodes, has_snapshots = true;
+      bool has_friction, has_damping, has_contact_nodes, has_snapshots = true, has_definite_part = true;
     };
 
     bool fits(const BasisRecipe &recipe, const Problem &problem)
     {
       return (problem.has_friction || !recipe.needs_friction) && (problem.has_damping || !recipe.needs_damping) &&
-             (problem.has_contact_nodes || !recipe.needs_contact_nodes()) && (problem.has_snapshots || !recipe.is_pod);
+             (problem.has_contact_nodes || !recipe.needs_contact_nodes()) && (problem.has_snapshots || !recipe.is_pod) &&
+             (problem.has_definite_part || recipe.is_pod);
     }
 
     /// Bases named in the parameters; if none is named, all that fit.
@@ -102,6 +103,8 @@ namespace Squeal
         refuse(*recipe, "requires friction", "set Reduction/Problem = friction, or remove it");
       else if (!problem.has_damping && recipe->needs_damping)
         refuse(*recipe, "needs damping, but there is none", "add damping, or remove the basis");
+      else if (!problem.has_definite_part && !recipe->is_pod)
+        refuse(*recipe, "needs real modes, but the system has no definite part", "set it to POD");
     if (plan.rests_on(BasisSource::snapshots) && parameters.reduction.snapshots.empty())
       throw ParameterError("the basis POD has no snapshots", "parameter Reduction/Snapshots", "give at least one value");
     return plan;
@@ -116,13 +119,14 @@ namespace Squeal
   {
     const FileParameter *varied = file.find(system.varied);
     Problem              problem(parameters);
-    problem.has_damping      = system.has_damping();
-    const auto &snapshots    = parameters.reduction.snapshots;
-    problem.has_snapshots    = varied != nullptr && std::all_of(snapshots.begin(), snapshots.end(), [&](const double snapshot) {
+    problem.has_damping       = system.has_damping();
+    problem.has_definite_part = system.stiffness != nullptr;
+    const auto &snapshots     = parameters.reduction.snapshots;
+    problem.has_snapshots     = varied != nullptr && std::all_of(snapshots.begin(), snapshots.end(), [&](const double snapshot) {
                               return varied->lower <= snapshot && snapshot <= varied->upper;
                             });
-    const ReductionPlan plan = plan_for(problem, parameters, value);
-    if (!problem.has_snapshots && plan.rests_on(BasisSource::snapshots))
+    const ReductionPlan plan  = plan_for(problem, parameters, value);
+    if (!problem.has_snapshots && (plan.rests_on(BasisSource::snapshots) || !problem.has_definite_part))
       throw ParameterError(varied == nullptr ? "the basis POD needs a parameter, and the system has none" :
                                                text("snapshots are outside the range of ", varied->name, " from ",
                                                     exact_text(varied->lower), " to ", exact_text(varied->upper)),

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+#include <squeal/base/exceptions.h>
+#include <squeal/linear_algebra/mass_orthonormal.h>
 #include <squeal/studies/sweep/sweep_charts.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <set>
 
 namespace Squeal
 {
@@ -37,7 +41,110 @@ namespace Squeal
         result.push_back(values[number]);
       return result;
     }
+
+    /// Differences between the modes of a reduced model and those at full order.
+    struct Differences
+    {
+      double largest_error = 0.; ///< |λ̂ − λ| / |λ|
+      int    n_other       = 0;  ///< modes of the reduced model in the band without counterpart at full order
+    };
+
+    /// Each mode at full order has the nearest reduced mode that is not yet taken as its counterpart.
+    Differences differences(const SweepModel &model, const ChartPoint &point, std::vector<std::complex<double>> reduced)
+    {
+      Differences result;
+      for (std::size_t i = 0; i < point.lambda.size(); ++i)
+        {
+          const std::complex<double> lambda  = point.lambda[i];
+          const auto                 nearest = std::min_element(reduced.begin(), reduced.end(),
+                                                                [&](const auto &a, const auto &b) { return std::abs(a - lambda) < std::abs(b - lambda); });
+          if (nearest != reduced.end())
+            {
+              if (model.is_in_band(lambda))
+                result.largest_error = std::max(result.largest_error, std::abs(*nearest - lambda) / std::abs(lambda));
+              reduced.erase(nearest);
+            }
+          else if (model.is_in_band(lambda))
+            result.largest_error = std::numeric_limits<double>::infinity();
+        }
+      const double rate = model.run.parameters.discretization.band().rate;
+      result.n_other    = static_cast<int>(std::count_if(reduced.begin(), reduced.end(), [&](const std::complex<double> &lambda) {
+        return model.is_in_band(lambda) && lambda.real() >= -rate;
+      }));
+      return result;
+    }
+
+    /// Real and imaginary parts of right and left vectors of a point.
+    MultiVector snapshot(const ChartPoint &point, const RowMap &map)
+    {
+      const MultiVector parts[] = {distribute(point.right.real(), map), distribute(point.right.imag(), map),
+                                   distribute(point.left.real(), map), distribute(point.left.imag(), map)};
+      return join({&parts[0], &parts[1], &parts[2], &parts[3]});
+    }
   } // namespace
+
+  ReducedModel snapshot_model(SweepModel &model, std::map<SweepModel::Place, double> &errors)
+  {
+    constexpr double     first_cut = 1e-3, last_cut = 1e-11;
+    Run                 &run  = model.run;
+    const CoupledSystem &full = model.frictionless.linearisation.coupled;
+    const Band           band((1. + band_margin) * model.largest_circular_frequency, run.parameters.discretization.maximum_rate);
+
+    run.progress.begin("Reduced model");
+    // Values of the sweep train the basis, those of the search for thresholds only verify it
+    std::vector<SweepModel::Place> places;
+    for (const OperatingPoint &point : model.regime.points)
+      places.emplace_back(point.line, point.friction_coefficient);
+    auto worst = std::find_if(places.begin(), places.end(), [&](const auto &place) { return !model.known.at(place).lambda.empty(); });
+    if (worst == places.end())
+      throw SolverError("no mode of the sweep lies in the band", "parameter Output/Write system", "raise Band/Maximum frequency");
+    std::set<SweepModel::Place> chosen  = {*worst};
+    MultiVector                 set     = snapshot(model.known.at(*worst), full.map());
+    const auto                  inertia = inertia_square(full, worst->second, model.largest_circular_frequency);
+    for (double cut = first_cut;;)
+      {
+        ReducedModel result(full);
+        result.extend(principal_axes(*inertia, set, cut, set.n_columns()));
+        const CoupledSystem system  = result.system();
+        double              largest = -1.;
+        for (auto place = places.begin(); place != places.end(); ++place)
+          {
+            const OperatingPoint point = model.plan.point(place->first, place->second, model.regime.closed);
+            const JudgedModes    modes =
+              direct_modes(with_values(system, point.values), place->second, band, run.parameters.solvers, "reduced model", run.progress);
+            const Differences found = differences(model, model.known.at(*place), modes.modes.lambda);
+            const double      size  = found.n_other > 0 ? std::numeric_limits<double>::infinity() : found.largest_error;
+            errors[*place]          = found.largest_error;
+            if (size > largest)
+              {
+                largest = size;
+                worst   = place;
+              }
+          }
+        if (largest > run.parameters.sweep.tolerance)
+          {
+            if (chosen.insert(*worst).second)
+              set.append(snapshot(model.known.at(*worst), full.map()));
+            else if (cut > last_cut)
+              cut /= 10.;
+            else
+              throw SolverError("modes of a projection on the modes of the sweep differ from these modes", "parameter Output/Write system",
+                                "narrow the range of the sweep, or set it to full");
+          }
+        else if (places.size() < model.known.size())
+          {
+            places.clear();
+            for (const auto &[place, point] : model.known)
+              places.push_back(place);
+          }
+        else
+          {
+            run.progress.finish(text(result.size(), " vectors from ", chosen.size(), " of ", places.size(),
+                                     " operating points, largest error of lambda ", largest));
+            return result;
+          }
+      }
+  }
 
   ChartPoint SweepModel::evaluate_directly(const OperatingPoint &point) const
   {

@@ -124,9 +124,6 @@ namespace Squeal
   {
     if (!frictionless.linearisation.coupled.stiffness)
       {
-        if (run.parameters.output.write_system == SystemOutput::reduced)
-          throw ParameterError("the system has no definite part, and so no reduced model to write", "parameter Output/Write system",
-                               "set it to full or none");
         run.progress.note("  no definite part: every value is solved at full order, and modes are numbered at the first one");
         return;
       }

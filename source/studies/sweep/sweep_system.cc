@@ -10,46 +10,6 @@ namespace Squeal
 {
   namespace
   {
-    std::shared_ptr<const SparseMatrix> as_sparse(const DenseMatrix &A, const RowMap &rows, const RowMap &columns)
-    {
-      return std::make_shared<SparseMatrix>(rows, columns, [&](const int i, SparseMatrix::Row &row) {
-        for (Eigen::Index j = 0; j < A.cols(); ++j)
-          row.emplace_back(static_cast<int>(j), A(rows.number(i), j));
-      });
-    }
-
-    /// Terms of the reduced model; low-rank terms without weights are multiplied out.
-    std::vector<Term> reduced_terms(const ReducedModel &model)
-    {
-      const CoupledSystem                                                  &system = model.full_order();
-      const RowMap                                                          map = RowMap::even(model.size(), system.map().communicator());
-      std::vector<Term>                                                     result;
-      std::map<const LowRankFactor *, std::shared_ptr<const LowRankFactor>> factors;
-      const auto reduced_factor = [&](const std::shared_ptr<const LowRankFactor> &factor) {
-        auto &entry = factors[factor.get()];
-        if (!entry)
-          entry = std::make_shared<LowRankFactor>(
-            as_sparse(model.motions(*factor), RowMap::even(factor->rank(), system.map().communicator()), map));
-        return entry;
-      };
-      for (std::size_t k = 0; k < system.terms.size(); ++k)
-        {
-          Term term = system.terms[k];
-          if (!term.weights.empty())
-            {
-              term.left  = reduced_factor(term.left);
-              term.right = reduced_factor(term.right);
-              result.push_back(term);
-              continue;
-            }
-          term.left = term.right = nullptr;
-          term.matrix            = as_sparse(model.projected(k), map, map);
-          for (Term &part : split_by_symmetry(term))
-            result.push_back(std::move(part));
-        }
-      return result;
-    }
-
     /// Range of each parameter covered by the plan.
     std::vector<FileParameter> covered_parameters(const SweepModel &model)
     {
@@ -81,19 +41,20 @@ namespace Squeal
     }
 
     /// T on the dofs of the bodies or of the file, as a dense Matrix Market file. Collective.
-    void write_basis(const SweepModel &model, std::ostream &stream)
+    void write_basis(const ReducedModel &model, std::ostream &stream)
     {
-      const MultiVector  &T      = model.reduced->reduced().basis();
-      const SparseMatrix &kernel = *model.frictionless.linearisation.coupled.kernel;
+      const MultiVector  &T      = model.basis();
+      const SparseMatrix &kernel = *model.full_order().kernel;
       stream << "%%MatrixMarket matrix array real general\n" << kernel.n_rows() << ' ' << T.n_columns() << '\n';
       stream.precision(17);
       for (int j = 0; j < T.n_columns(); ++j)
         stream << replicate(kernel * view(T, j, 1)) << '\n';
     }
-    /// Largest estimated error of λ at every point.
-    Table point_table(const SweepModel &model)
+
+    /// Largest error of λ at every point.
+    Table point_table(const SweepModel &model, const std::map<SweepModel::Place, double> &errors, const std::string &name)
     {
-      using Row             = const std::pair<const std::pair<int, double>, ChartPoint>;
+      using Row             = const std::pair<const SweepModel::Place, double>;
       const SweepPlan &plan = model.plan;
       Columns<Row>     columns{{plan.axis.name, plan.axis.unit, [](const Row &row) { return row.first.second; }}};
       if (!plan.second_axis.name.empty())
@@ -101,13 +62,12 @@ namespace Squeal
                              const SweepLine &line = plan.lines[row.first.first];
                              return line.kind == SweepLine::Kind::map ? Entry(line.value) : Entry();
                            }});
-      columns.push_back(
-        {"largest estimated error of lambda", "-", [&](const Row &row) { return model.largest_error(row.second); }, 1, true});
-      return Table(columns, model.known);
+      columns.push_back({name, "-", [](const Row &row) { return row.second; }, 1, true});
+      return Table(columns, errors);
     }
   } // namespace
 
-  void write_system_of(const SweepModel &model)
+  void write_system_of(SweepModel &model)
   {
     Run                             &run           = model.run;
     const std::string                folder        = model.plan.regimes.size() > 1 ? text("system_", model.regime.number, "/") : "system/";
@@ -124,11 +84,21 @@ namespace Squeal
             write_scene_system(linearisation, parameters.front(), folder, run);
           return;
         case SystemOutput::reduced:
-          write_system(reduced_terms(model.reduced->reduced()), linearisation.coupled.values,
+          std::map<SweepModel::Place, double> errors;
+          std::optional<ReducedModel>         of_snapshots;
+          if (!model.reduced)
+            of_snapshots = snapshot_model(model, errors);
+          else
+            for (const auto &[place, point] : model.known)
+              errors[place] = model.largest_error(point);
+          const ReducedModel &reduced = of_snapshots ? *of_snapshots : model.reduced->reduced();
+          write_system(reduced.system().terms, linearisation.coupled.values,
                        {parameters, "reduced model", {}, {}, Reduction{"basis.mtx", "points.csv", run.parameters.sweep.tolerance}}, folder,
                        run);
-          run.folder().write(folder + "basis.mtx", [&](std::ostream &stream) { write_basis(model, stream); });
-          run.folder().write(folder + "points.csv", [&](std::ostream &stream) { point_table(model).write_csv(stream); });
+          run.folder().write(folder + "basis.mtx", [&](std::ostream &stream) { write_basis(reduced, stream); });
+          run.folder().write(folder + "points.csv", [&](std::ostream &stream) {
+            point_table(model, errors, of_snapshots ? "largest error of lambda" : "largest estimated error of lambda").write_csv(stream);
+          });
       }
   }
 } // namespace Squeal

@@ -91,6 +91,9 @@ namespace Squeal
   /// is solved at full order, and ChartPoint contains vectors of the scaled dofs instead of basis coordinates.
   struct SweepModel
   {
+    /// Line and friction coefficient of a point.
+    using Place = std::pair<int, double>;
+
     /// Linearises at the point with the largest contact damping: the basis starts from the responses to it. All arguments must outlive the
     /// model.
     SweepModel(const SweepPlan &plan, const ContactRegime &regime, Run &run);
@@ -130,14 +133,14 @@ namespace Squeal
     /// Labels of the modes in the band, as in a run at one friction coefficient: the growing mode of a doublet is plus.
     std::vector<ModeLabel> labels_in_band(const ChartPoint &point) const;
 
-    const SweepPlan                             &plan;
-    const ContactRegime                         &regime;
-    Run                                         &run;
-    const double                                 largest_circular_frequency; ///< end of the band [rad/s]
-    FrictionlessModes                            frictionless;
-    bool                                         sharpens_thresholds = true; ///< whether follow_branches() enriches the basis for them
-    std::unique_ptr<ChartModel>                  reduced;                    ///< null without a definite part
-    std::map<std::pair<int, double>, ChartPoint> known;                      ///< by line and friction coefficient
+    const SweepPlan            &plan;
+    const ContactRegime        &regime;
+    Run                        &run;
+    const double                largest_circular_frequency; ///< end of the band [rad/s]
+    FrictionlessModes           frictionless;
+    bool                        sharpens_thresholds = true; ///< whether follow_branches() enriches the basis for them
+    std::unique_ptr<ChartModel> reduced;                    ///< null without a definite part
+    std::map<Place, ChartPoint> known;
 
   private:
     /// Starts the reduced model.
@@ -163,8 +166,19 @@ namespace Squeal
   /// Evaluates all points of the contact set to the requested tolerance, as a step of the run.
   void evaluate_points(SweepModel &model);
 
+  /**
+   * Reduced model of a sweep at full order: a Galerkin projection on principal axes of the right and left modes of some of its points. The
+   * point with the largest error is added, or the truncation of the axes lowered, until all points meet the tolerance of the sweep and the
+   * reduced model has no other modes in the band.
+   *
+   * @param errors receives the largest |λ̂ − λ| / |λ| of the band for every known point
+   *
+   * Throws SolverError if no truncation meets it.
+   */
+  ReducedModel snapshot_model(SweepModel &model, std::map<SweepModel::Place, double> &errors);
+
   /// `Output/Write system`: writes the system of a contact set, or its reduced model with the basis, to the folder `system` of the results.
-  void write_system_of(const SweepModel &model);
+  void write_system_of(SweepModel &model);
 
   /// Modes over the friction coefficient at one load and speed, for one contact set.
   struct SweepChart
