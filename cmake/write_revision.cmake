@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-# Writes FILE, which defines the revision of the sources in SOURCE_DIRECTORY, unless it says so already:
+# Writes FILE, which defines the revision of the sources in SOURCE_DIRECTORY, unless it is up to date:
 #
 #   cmake -D SOURCE_DIRECTORY=... -D FILE=... -P write_revision.cmake
 
 set(revision "")
-# The sources may lie within a repository that is not theirs.
+# The sources may be inside an unrelated repository.
 execute_process(COMMAND git -C "${SOURCE_DIRECTORY}" rev-parse --show-toplevel
                 OUTPUT_VARIABLE repository OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
 file(REAL_PATH "${SOURCE_DIRECTORY}" sources)

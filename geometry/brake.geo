@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// A disc brake: a disc with its hat, and two pads, each of lining and backplate, chamfered, with one slot. Pads and disc are meshed by
-// themselves, with quadratic tetrahedra: their faces need not match. An example of a solid of one's own; prm/brake.prm says which surfaces
-// rub, and what the parts are made of. Units: m, degree.
+// A disc brake: a disc with its hat, and two pads, each of lining and backplate, chamfered, with one slot. Pads and disc are meshed
+// individually, with quadratic tetrahedra: their faces need not match. An example of a custom solid; prm/brake.prm defines the sliding surfaces
+// and the materials. Units: m, degree.
 
 SetFactory("OpenCASCADE");
 
@@ -28,7 +28,7 @@ DefineConstant[
 
 h = ring_thickness / 2;
 
-// Disc: the rubbed ring, and a hat that opens downwards and stands on it
+// Disc: the friction ring, and a hat on it that opens downwards
 Cylinder(1) = {0, 0, -h, 0, 0, 2 * h, disc_radius};
 Cylinder(2) = {0, 0, -h, 0, 0, h + hat_height, hat_radius + hat_wall / 2};
 disc() = BooleanUnion{ Volume{1}; Delete; }{ Volume{2}; Delete; };
@@ -60,7 +60,7 @@ Rotate{ {0, 0, 1}, {0, 0, 0}, -angle / 2 }{ Volume{outer()}; }
 copy()  = Symmetry{0, 0, 1, 0}{ Duplicata{ Volume{outer()}; } };
 inner() = BooleanFragments{ Volume{copy(0)}; Delete; }{ Volume{copy(1)}; Delete; }; // what two copies share is one surface again
 
-// Parts and surfaces by the boxes that hold them
+// Parts and surfaces by bounding boxes
 e = 1e-5;
 top = h + lining_thickness;
 far = 2 * disc_radius;

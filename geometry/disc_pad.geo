@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 // Plan of a disc with one brake pad on each face instead of pins: a sector of
-// an annulus, the same on both faces. An example of a plan of one's own; Squeal
+// an annulus, the same on both faces. An example of a custom plan; Squeal
 // extrudes the disc and both pads from it. Lines that name volumes or layers
 // are not needed: thickness and height come from section "Geometry" of the
 // parameter file, as do the radii of the disc and the element size. Opened in
-// Gmsh by itself, the file shows the plan with the values below.
+// Gmsh directly, the file shows the plan with the values below.
 // Units: m, degree.
 
 DefineConstant[

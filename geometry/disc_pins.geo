@@ -3,7 +3,7 @@
 // Plan of the built-in geometry: an annular disc and round pins on its two
 // faces. Squeal meshes this plan in two dimensions, fills the pins' circles
 // with a structured grid and extrudes disc and pins layer by layer; opened in
-// Gmsh by itself, the file shows the plan with the values below. Squeal sets
+// Gmsh directly, the file shows the plan with the values below. Squeal sets
 // them from section "Geometry" of its parameter file. Units: m, degree.
 
 DefineConstant[
@@ -24,7 +24,7 @@ EndIf
 
 // Three blocks of k x k elements fill a pin: 3 k (k + 1) + 1 nodes, 6 k of them
 // on the circle. Every element is halved after meshing, hence k intervals for
-// each third of a circle and twice the wanted element size.
+// each third of a circle and twice the required element size.
 k    = Round((Sqrt(12 * nodes_per_pin_face - 3) - 3) / 6);
 size = 2 * element_size;
 
@@ -34,8 +34,8 @@ Mesh.SubdivisionAlgorithm = 1;
 Mesh.MeshSizeMax          = size;
 
 // Pins. A top and a bottom pin that overlap share a hole in the plan, nearest
-// first. Where the hole is not where the pin is, a physical point says where the
-// pin is; the mesh of the disc is sheared between its two faces.
+// first. If the hole and the pin are at different positions, a physical point
+// gives that of the pin; the mesh of the disc is sheared between its two faces.
 n_top     = #top_pin_radii();
 n_pins    = n_top + #bottom_pin_radii();
 tolerance = 1e-6 * pin_diameter;
@@ -104,7 +104,7 @@ For pin In {1 : n_pins}
 EndFor
 
 // Holes that overlap, because a pin overlaps two of the other side, move apart,
-// and so do holes of pins on different sides with no room for elements between:
+// and so do holes of pins on different sides without enough space for elements between them:
 // halving a circle of three intervals moves nodes by half its radius.
 closest = (k > 1) ? 1.05 : 1.25;
 least   = disc_inner_radius + 0.55 * pin_diameter;
@@ -145,7 +145,7 @@ For pass In {1 : 50}
   EndIf
 EndFor
 If(crowded)
-  Error("There is no room in the plan for the top and bottom pins, which overlap but are not opposite each other. Move the pins of one side, or draw a plan of your own");
+  Error("There is no room in the plan for the top and bottom pins, which overlap but are not opposite each other. Move the pins of one side, or draw a custom plan");
 EndIf
 
 // Circles of three arcs, made with the first pin of a pair
@@ -186,7 +186,7 @@ EndFor
 s = news; Plane Surface(s) = {loop_1, loop_0, holes()};
 
 // Around pins whose edges are much shorter than the elements of the disc these
-// grow by two fifths of the distance; Gmsh by itself would fill the space between pins with short ones.
+// grow by two fifths of the distance; the default of Gmsh would fill the space between pins with short ones.
 edge = Pi * pin_diameter / (3 * k);
 If(edge < size / 4)
   outlines() = {};

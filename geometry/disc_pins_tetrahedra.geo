@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The built-in disc and pins as a solid of quadratic tetrahedra, curved where the bodies are round. Disc and pins are meshed one by one, so
-// their contact faces do not match. Squeal sets the variables of disc_pins.geo from section "Geometry" of its parameter file, and the two
+// The built-in disc and pins as a solid of quadratic tetrahedra, curved where the bodies are round. Disc and pins are meshed individually,
+// so that their contact faces do not match. Squeal sets the variables of disc_pins.geo from section "Geometry" of its parameter file, and the two
 // below them on request; numbers of layers and of nodes per pin face have no effect. Edges of the disc are twice the element size long: nodes of
 // quadratic elements are half an edge apart. Units: m, degree.
 

@@ -2,7 +2,7 @@
 
 // Plan of a ring-shaped disc and a pad on its upper face that covers the whole
 // circumference between the mean radius and the rim: waves along the contact
-// have no edge to end at. element_size is the length of the elements along the
+// meet no edge. element_size is the length of the elements along the
 // mean radius. Units: m.
 
 DefineConstant[

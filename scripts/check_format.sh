@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-# Tells the sources whose layout is not that of .clang-format, with clang-format 14, the version of Debian 12, and those that do not
-# name their licence:
+# Checks the layout of the sources by .clang-format (clang-format 14, the version of Debian 12) and their
+# licence headers:
 #
-#   scripts/check_format.sh          lists them
-#   scripts/check_format.sh --fix    lays them out
+#   scripts/check_format.sh          lists the files with errors
+#   scripts/check_format.sh --fix    corrects the layout
 
 set -euo pipefail
 # shellcheck source=scripts/setup.sh

@@ -302,7 +302,7 @@ def of_dissipation(undamped, damped):
 
 
 def statements(without, damped):
-    """Statements of section 4 of the paper, except those on modes that the runs lack."""
+    """Statements of section 4 of the paper, except for modes that are missing in the runs."""
     modes = modes_to_compare(without, damped)
     found = (*of_frequencies(*modes, len(damped.rows("sliding_pins"))), *of_growth(modes[2]), *of_dissipation(*modes[2:]))
     return [{"section": section, "statement": words, "paper": paper, "here": here, "unit": unit, "verdict": verdict, "rule": rule,

@@ -10,7 +10,7 @@
 
 With all modes, the time buttons step through them by frequency [Hz], warped by the real part. With one mode they play --periods of
 Re(phi e^(lambda t)), including growth; the largest displacement is drawn as --size times the radius of the disc. MODE is a row of
-complex_modes.csv, counted from 1, or a label, of which the fastest growing mode is taken. Colours show the amplitude; the title has mode,
+complex_modes.csv, counted from 1, or a label, which selects its fastest growing mode. Colours show the amplitude; the title has mode,
 frequency, effective damping ratio and verdict. Views are iso, top, side, below; faces: the upper pins seen from the hidden disc, with the
 normal reactions on their contact faces; and energy: the same faces with their part in the divergence rate of a growing mode.
 

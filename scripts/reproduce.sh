@@ -1,17 +1,17 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-# Computes the numbers that README.md and the pages of doc/ quote, and prints each beside what the page says:
+# Computes the numbers that README.md and the pages of doc/ quote, and prints each next to the number on the page:
 #
 #   scripts/reproduce.sh [--list] [--only WORDS] [PAGE]...
 #
-#   PAGE          README, table1, dissipation, ...; without any, all pages
-#   --list        prints pages and sentences, runs nothing
+#   PAGE          README, table1, dissipation, ...; default: all pages
+#   --list        prints pages and sentences without running anything
 #   --only WORDS  only the sentences that contain WORDS
 #
-# Results go to results/reproduce/; runs that are there already, of the same command and not older than the program, are
-# not repeated. The exit status is 1 where a number differs from the page in a printed digit. All pages take hours of one core. Times
-# are not among the numbers: doc/benchmarks.md names their commands.
+# Results go to results/reproduce/; existing runs of the same command that are not older than the program are not repeated.
+# The exit status is 1 if a number differs from the page in a printed digit. All pages take hours on one core. Times are not
+# reproduced: doc/benchmarks.md names the commands for them.
 
 set -euo pipefail
 # shellcheck source=scripts/setup.sh

@@ -5,9 +5,9 @@
 #
 #   scripts/run.sh [PRM]... [-- OPTION...]
 #
-# Without PRM, runs prm/disc_pins.prm. Results of x.prm go to results/x, plots of them to results/x/plots, and a page for the browser
-# with all of it to results/x/report.html. Options after
-# -- are handed to squeal:
+# Without PRM, runs prm/disc_pins.prm. Results of x.prm go to results/x, plots of them to results/x/plots, and a report for the browser
+# to results/x/report.html. Options after
+# -- are passed to squeal:
 #
 #   scripts/run.sh prm/disc_pins.prm -- --set "Operation/Friction coefficient=0.3"
 
@@ -35,10 +35,10 @@ done
 options=("$@")
 ((${#parameter_files[@]} > 0)) || parameter_files=("$squeal_root/prm/disc_pins.prm")
 
-# What tells the results of one run from those of another; nothing where there are none.
+# Identifies the results of a run; empty if there are none.
 state_of() { stat --format '%i %y' "$1/run.json" 2>/dev/null || true; }
 
-# Plots and report only add to the results: where they cannot be made, the run has succeeded all the same.
+# A missing plot or report does not make the run fail.
 draw_plots()
 {
   local python
@@ -57,6 +57,6 @@ for parameter_file in "${parameter_files[@]}"; do
   name=$(basename "$parameter_file" .prm)
   former=$(state_of "results/$name")
   build/release/squeal "${parameter_file#"$squeal_root/"}" --output "results/$name" "${options[@]}"
-  # Options such as --dry-run leave no results
+  # Options such as --dry-run write no results
   [[ $(state_of "results/$name") == "$former" ]] || draw_plots "results/$name"
 done

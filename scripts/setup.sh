@@ -1,25 +1,25 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-# Makes the checkout ready: installs the Debian packages that are missing, configures and builds.
-# run.sh and test.sh source this file; called by itself it builds the program and stops there:
+# Prepares the checkout: installs missing Debian packages, configures and builds. run.sh and test.sh
+# source this file; called directly, it only builds the program:
 #
-#   scripts/setup.sh              what building, running and most tests need
-#   scripts/setup.sh browser      also the browser in which scripts/test.sh looks at pages of scripts/report.py
-#   scripts/setup.sh pictures     also what scripts/render_*.py need
+#   scripts/setup.sh              packages for building, running and most tests
+#   scripts/setup.sh browser      also the browser in which scripts/test.sh tests the pages of scripts/report.py
+#   scripts/setup.sh pictures     also packages for scripts/render_*.py
 #   scripts/setup.sh paraview     also ParaView for scripts/paraview_modes.py
-#   scripts/setup.sh import       also what scripts/import_mesh.py and the fields of the Python module need
+#   scripts/setup.sh import       also packages for scripts/import_mesh.py and the fields of the Python module
 #   scripts/setup.sh peers        also SLEPc for scripts/check_eigenvalues.py
-#   scripts/setup.sh package      also what cpack needs
+#   scripts/setup.sh package      also packages for cpack
 #
-# When nothing is missing, nothing is downloaded and no privilege is needed.
+# If nothing is missing, nothing is downloaded and no privilege is needed.
 
 set -euo pipefail
 
 squeal_root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 
-# libdeal.ii-dev brings MPI, Trilinos, p4est, METIS, ARPACK and the other libraries deal.II was built with;
-# what CMakeLists.txt links by name is listed all the same.
+# libdeal.ii-dev depends on MPI, Trilinos, p4est, METIS, ARPACK and the other libraries with which deal.II
+# was built; the libraries that CMakeLists.txt links directly are listed nevertheless.
 packages=(g++ cmake ninja-build git
           libdeal.ii-dev libsuitesparse-dev libmumps-dev libparpack2-dev libgmsh-dev
           libopenblas-dev liblapacke-dev libeigen3-dev libboost-serialization-dev nlohmann-json3-dev libmuparser-dev libnlopt-cxx-dev libceres-dev libopenturns-dev zlib1g-dev libseccomp-dev
@@ -27,7 +27,7 @@ packages=(g++ cmake ninja-build git
           python3-plotly libjs-three libjs-jquery libjs-jquery-datatables)
 packages_browser=(chromium chromium-driver python3-selenium)
 packages_pictures=(python3-vtk9 libgl1-mesa-dri xvfb xauth)
-# Debian has python3-paraview in the place of python3-vtk9, whose modules it brings as well.
+# In Debian, python3-paraview replaces python3-vtk9 and contains its modules.
 packages_paraview=(paraview python3-paraview libgl1-mesa-dri xvfb xauth)
 packages_import=(python3-meshio python3-h5py python3-netcdf4)
 packages_peers=(python3-petsc4py python3-slepc4py)
@@ -35,7 +35,7 @@ packages_package=(dpkg-dev file)
 
 complain() { printf '%s\n' "$*" >&2; }
 
-# Prints those of the given packages that are not installed.
+# Prints the given packages that are not installed.
 missing_packages()
 {
   local installed package
@@ -45,7 +45,7 @@ missing_packages()
   done
 }
 
-# Installs the missing ones among the given packages, or says what to type.
+# Installs the missing packages, or prints the command to do so.
 install_packages()
 {
   local missing privilege=()
@@ -81,7 +81,7 @@ install_packages()
   rm -f "$log"
 }
 
-# The linker that deal.II asks for (Debian 13's was built to be linked with mold); prints the package, or nothing.
+# Prints the package of the linker that deal.II requires (mold on Debian 13), or nothing.
 linker_package()
 {
   local linker
@@ -91,7 +91,7 @@ linker_package()
   esac
 }
 
-# deal.II calls the BLAS that the system's alternatives name; the reference BLAS is about ten times slower.
+# deal.II uses the BLAS selected by the alternatives of the system; the reference BLAS is about ten times slower.
 check_blas()
 {
   local blas
@@ -103,7 +103,7 @@ check_blas()
   esac
 }
 
-# Compilations that may run together: one for each core, and 2 GB of memory each.
+# Number of parallel compilations: one per core, limited to one per 2 GB of memory.
 build_jobs()
 {
   local cores memory limit jobs
@@ -120,8 +120,8 @@ build_jobs()
   echo "$jobs"
 }
 
-# build PRESET [TARGET]...: configures when needed and builds the targets named, or everything; the output is shown when
-# something fails, and kept in build/PRESET/build.log.
+# build PRESET [TARGET]...: configures if necessary and builds the named targets, or everything; after an error, the output
+# is shown and kept in build/PRESET/build.log.
 build()
 {
   local preset=$1 targets=()
@@ -130,7 +130,7 @@ build()
   local directory=$squeal_root/build/$preset
   local log=$directory/build.log fresh=()
   mkdir -p "$directory"
-  # A build directory that came along with a copied checkout would build the original.
+  # A build directory in a copy of the checkout would build the original sources.
   if [[ -f $directory/CMakeCache.txt ]] &&
      ! grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$squeal_root" "$directory/CMakeCache.txt"; then
     fresh=(--fresh)
@@ -149,7 +149,7 @@ build()
   fi
 }
 
-# OpenBLAS falls back to SSE3 kernels on processors younger than itself: by what the processor can do, others are named.
+# OpenBLAS falls back to SSE3 kernels on processors newer than itself: select kernels by the flags of the processor.
 set_blas_kernels()
 {
   local flags
@@ -162,9 +162,9 @@ set_blas_kernels()
   esac
 }
 
-# The environment in which programs run: one BLAS thread for each process (threads that share cores
-# with other processes slow the factorisations down many times), and Open MPI usable in a container,
-# by root, and with more processes than cores, where those that wait must leave the core to the others.
+# Sets the environment of the programs: one BLAS thread per process (threads that share cores with
+# other processes slow down factorisations many times), and Open MPI for containers, for root, and for
+# more processes than cores, where waiting processes must yield the core.
 set_environment()
 {
   set_blas_kernels
@@ -179,7 +179,7 @@ set_environment()
   fi
 }
 
-# setup PRESET [TARGET]...: everything up to a program that can be run; without TARGET, the tests are built, too.
+# setup PRESET [TARGET]...: installs, configures and builds; without TARGET, also the tests.
 setup()
 {
   install_packages "${packages[@]}"

@@ -25,7 +25,7 @@ if [[ ${1:-} == --serve ]]; then
 fi
 mkdocs build --quiet --clean
 
-# Files that the pages outside of the site name
+# Files to which pages outside the site refer
 n_missing=0
 for page in README.md CONTRIBUTING.md SECURITY.md CHANGELOG.md; do
   while read -r link; do
@@ -36,7 +36,7 @@ for page in README.md CONTRIBUTING.md SECURITY.md CHANGELOG.md; do
   done < <(grep -oP '\]\(\K[^)#:]+(?=[)#])' "$page")
 done
 
-# Links and anchors of the site; as root, linkchecker works as the user nobody, who may not see the checkout
+# Links and anchors of the site; run as root, linkchecker switches to the user nobody, who may have no access to the checkout
 readable=$(mktemp -d)
 trap 'rm -rf "$readable"' EXIT
 cp -r build/site/. "$readable"

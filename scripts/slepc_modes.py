@@ -154,7 +154,7 @@ def petsc_matrix(matrix):
 
 
 def n_wanted(formulation, n_modes):
-    """Number of eigenvalues of which some lie beyond the band."""
+    """Number of eigenvalues to request so that some lie beyond the band."""
     return n_modes + 4 if formulation == "linear" else 2 * n_modes + 4
 
 

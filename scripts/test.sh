@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-# Installs what is missing, builds, and runs the tests; other arguments are handed to ctest:
+# Installs what is missing, builds, and runs the tests; other arguments are passed to ctest:
 #
 #   scripts/test.sh
 #   scripts/test.sh -R contact
-#   scripts/test.sh --extended        the long ones, which the others leave out, with their times
+#   scripts/test.sh --extended        the long tests, which are omitted otherwise, with their times
 
 set -euo pipefail
 # shellcheck source=scripts/setup.sh

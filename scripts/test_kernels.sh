@@ -1,18 +1,18 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-# Builds, and runs the tests that hang on dense decompositions with several sets of OpenBLAS kernels, whose results differ in the last digits:
+# Builds, and runs the tests that depend on dense decompositions with several sets of OpenBLAS kernels, which round differently:
 #
 #   scripts/test_kernels.sh
 #   scripts/test_kernels.sh -R sliding
 #
-# Arguments are handed to ctest. Kernels that the processor does not support and those of scripts/test.sh are skipped with a message.
+# Arguments are passed to ctest. Kernels that the processor does not support and those of scripts/test.sh are skipped with a message.
 
 set -euo pipefail
 # shellcheck source=scripts/setup.sh
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
-# What each set of kernels asks of the processor
+# Processor features required by each set of kernels
 declare -A needs=([Prescott]="pni" [Haswell]="avx2 fma" [SkylakeX]="avx512f avx512dq avx512bw avx512vl avx512cd")
 flags=" $(grep -m 1 '^flags' /proc/cpuinfo) "
 

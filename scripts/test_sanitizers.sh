@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
 # Builds with the assertions of deal.II and of squeal and with the address and undefined-behaviour sanitizers, and runs the quick
-# tests; arguments are handed to ctest:
+# tests; arguments are passed to ctest:
 #
 #   scripts/test_sanitizers.sh
 #   scripts/test_sanitizers.sh -R contact

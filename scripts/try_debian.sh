@@ -1,23 +1,23 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-# Tries the README's two commands on a bare Debian in a chroot: what they need and this machine happens to have
-# cannot hide there. Needs root and debootstrap.
+# Runs the two commands of the README on a bare Debian in a chroot, which reveals missing dependencies. Requires
+# root and debootstrap.
 #
 #   scripts/try_debian.sh [RELEASE] [--kernels NAME]... [--run-only | --package DEB] [--keep] [--in DIR]
 #
 #   RELEASE          bookworm (Debian 12, default), trixie (Debian 13) or sid
-#   --kernels NAME   OPENBLAS_CORETYPE of the tests; repeated, the tests run once with each (default: as detected)
+#   --kernels NAME   OPENBLAS_CORETYPE of the tests; if repeated, the tests run once with each (default: as detected)
 #   --run-only       only scripts/run.sh
 #   --package DEB    instead of both commands: installs this package, runs it and writes the report
-#   --keep           leaves the chroot in place, to look around or to try again quickly
-#   --in DIR         where the chroot is made (default: a temporary folder)
+#   --keep           keeps the chroot for inspection or a quick retry
+#   --in DIR         folder of the chroot (default: a temporary folder)
 #
-# Tried is the last commit of this checkout, cloned afresh. Packages come from where this machine gets its own.
-# The times printed last are those of the commands, with the installation of packages.
+# Tests a fresh clone of the last commit of this checkout. Packages come from the mirror of this machine. The
+# times printed at the end are those of the commands, including the installation of packages.
 
 set -euo pipefail
-# Mounts belong to this script alone and vanish with it, however it ends.
+# Mounts are visible to this script only and disappear when it ends.
 if [[ -z ${squeal_private_mounts:-} ]] && (($(id -u) == 0)); then
   squeal_private_mounts=yes exec unshare --mount "${BASH_SOURCE[0]}" "$@"
 fi
@@ -65,7 +65,7 @@ if [[ ! -x $root/usr/bin/apt-get ]]; then
   debootstrap --variant=minbase --include=ca-certificates "$release" "$root" "$mirror" >"$directory/debootstrap.log" 2>&1 ||
     { tail -n 20 "$directory/debootstrap.log" >&2; complain "debootstrap failed; see $directory/debootstrap.log"; exit 1; }
 fi
-# Proxies and certificates of this machine lead to the mirror
+# The mirror may require the proxies and certificates of this machine
 cp -r /etc/apt/apt.conf.d/. "$root/etc/apt/apt.conf.d/" 2>/dev/null || true
 cp -L --remove-destination /etc/ssl/certs/ca-certificates.crt "$root/etc/ssl/certs/" 2>/dev/null || true
 cp -L --remove-destination /etc/resolv.conf /etc/hosts "$root/etc/" 2>/dev/null || true
@@ -76,7 +76,7 @@ mount --rbind /sys "$root/sys" && mount --make-rslave "$root/sys"
 rm -rf "$root/root/squeal"
 git clone --quiet "$squeal_root" "$root/root/squeal"
 
-# A clean environment: what this shell exports must not help
+# A clean environment, without the variables of this shell
 inside() { chroot "$root" /usr/bin/env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin LANG=C.UTF-8 "$@"; }
 times=()
 try()

@@ -177,7 +177,7 @@ int main(int argc, char **argv)
   const bool                               is_root = dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
   std::ostream                             silence(nullptr);
   std::ostream                            &screen = is_root ? std::cout : silence;
-  // mpirun presents a terminal to every process, even without one
+  // Under mpirun every process sees a terminal, even if there is none
   const bool        live    = isatty(STDOUT_FILENO) != 0 && dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) == 1;
   const std::string command = Squeal::shell_command({argv, argv + argc});
   try

@@ -348,7 +348,7 @@ def is_number(value):
 
 
 def is_range(ends, size):
-    """Whether this is [first, last], dofs from 1 to `size`."""
+    """Whether the value is a range [first, last] of dofs from 1 to `size`."""
     is_pair = isinstance(ends, (list, tuple)) and len(ends) == 2 and all(isinstance(end, numbers.Integral) for end in ends)
     return is_pair and 1 <= ends[0] <= ends[1] <= size
 

@@ -6,7 +6,7 @@ import dataclasses
 
 from extremes.scaling import LENGTHS, scaled
 
-# A pin on each side of a disc of one layer: 780 dofs, 32 modes, one of them unstable
+# A pin on each side of a disc with one layer of elements: 780 dofs, 32 modes, one of them unstable
 BASE = """
 subsection Geometry
   set Disc inner radius = 0.2
@@ -31,7 +31,7 @@ RIGHT = "right"
 
 @dataclasses.dataclass(frozen=True)
 class Case:
-    """One model: the results must be right, or the run must stop with a message that contains `expected`."""
+    """One model: the results must be correct, or the run must stop with a message that contains `expected`."""
 
     group: str
     value: str

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Runs a case and decides whether the program is right, refuses with a reason, or is wrong."""
+"""Runs a case and judges the outcome: right, refused with a reason, or wrong."""
 
 import dataclasses
 import json

@@ -23,8 +23,8 @@ def scaled(s, *, held=True, damped=False):
 
 
 def difference(rows, others, s):
-    """Largest difference of two tables of modes, the second with s times the lengths of the first: of frequencies and growth rates relative
-    to the frequency, of dimensionless numbers absolute; infinite if texts or numbers of rows differ."""
+    """Largest difference between two tables of modes, where the second model has s times the lengths of the first: relative to
+    the frequency for frequencies and growth rates, absolute for dimensionless numbers. Infinite if texts or the numbers of rows differ."""
     if len(rows) != len(others):
         return float("inf")
     largest = 0.0

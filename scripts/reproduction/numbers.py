@@ -27,7 +27,7 @@ class Number:
         return f"{self.found:.{digits}e}" if exponent else f"{self.found:.{digits}f}"
 
     def agrees(self):
-        """Whether the page is right to its printed digits."""
+        """Whether the page agrees in its printed digits."""
         if self.bound:
             return self.found <= float(self.quoted)
         return float(self.printed()) == float(self.quoted)

@@ -10,7 +10,7 @@ class Results(squeal.results.Results):
     """The folder of a finished run."""
 
     def rows(self, name):
-        """Rows of a table as dictionaries; numbers are numbers, empty cells None."""
+        """Rows of a table as dictionaries, with numbers as floats and empty cells as None."""
         return [{column: value_of(cell) for column, cell in row.items()} for row in self.table(name).rows]
 
     def complex_modes(self, label=None):

@@ -15,9 +15,9 @@ namespace Squeal
     if (n_processes == nullptr)
       {
         setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
-        // Isolated processes would all create, and remove at their end, the same folder
+        // Isolated processes would all create the same folder, and remove it when they end
         setenv("OMPI_MCA_orte_create_session_dirs", "0", 0);
-        // Avoids a file for shared memory, which Open MPI 5 creates without use
+        // Avoids a shared-memory file, which Open MPI 5 creates but does not use
         setenv("OMPI_MCA_btl", "self", 0);
         // Avoids the search for networks, which takes 0.2 s
         setenv("OMPI_MCA_pml", "ob1", 0);

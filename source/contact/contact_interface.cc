@@ -211,7 +211,7 @@ namespace Squeal
         if (covered[body] < least_of_body * whole[body])
           throw MeshError(
             text("only ", std::round(100. * covered[body] / whole[body]), " % of the contact face of ", model.component_names()[body],
-                 " lies on the surface that it rubs"),
+                 " lies on the opposite contact surface"),
             "contact of " + model.component_names()[body],
             text("let at least ", 100. * least_of_body, " % of it lie on that surface, with gaps well below the size of its elements"));
     }

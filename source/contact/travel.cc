@@ -60,7 +60,7 @@ namespace Squeal
         const auto         n_away  = std::count_if(away.begin(), away.end(), [&](const ContactNode *node) { return is_of(*node); });
         const auto         n_nodes = std::count_if(interface.begin(), interface.end(), is_of);
         const auto        &p       = away.front()->position;
-        throw MeshError(text("the contact faces of one body look in opposite directions: it has no direction of loading, "
+        throw MeshError(text("the contact faces of one body face opposite directions: it has no direction of loading, "
                              "since ",
                              n_away, " of its ", n_nodes, " contact nodes do not face the mean direction, the first at (", p[0], ", ", p[1],
                              ", ", p[2], ") m"),

@@ -190,7 +190,7 @@ namespace Squeal
       if (!(options.tolerance > 0.) || options.block_size < 1 || options.n_fresh_directions < 0)
         refuse("The tolerance, the block size or the number of fresh directions is not positive", "give positive values");
       if (inverse.map().n() != pencil.mass->map().n())
-        refuse("The operators have different sizes", "hand over the factors of the same pencil");
+        refuse("The operators have different sizes", "pass the factors of the same pencil");
     }
 
     /// The iteration: extends the Krylov space, restarts it, and checks convergence.

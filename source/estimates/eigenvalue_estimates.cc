@@ -12,7 +12,7 @@ namespace Squeal
   {
     using Complex = std::complex<double>;
 
-    /// Condition number above which estimates are not claimed [-].
+    /// Condition number above which no estimates are given [-].
     constexpr double largest_condition = 1e3;
 
     /// ψ_jᵀ A φ_j for every column, no conjugate.

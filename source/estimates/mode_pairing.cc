@@ -99,7 +99,7 @@ namespace Squeal
     {
       const Eigen::MatrixX<bool> of_coarse = connections(products.fine, products.mixed),
                                  of_fine   = connections(products.coarse, products.mixed.adjoint());
-      // Pairs of modes that are connected only with each other are kept, whatever else is connected with them
+      // Keep pairs of modes connected only with each other, even if further modes are connected with one of them
       const int                          n_fine = products.mixed.rows(), n_coarse = products.mixed.cols();
       const Eigen::VectorX<Eigen::Index> n_of_coarse = of_coarse.colwise().count(), n_of_fine = of_fine.colwise().count();
       const auto                         is_pair = [&](const int i, const int j) {

@@ -53,7 +53,7 @@ namespace Squeal
     double size = 0.;
     for (const Mesh::Point &point : mesh.points)
       size = std::max(size, point.norm());
-    // A power of ten, insensitive to rounding of the size
+    // A power of ten, insensitive to rounding errors of the size
     const double unit = 1e-8 * std::pow(10., std::floor(std::log10(size)));
     std::string  places;
     for (const Mesh::Point &point : mesh.points)

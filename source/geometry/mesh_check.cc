@@ -108,8 +108,8 @@ namespace Squeal
             "Body '" + mesh.body_names[body] + "' is in " + std::to_string(pieces[body].size()) + " pieces that share no node, of " +
               sizes + " elements",
             where,
-            "join them (Coherence, BooleanUnion or common curves) or tie their faces by Contact/Tied; give every pin a physical "
-            "volume of its own, and each of several discs one that begins with 'disc_' and a surface in Mounts/Elastic mounts");
+            "join them (Coherence, BooleanUnion or common curves) or tie their faces by Contact/Tied; give every pin a separate "
+            "physical volume, and each of several discs one that begins with 'disc_' and a surface in Mounts/Elastic mounts");
         }
     }
 
@@ -277,7 +277,7 @@ namespace Squeal
             if (is_of_disc(one) != is_of_disc(other))
               throw MeshError(
                 "Volumes '" + one + "' and '" + other + "' share nodes, so nothing could slide", where,
-                "give disc and pins surfaces and nodes of their own where they touch; parts of the disc have names that begin with "
+                "give disc and pins separate surfaces and nodes where they touch; parts of the disc have names that begin with "
                 "'disc_'");
             volume_of_node[node] = cell.volume;
           }

@@ -141,7 +141,7 @@ namespace Squeal
             new_index[node] = points.size();
             points.emplace_back(mesh.points[node][0], mesh.points[node][1], mesh.points[node][2]);
             if (!std::isfinite(points.back().norm()))
-              throw MeshError("A node has coordinates that are no finite numbers", where, "write the mesh again");
+              throw MeshError("A node has coordinates that are not finite numbers", where, "write the mesh again");
           }
       for (auto &[tag, cell] : cells)
         for (unsigned int &node : cell.nodes)

@@ -21,7 +21,7 @@ namespace Squeal
 {
   namespace
   {
-    constexpr const char *repair       = "correct the geometry; opening it in Gmsh shows the place";
+    constexpr const char *repair       = "correct the geometry; opening it in Gmsh shows the position";
     constexpr const char *add_entities = "a .msh of format 4 must declare the entities of its elements, with their physical groups, in "
                                          "$Entities; write it with them, or in format 2.2";
     constexpr std::size_t quoted_lines = 8;

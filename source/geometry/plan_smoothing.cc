@@ -387,7 +387,7 @@ namespace Squeal
         smooth(plan.faces, outline, points);
       }
 
-    // A round pin may also roll along its neighbours; a pad may not
+    // A round pin may also rotate about its centre; a pad may not
     std::vector<TurningPart> parts;
     for (const Plan::Pin &pin : plan.pins)
       if (pin.side == side && pin.is_round)

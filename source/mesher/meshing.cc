@@ -239,7 +239,7 @@ namespace Squeal
         gmsh::model::mesh::generate(dimension);
       });
     GmshMesh mesh;
-    attempt("handing over the mesh", [&] { mesh = collect_mesh(are_tagged); });
+    attempt("transferring the mesh", [&] { mesh = collect_mesh(are_tagged); });
     return mesh;
   }
 } // namespace Squeal

@@ -27,7 +27,7 @@ namespace Squeal
           throw MeshError("the element is inverted: its Jacobian is not positive everywhere",
                           text("volume ", volume, ", element with centre (", centre, ") m"),
                           "make the elements at curved boundaries smaller, e.g. by Geometry/Nodes per pin face or "
-                          "Geometry/Element size, or choose another Discretization/Element than quadratic");
+                          "Geometry/Element size, or choose a Discretization/Element other than quadratic");
     }
 
     using Matrix = std::shared_ptr<const SparseMatrix>;

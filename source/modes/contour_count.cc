@@ -61,7 +61,7 @@ namespace Squeal
       std::vector<Complex> corners;
     };
 
-    /// Turns of the determinant along the contour; updates n_points and largest_phase_step of @p count.
+    /// Winding number of the determinant along the contour; updates n_points and largest_phase_step of @p count.
     int turns(FollowedDeterminant  &determinant,
               const Contour        &contour,
               const ContourOptions &options,

@@ -14,7 +14,7 @@ namespace Squeal
 {
   namespace
   {
-    /// All terms with a power of λ, applied one by one: their sum would be another matrix of the size of K.
+    /// All terms with a power of λ, applied individually: their sum would be another matrix of the size of K.
     struct SumOfTerms : LinearOperator
     {
       SumOfTerms(const CoupledSystem &system, const ParameterValues &values, const int power)

@@ -100,7 +100,7 @@ namespace Squeal
       throw FileError("`" + shown + "` is a file, not a folder", where, "choose another name");
     is_new = fs::create_directories(place);
     if (!fs::is_empty(place) && !fs::exists(place / run_record) && !fs::exists(unfinished))
-      throw FileError("the folder `" + shown + "` holds files that are not the results of a run", where,
+      throw FileError("the folder `" + shown + "` contains files that are not the results of a run", where,
                       "choose another name, or empty the folder");
     take_lock();
     fs::remove_all(unfinished); // from a killed run
@@ -220,7 +220,7 @@ namespace Squeal
         catch (const fs::filesystem_error &error)
           {
             is_stuck = true;
-            throw FileError("the results cannot be moved to their place: " + error.code().message(), "--output " + shown,
+            throw FileError("the results cannot be moved to the result folder: " + error.code().message(), "--output " + shown,
                             "the missing ones are in `" + unfinished.string() + "`: move them yourself");
           }
       }

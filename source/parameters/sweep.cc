@@ -100,7 +100,8 @@ namespace Squeal
     declarations.add("Parameter", parameter,
                      "With System: the varied parameter, its first and last value and the number of values, such as omega, 6.28, 25.1, 31. "
                      "Empty: mu, from First to Last friction coefficient.");
-    declarations.add("Second parameter", second_parameter, "With System: a second parameter of a stability map, likewise. Empty: no map.");
+    declarations.add("Second parameter", second_parameter,
+                     "With System: the second parameter of a stability map, in the same form. Empty: no map.");
   }
 
   NamedRange SweepParameters::varied_parameter() const

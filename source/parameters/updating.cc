@@ -17,7 +17,7 @@ namespace Squeal
       "Sensors", sensors,
       "CSV file of sensors and measured shapes, by which modes are paired instead of labels. Columns `x [m]`, `y [m]`, `z [m]`, "
       "`direction x`, `direction y`, `direction z`, and a column for each shape, with the label that the mode has in the "
-      "measured modes (for an imaginary part, the label followed by ` imaginary`). Looked for like the measured modes.");
+      "measured modes (for an imaginary part, the label followed by ` imaginary`). Found in the same folders as the measured modes.");
     declarations.add("Least MAC", least_overlap, "-",
                      "A measured shape whose modal assurance criterion with all computed modes is smaller has no counterpart, which is an "
                      "error.",

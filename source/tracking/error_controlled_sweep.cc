@@ -89,7 +89,7 @@ namespace Squeal
   {
     const int n = dealii::Utilities::MPI::n_mpi_processes(communicator), me = dealii::Utilities::MPI::this_mpi_process(communicator);
     const int n_points = static_cast<int>(points.size());
-    // Several per thread, so that no thread waits long for the last ones
+    // Several per thread, for load balancing
     constexpr int points_of_thread = 16;
     const int     n_at_once        = n * points_of_thread * static_cast<int>(dealii::Utilities::MPI::min(n_task_threads(), communicator));
     model.prepare();

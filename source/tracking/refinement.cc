@@ -17,7 +17,7 @@ namespace Squeal
     constexpr double nearby = 0.1;
     /// Largest remaining fraction of δ², or of Re λ, for an approach to be evaluated [-].
     constexpr double remaining = 0.3;
-    /// Change of the difference of two λ by coupling, relative to the difference, below which they do not interact [-].
+    /// Two modes whose coupling changes λ_1 − λ_2 by less than this fraction do not interact [-].
     constexpr double interacting = 0.1;
     /// |Re (λ_1 − λ_2)| / |Im (λ_1 − λ_2)| above which two modes do not coalesce because their growth rates differ [-].
     constexpr double other_growth = 0.5;

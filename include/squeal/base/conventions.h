@@ -15,8 +15,8 @@ namespace Squeal
   inline constexpr double largest_rate_of_band = 0.1;
 
   /**
-   * The band of a run. The argument principle counts the eigenvalues in the rectangle Im λ ≤ end, |Re λ| ≤ rate. Listed are eigenvalues
-   * with |λ| ≤ radius(), a circle that encloses the rectangle, except those that decay faster than largest_decay. Faster growth or decay
+   * The band of a run. The argument principle counts the eigenvalues in the rectangle Im λ ≤ end, |Re λ| ≤ rate. Eigenvalues with |λ| ≤
+   * radius(), a circle that encloses the rectangle, are listed, except those that decay faster than largest_decay. Faster growth or decay
    * depends on the mesh.
    */
   struct Band
@@ -60,8 +60,8 @@ namespace Squeal
     return circular_frequency / (2. * M_PI);
   }
 
-  /// Reported quantities of an eigenvalue λ = R + iω of Q(λ) = λ² M + λ C + K. The only place where rad/s become Hz and rates become per
-  /// cent.
+  /// Reported quantities of an eigenvalue λ = R + iω of Q(λ) = λ² M + λ C + K. The only function that converts rad/s to Hz and rates to
+  /// per cent.
   struct ModalQuantities
   {
     double frequency;       ///< ω / 2π [Hz]

@@ -38,7 +38,7 @@ namespace Squeal
     using Error::Error;
   };
 
-  /// A solver did not converge, or its modes are not as many as counted.
+  /// A solver did not converge, or the number of modes differs from the count.
   struct SolverError : Error
   {
     using Error::Error;

@@ -72,7 +72,7 @@ namespace Squeal
     /// Parameter values with the varied parameter (μ for a mesh) at @p value and with @p others replaced.
     ParameterValues at(double value, const ParameterValues &others = {}) const;
 
-    /// True if there is damping without friction.
+    /// True if there is damping at μ = 0.
     bool has_damping() const;
   };
 

@@ -25,10 +25,10 @@ namespace Squeal
   struct QuadraticModesOptions
   {
     double shift                      = 0.; ///< s ≥ 0 [1/s] of the given operator Q(s)⁻¹; s > 0 if K is singular
-    double largest_circular_frequency = 0.; ///< requested are λ with 0 < Im λ ≤ this [rad/s], and real λ
+    double largest_circular_frequency = 0.; ///< limit of the requested λ, 0 < Im λ ≤ this [rad/s], or λ real
 
-    /// Requested are λ with |λ| ≤ ρ = hypot(1, this) largest_circular_frequency, which include all with |Re λ| ≤ this times
-    /// largest_circular_frequency [-].
+    /// All λ with |λ| ≤ ρ = hypot(1, this) largest_circular_frequency are requested, which include those with |Re λ| ≤ this
+    /// times largest_circular_frequency [-].
     double largest_damping = 0.1;
 
     double largest_decay = std::numeric_limits<double>::infinity(); ///< λ with Re λ below minus this are omitted [1/s]

@@ -58,7 +58,7 @@ namespace Squeal
     double smallest = 0.5, largest = 6.;
   };
 
-  /// Limit of a sequence of values on finer and finer meshes.
+  /// Limit of a sequence of values on successively finer meshes.
   struct Extrapolation
   {
     double                             limit;           ///< v of the mesh width 0

@@ -56,7 +56,7 @@ namespace Squeal
    *
    *   4 |g_ij g_ji| s² ≥ |λ_i − λ_j|²,   g_ij = L_iᵀ K_c⁻¹ R_j / ψ_iᵀQ'(λ_i)φ_i,
    *
-   * with the safety factor s = error_safety. In this case, or if κ > 1000, the estimate is not claimed. The uncertainty of λ_i is |δλ_i| +
+   * with the safety factor s = error_safety. In this case, or if κ > 1000, no estimate is given. The uncertainty of λ_i is |δλ_i| +
    * Σ |g_ij| over the modes j that may coalesce with it (Gershgorin's bound).
    *
    * The verdict is that of verdict_of() with this uncertainty; it is undecided if κ > 1000. A coalescence is also within reach if s |δλ_i −

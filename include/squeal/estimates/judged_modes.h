@@ -18,7 +18,7 @@ namespace Squeal
     std::vector<Verdict> verdicts; ///< within the uncertainty of λ
     std::vector<bool>    unstable; ///< growth exceeds the uncertainty
     Conditioning         conditioning;
-    int n_slow = 0; ///< pairs of λ that count as zero but are no rigid-body modes, for example slow decay due to strong dampers
+    int n_slow = 0; ///< pairs of λ that count as zero but are not rigid-body modes, for example slow decay due to strong dampers
 
     std::size_t n_unstable() const;
 

@@ -70,11 +70,11 @@ namespace Squeal
 
   /**
    * Counts the complex modes of the system inside the rectangle at each of the friction coefficients @p mu, without computing them: by the
-   * argument principle, the number is that of the turns of det Q(λ), an entire function, about zero along the boundary. Modes with |Re λ| >
+   * argument principle, the number is the winding number of the entire function det Q(λ) about zero along the boundary. Modes with |Re λ| >
    * a are not counted.
    *
-   * Condensed: det Q = det S det N_⊥ det W. The zeros of det S are the real modes, counted by inertia; the turns of det N_⊥ and det W are
-   * added. Between points, each matrix changes to A' = A (I + F) with
+   * Condensed: det Q = det S det N_⊥ det W. The zeros of det S are the real modes, counted by inertia; the winding numbers of det N_⊥ and
+   * det W are added. Between points, each matrix changes to A' = A (I + F) with
    *
    *   ‖F‖_F ≤ ½, so that |ln det(I + F) − tr F| ≤ −ln(1 − ‖F‖_F) − ‖F‖_F < 0.2,
    *
@@ -82,7 +82,7 @@ namespace Squeal
    * distance to the nearest pole ±iω_j. The truncation error of N cannot change the count if ‖ΔN N⁻¹‖ < 1 (Rouché); at most 0.25 is
    * accepted at the points, otherwise terms are added.
    *
-   * Sparse LU: the turns of det Q itself. A step is halved until |Δ ln det Q| of both halves, modulus and phase together, is below the
+   * Sparse LU: the winding number of det Q itself. A step is halved until |Δ ln det Q| of both halves (modulus and phase) is below the
    * largest phase step, so that close zeros cannot be missed.
    *
    * Without damping det Q(−λ̄) is the conjugate of det Q(λ), and only half of the contour is followed.

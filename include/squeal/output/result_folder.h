@@ -43,7 +43,7 @@ namespace Squeal
   std::optional<FileSizes> read_file_list(const std::filesystem::path &record);
 
   /**
-   * Result folder of a run. Files are written to its subfolder `.unfinished` and moved to their place when the run is complete, the run
+   * Result folder of a run. Files are written to its subfolder `.unfinished` and moved to the folder when the run is complete, the run
    * record last. A failed run leaves former results unchanged; after a killed run, the next one clears `.unfinished`. The folder is locked
    * against a second run.
    *
@@ -75,7 +75,7 @@ namespace Squeal
     const FileSizes &files() const;
 
     /**
-     * Moves the files to their place, unless one of them was removed or changed meanwhile. Returns notes for the user, one line each.
+     * Moves the files to the folder, unless one of them was removed or changed in the meantime. Returns notes for the user, one line each.
      *
      * @param afterwards called on all processes once the results are in place
      *

@@ -62,7 +62,7 @@ namespace Squeal
       std::optional<double> value;
     };
 
-    std::string           directory; ///< folder of the parameter file, where a relative file name is looked for first
+    std::string           directory; ///< folder of the parameter file, searched first for relative file names
     std::vector<Variable> variables; ///< variables of the script, except those set by the parameters above
 
     /// Sets file and directory, and the variables of the file if it is an existing script.

@@ -9,8 +9,8 @@
 namespace Squeal
 {
   /**
-   * Path of a geometry. A relative name is looked for in the folder of the parameter file, then in the current directory; a name without a
-   * directory also among the supplied geometries.
+   * Path of a geometry. A relative name is searched for in the folder of the parameter file, then in the current directory; a name without
+   * a directory also among the supplied geometries.
    *
    * Throws MeshError with the searched folders.
    */

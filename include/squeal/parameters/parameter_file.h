@@ -20,7 +20,7 @@ namespace Squeal
   /**
    * Statements of a parameter file in deal.II's format, in their order: `subsection NAME`, `end`, `set NAME = VALUE`, `include FILE`,
    * comments after `#`, continuation lines after a backslash; VALUE and FILE may be in double quotes, see written_value(). An included file
-   * is looked for in the folder of the including one, then in the current directory. Text is UTF-8, with or without a byte order mark.
+   * is searched for in the folder of the including one, then in the current directory. Text is UTF-8, with or without a byte order mark.
    *
    * Throws FileError if a file cannot be read, ParameterError if it is not UTF-8 text or includes itself.
    */

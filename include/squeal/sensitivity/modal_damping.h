@@ -36,9 +36,9 @@ namespace Squeal
    *
    *   φ_iᵀ C_m' φ_j = (φ_iᵀ K' φ_j − β_ij φ_iᵀ M' φ_j) g_ij + (d_i + d_j)/2 φ_iᵀ M' φ_j
    *
-   * Equal frequencies are no special case, because g is smooth; pairs of undamped modes vanish. Pairs of a damped mode and an unknown one
-   * beyond the computed modes are computed in a Krylov space of (K_c + s² M_c)⁻¹ M_c, from the components of the vectors outside the known
-   * modes.
+   * Equal frequencies need no special treatment, because g is smooth; pairs of undamped modes vanish. Pairs of a damped mode and an
+   * unknown one beyond the computed modes are computed in a Krylov space of (K_c + s² M_c)⁻¹ M_c, from the components of the vectors
+   * outside the known modes.
    */
   class ModalDampingDerivatives
   {

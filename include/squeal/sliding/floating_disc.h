@@ -11,8 +11,8 @@
 namespace Squeal
 {
   /**
-   * Those of the @p free motions of each body, M-orthonormal, that reactions can balance, n × k; nothing if there are none. Excluded are
-   * the sliding motion, whose force or moment the drive balances, and motions that leave all gaps unchanged.
+   * The @p free motions of each body, M-orthonormal, that reactions can balance, n × k; nothing if there are none. The sliding motion,
+   * whose force or moment the drive balances, and motions that leave all gaps unchanged are excluded.
    *
    * @param pressing forces on the bodies, n × 1 [N]; null: none, and only the disc may have free motions
    *

@@ -117,8 +117,8 @@ namespace Squeal
 
   /**
    * Follows modes over the friction coefficients of @p grid, ascending, possibly empty. Modes of neighbouring points are linked by
-   * link_modes(); doubtful steps are halved, all of one round in one batch. Further halved are steps in which two branches exchange their
-   * order, if the vectors show an interaction: Λ_b, transformed to the modes at a, and Λ_a, interpolated, predict where and how closely the
+   * link_modes(); doubtful steps are halved, all of one round in one batch. Steps in which two branches exchange their order are halved,
+   * too, if the vectors show an interaction: Λ_b, transformed to the modes at a, and Λ_a, interpolated, predict where and how closely the
    * branches approach; and steps in which extrapolated growth rates or frequencies come close.
    *
    * A branch that grows at one end of a step but not at the other has a threshold in between. At a coalescence δ²(μ) = (λ_1 − λ_2)² is

@@ -104,7 +104,7 @@ def read_abaqus(path, text):
 
 
 def is_entry(words, width):
-    """Whether these are `width` - 1 integers and a number."""
+    """Whether the words are `width` - 1 integers and a number."""
     try:
         return len(words) == width and bool([*map(int, words[:-1]), float(words[-1])])
     except ValueError:

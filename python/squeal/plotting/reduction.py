@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Errors and costs of reduced bases, as figures 10 to 18 of the paper."""
+"""Errors and costs of reduced bases, as in figures 10 to 18 of the paper."""
 
 from squeal.plotting import style
 

@@ -73,8 +73,8 @@ namespace Squeal
     const ErrorControlledSweep found =
       error_controlled_sweep(*model->reduced, points, training, options, keep, run.communicator, run.progress);
     if (found.n_left > 0)
-      throw SolverError(text("one basis does not serve this design and those before it: ", found.why_stopped), "designs on one mesh",
-                        "solve it alone");
+      throw SolverError(text("one basis does not suffice for this design and the previous ones: ", found.why_stopped),
+                        "designs on one mesh", "solve it alone");
     run.progress.finish(
       text(points.size(), " operating points, ", model->reduced->size(), " vectors, estimated error ", found.worst_error));
   }

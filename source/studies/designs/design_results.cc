@@ -212,7 +212,7 @@ namespace Squeal
     const auto n_incomplete = std::count_if(
       designs.begin(), designs.end(), [](const DesignResult &row) { return row.outcome == DesignOutcome::solved && !row.is_complete; });
     if (n_incomplete > 0)
-      lines.push_back(text("  note: of ", n_incomplete, " designs not all modes were found that were counted, see designs.csv"));
+      lines.push_back(text("  note: in ", n_incomplete, " designs the number of modes differs from the count, see designs.csv"));
     return lines;
   }
 } // namespace Squeal

@@ -155,7 +155,7 @@ namespace Squeal
           result.n_dofs             = variant.scene->model->free_map().n();
           result.answer             = answer_of(variant);
         }
-      // A model that does not exist is also a result
+      // An impossible model is also a result
       catch (const Error &error)
         {
           result.obstacle = error.reason;

@@ -113,7 +113,7 @@ namespace Squeal
         const ContactOperators contact = !all     ? contact_operators(*scene.model, closed) :
                                          is_after ? motion.operators_after :
                                                     motion.operators_before;
-        // Friction: −μ P_tᵀ r_n. The reactions of a mode do not change, because normals do not
+        // Friction: −μ P_tᵀ r_n. The reactions of a mode are constant, because the normals are
         const ComplexDenseMatrix slip = from_halves(replicate(*contact.tangential * apart.left));
         result -= sign / motion.step * friction_coefficient * (slip.transpose() * reactions);
         const ContactDamping damping = selected(state_of_contact(*scene.model, interface, state, operation).damping, sweep.regime.closed);

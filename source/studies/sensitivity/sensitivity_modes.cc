@@ -18,7 +18,7 @@ namespace Squeal
     /// Maximum number of extensions of the basis.
     constexpr int most_growths = 6;
 
-    /// Eigenvalues that are differentiated together, the one of interest first.
+    /// Eigenvalues that are differentiated together, that of the requested mode first.
     struct ModeGroup
     {
       std::vector<int> modes; ///< indices of modes of a point

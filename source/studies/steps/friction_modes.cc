@@ -9,7 +9,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Modes with a larger R/ω grow by more than e^(2π) per period: slowly oscillating divergence without sound [-].
+    /// Modes with a larger R/ω grow by a factor of more than e^(2π) per period: divergence rather than a vibration that could be heard [-].
     constexpr double fastest_oscillating_divergence = 1.;
 
     /// Summary of the unstable modes; the first one named is the fastest growing oscillating mode.

@@ -359,7 +359,7 @@ namespace Squeal
     const Scene          &scene   = *linearisation.scene;
     SymmetricModesOptions options = real_modes_options(
       run.parameters.solvers, what, is_disc ? stabilizing_shift(*scene.model, scene.system, plan.largest_circular_frequency) : 0.);
-    options.by_parts = !is_disc; // equal pins are solved individually to avoid multiple modes
+    options.by_parts = !is_disc; // equal pins are solved individually to avoid repeated eigenvalues
 
     const auto   T = component_kernel(*scene.model, linearisation.interface, component, boundary);
     const auto   K = congruence(*scene.system.stiffness, *T), M = congruence(*scene.system.mass, *T);

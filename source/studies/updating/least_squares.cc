@@ -36,7 +36,7 @@ namespace Squeal
       return result;
     }
 
-    /// Parameters that no limit holds.
+    /// Parameters that are not fixed at a limit.
     std::vector<Eigen::Index> free_parameters(const std::vector<double> &x, const Residuals &residuals)
     {
       const std::vector<int>    held = held_by_limits(x, residuals);
@@ -130,7 +130,7 @@ namespace Squeal
     options.gradient_tolerance                = 1e-16;
     options.min_trust_region_radius           = tolerance * tolerance;
     options.max_num_consecutive_invalid_steps = maximum_iterations;
-    // Steps truncated at a limit end the search too early: hold the parameters that limits stop and continue with the others
+    // Steps truncated at a limit end the search too early: fix the parameters at limits and continue with the others
     std::vector<int>  held;
     const std::size_t most_changes = 4 * start.size();
     for (std::size_t change = 0;; ++change)

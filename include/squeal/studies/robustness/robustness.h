@@ -109,7 +109,7 @@ namespace Squeal
   /// Starts the model of a contact set of samples.
   std::unique_ptr<SweepModel> sample_model(const SampledSystems &systems, std::size_t contact_set, Run &run);
 
-  /// Solves operating points of a system without a definite part, each at full order; failed points are left.
+  /// Solves operating points of a system without a definite part, each at full order; failed points are omitted.
   ErrorControlledSweep solve_directly(const SweepModel &model, const std::vector<OperatingPoint> &points, const KeepPoint &keep);
 
   /// Solves operating points to the tolerance with the basis of their contact set, or at full order without one, as a step of the run with

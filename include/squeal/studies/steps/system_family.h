@@ -27,7 +27,7 @@ namespace Squeal
   /**
    * Family of the values of @p members, with its real modes, as steps of the run.
    *
-   * @param bodies        terms of the assembled scene
+   * @param bodies        terms of the assembled model
    * @param linearisation contact and its damping
    * @param margin        relative width by which the real modes extend beyond the band
    */
