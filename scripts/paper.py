@@ -259,7 +259,7 @@ def of_growth(undamped):
     rests = [(min((math.hypot(other.rate / mode.rate + 1, other.frequency / mode.frequency - 1) for other in others), default=1.0), mode)
              for mode in unstable]
     for rest, mode in sorted(rests, key=lambda pair: -pair[0])[:1]:
-        yield ("4.3", "unstable modes have a stable partner with the opposite divergence rate: largest relative rest", 0, rest, "-",
+        yield ("4.3", "unstable modes have a stable partner with the opposite divergence rate: largest relative deviation", 0, rest, "-",
                at_most(rest, 1e-3, 0.1), mode)
     for mode in unstable:
         if mode.grows and None not in mode.wave:
@@ -288,7 +288,7 @@ def of_dissipation(undamped, damped):
         gain = bending[-1] - former[-1]
         yield "4.3", "C_b reduces the divergence rate of the leading F1", -0.01, gain, "%", ruling("holds below zero", gain < 0)
     if len(bending) > 3 and len(former) == len(bending):
-        yield ("4.3", "C_b stabilises the second unstable pin mode: its divergence rate, or that of what takes its place", 0, bending[-2], "%",
+        yield ("4.3", "C_b stabilises the second unstable pin mode: its divergence rate, or that of the mode in its place", 0, bending[-2], "%",
                ruling("holds below 0.01 %, less if it falls", bending[-2] < NEGLIGIBLE, bending[-2] < former[-2]),
                f"without C_b {former[-2]:.3g} %")
     for words, rates, place, paper in (
