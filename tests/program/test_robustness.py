@@ -7,6 +7,7 @@ import math
 import unittest
 
 from program import ProgramTest, read_table, settings
+from squeal.plotting import draw
 from squeal.reporting import content
 from squeal.results import Results
 import test_systems  # as a module, so that its tests are not run again
@@ -57,6 +58,7 @@ class OfSystem(test_systems.SystemTest):
         indices = [row for row in self.rows(results, "sobol_indices") if row["quantity"] == "largest divergence rate"]
         self.assertEqual([row["uncertain parameter"] for row in indices], ["mu", "kappa"])
         self.assertTrue(all(row["total index [-]"] > row["first-order index [-]"] - 0.1 for row in indices))
+        self.assertEqual(list(draw.figures(Results(results))), ["robustness"])
 
     def test_onsets_are_those_of_the_closed_form(self):
         """mu kappa = c at the first growth, for either of them as the parameter of the sweep."""

@@ -67,8 +67,8 @@ def bars(panel, indices):
     style.prepare(panel, "", "Sobol' index of the largest divergence rate [-]", "")
     for offset, kind, colour in ((-0.2, "first-order index", style.SKY), (0.2, "total index", style.BLUE)):
         values = [float(row[f"{kind} [-]"]) for row in indices]
-        lower = [max(0., value - float(row[f"lower end of the {kind} [-]"])) for value, row in zip(values, indices)]
-        upper = [max(0., float(row[f"upper end of the {kind} [-]"]) - value) for value, row in zip(values, indices)]
+        lower = [max(0., value - float(row[f"lower limit of the {kind} [-]"])) for value, row in zip(values, indices)]
+        upper = [max(0., float(row[f"upper limit of the {kind} [-]"]) - value) for value, row in zip(values, indices)]
         panel.barh([number + offset for number in range(len(indices))], values, height=0.36, xerr=(lower, upper), color=colour, label=kind)
     panel.set_yticks(range(len(indices)), [row["uncertain parameter"].replace("/", "\n", 1) for row in indices], fontsize=style.SMALL)
     panel.invert_yaxis()
