@@ -3,10 +3,10 @@
 
 """Compares the CPU times of linearisations of the small quadratic eigenproblem of a chart with dissipation.
 
-    scripts/benchmark_linearisations.py DIRECTORY [--vectors 234] [--runs 3] [--core 0]
+    scripts/benchmark_linearisations.py DIRECTORY [--runs 3] [--core 0]
 
 DIRECTORY is the output of a run with Output/Write matrices = true and dissipation, such as prm/dissipation.prm. Projection onto the lowest
-real modes without friction gives a small dense problem lambda^2 M + lambda C + K, K not symmetric. Right and left eigenvectors of the band
+234 real modes without friction gives a small dense problem lambda^2 M + lambda C + K, K not symmetric. Right and left eigenvectors of the band
 are computed
 
     companion    by the QR algorithm (dgeev) on [[0, I], [-inv(M) K, -inv(M) C]], which ignores the structure
@@ -36,20 +36,17 @@ from squeal import exported_matrices
 from squeal.command_line import exit_on_error
 from squeal.errors import Error
 
+N_VECTORS, N_MODES = 234, 66
 
-def small_problem(directory, n_vectors):
-    """M, C and K in the lowest real modes of the frictionless system, and the end of the band [rad/s]."""
+
+def small_problem(directory):
+    """M, C and K in the lowest real modes of the frictionless system, and the end of the band [Hz]."""
     matrices = exported_matrices.read_matrices(directory)
     bare = exported_matrices.couple(matrices, 0.0)
     full = exported_matrices.couple(matrices, exported_matrices.run_parameter(directory, "Operation/Friction coefficient"))
     band = exported_matrices.run_parameter(directory, "Band/Maximum frequency")
-    _, basis = scipy.sparse.linalg.eigsh(sparse.csc_matrix(bare.stiffness), n_vectors, sparse.csc_matrix(bare.mass), sigma=0.0)
-    return [basis.T @ (matrix @ basis) for matrix in (full.mass, full.damping, full.stiffness)], 2 * np.pi * band
-
-
-def in_band(values, end):
-    """Indices of the eigenvalues of modes in the band, one of each conjugate pair."""
-    return np.flatnonzero((values.imag > 0) & (values.imag <= end))
+    _, basis = scipy.sparse.linalg.eigsh(sparse.csc_matrix(bare.stiffness), N_VECTORS, sparse.csc_matrix(bare.mass), sigma=0.0)
+    return [basis.T @ (matrix @ basis) for matrix in (full.mass, full.damping, full.stiffness)], band
 
 
 def companion_form(M, C, K):
@@ -57,20 +54,18 @@ def companion_form(M, C, K):
     return np.block([[np.zeros((r, r)), np.eye(r)], [-scipy.linalg.solve(M, K), -scipy.linalg.solve(M, C)]])
 
 
-def by_companion(M, C, K, end):
-    values, _, _ = scipy.linalg.eig(companion_form(M, C, K), left=True, right=True)
-    return values[in_band(values, end)]
+def by_companion(M, C, K, _):
+    return scipy.linalg.eig(companion_form(M, C, K), left=True, right=True)[0]
 
 
-def by_symmetric(M, C, K, end):
+def by_symmetric(M, C, K, _):
     zero = np.zeros_like(M)
-    values, _, _ = scipy.linalg.eig(np.block([[-K, zero], [zero, M]]), np.block([[C, M], [M, zero]]), left=True, right=True)
-    return values[in_band(values, end)]
+    return scipy.linalg.eig(np.block([[-K, zero], [zero, M]]), np.block([[C, M], [M, zero]]), left=True, right=True)[0]
 
 
-def by_values(M, C, K, end):
+def by_values(M, C, K, band):
     values = scipy.linalg.eigvals(companion_form(M, C, K))
-    values = values[in_band(values, end)]
+    values = values[exported_matrices.in_band(values, band)]
     start = np.random.default_rng(1).standard_normal(len(M)).astype(complex)
     for value in values:
         factor = scipy.linalg.lu_factor(value**2 * M + value * C + K)
@@ -82,36 +77,35 @@ def by_values(M, C, K, end):
     return values
 
 
-def by_toar(M, C, K, end):
-    n = len(by_toar.expected)
+def by_toar(M, C, K, _):
     for transpose in (False, True):
         blocks = [sparse.csr_matrix(A.T if transpose else A) for A in (M, C, K)]
-        solution = slepc_modes.Solution(exported_matrices.QuadraticProblem(*blocks), 2 * n + 4, "toar")
-    return solution.eigenvalues[in_band(solution.eigenvalues, end)]
+        solution = slepc_modes.Solution(exported_matrices.QuadraticProblem(*blocks), slepc_modes.n_wanted("toar", N_MODES), "toar")
+    return solution.eigenvalues
 
 
 @exit_on_error()
 def main():
     parser = benchmarking.parser_of(__doc__)
     parser.add_argument("directory")
-    parser.add_argument("--vectors", type=int, default=234)
     arguments = parser.parse_args()
     os.sched_setaffinity(0, {arguments.core})
     print(benchmarking.describe_machine(arguments.core), flush=True)
 
-    (M, C, K), end = small_problem(arguments.directory, arguments.vectors)
+    (M, C, K), band = small_problem(arguments.directory)
     if abs(C).max() == 0.0:
         raise Error("the problem has no damping and is linear in lambda^2", arguments.directory, "take prm/dissipation.prm")
     methods = {"companion": by_companion, "symmetric": by_symmetric, "values": by_values}
     if slepc_modes.available():
         methods["toar"] = by_toar
-    reference = by_toar.expected = by_companion(M, C, K, end)
     times, found = {name: [] for name in methods}, {}
     for _ in range(arguments.runs):
         for name, method in methods.items():
             before = time.process_time()
-            found[name] = method(M, C, K, end)
+            values = method(M, C, K, band)
+            found[name] = values[exported_matrices.in_band(values, band)]
             times[name].append(time.process_time() - before)
+    reference = found["companion"]
     print(f"{len(M)} vectors, {len(reference)} modes of the band")
     for name, values in found.items():
         distance = max((abs(values - value).min() / abs(value) for value in reference), default=0.0) if len(values) else np.inf

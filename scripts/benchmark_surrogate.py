@@ -3,10 +3,10 @@
 
 """Compares one reduced model for all samples with surrogates trained on full-order solutions: polynomial chaos and Kriging.
 
-    scripts/benchmark_surrogate.py [prm/robustness.prm] [--set "Section/Name=value"]... [--train 50,200] [--fresh 500]
+    scripts/benchmark_surrogate.py [--fresh 500] [--core 0]
 
-A robustness study without Sobol' indices computes all modes of the samples to a tolerance of 1e-6, which are considered exact: the first
-samples are for training, the last ones for testing. OpenTURNS builds surrogates of Re lambda and Im lambda of every mode whose name is
+The study of prm/robustness.prm, without Sobol' indices, computes all modes of the samples to a tolerance of 1e-6, which are considered
+exact: the first samples are for training, the last ones for testing. OpenTURNS builds surrogates of Re lambda and Im lambda of every mode whose name is
 unique in all training samples: sparse polynomial chaos (least angle regression, hyperbolic truncation, degree 6) and Kriging (linear
 trend, Matern 5/2). Errors of lambda are those of test samples in which the name is unique, too. A sample squeals if a divergence rate
 exceeds 0.01 %.
@@ -27,23 +27,22 @@ os.environ.update(benchmarking.environment())  # before NumPy loads OpenBLAS
 import numpy as np
 
 from squeal import quadratic
-from squeal.command_line import exit_on_error
-from squeal.errors import Error
+from squeal.command_line import Parser, exit_on_error
 from squeal.program import SOURCE
-from squeal.results import Table
+from squeal.results import Results
 
+SIZES = (50, 200)  # numbers of full-order solutions for training
 LEAST_RATE = 1e-4  # divergence rate of a sample that squeals
 
 
-def read_samples(directory):
+def read_samples(results):
     """Values of the uncertain numbers (n x d), and for each sample name -> list of eigenvalues."""
-    samples, modes = Table(directory / "samples.csv"), Table(directory / "sample_modes.csv")
-    first = samples.columns.index("unstable modes [-]")
-    numbers = np.array([samples.numbers(name) for name in samples.columns[1:first]]).T
+    samples, modes = results.table("samples"), results.table("sample_modes")
+    names = samples.columns[1:samples.columns.index("unstable modes [-]")]
+    numbers = np.array([samples.numbers(name) for name in names]).T
     by_sample = [{} for _ in numbers]
-    frequencies, rates = modes.numbers("frequency [Hz]"), modes.numbers("growth rate [1/s]")
-    for sample, label, frequency, rate in zip(modes.numbers("sample [-]"), modes.texts("label"), frequencies, rates):
-        by_sample[int(sample) - 1].setdefault(label, []).append(complex(rate, 2 * np.pi * frequency))
+    for sample, label, value in zip(modes.numbers("sample [-]"), modes.texts("label"), modes.eigenvalues()):
+        by_sample[int(sample) - 1].setdefault(label, []).append(value)
     return numbers, by_sample
 
 
@@ -110,36 +109,31 @@ def row_of(pairs):
 
 @exit_on_error()
 def main():
-    parser = benchmarking.parser_of(__doc__)
-    parser.add_argument("parameter_file", nargs="?", type=pathlib.Path, default=SOURCE / "prm" / "robustness.prm")
-    parser.add_argument("--set", action="append", default=[], dest="settings", metavar="Section/Name=value")
-    parser.add_argument("--train", default="50,200", help="numbers of full-order solutions (default: %(default)s)")
+    parser = Parser(__doc__)
     parser.add_argument("--fresh", type=int, default=500, help="number of test samples (default: %(default)s)")
+    parser.add_argument("--core", type=int, default=0, help="the core to run on (default: %(default)s)")
     arguments = parser.parse_args()
-    try:
-        import openturns as ot
-    except ImportError:
-        raise Error("OpenTURNS is missing", "Python", "apt-get install python3-openturns")
+    import openturns as ot
     ot.Log.Show(ot.Log.NONE)
-    sizes = [int(n) for n in arguments.train.split(",")]
     print(benchmarking.describe_machine(arguments.core), flush=True)
 
-    with tempfile.TemporaryDirectory() as directory:
-        directory = pathlib.Path(directory)
-        full = benchmarking.run_squeal(arguments.core, arguments.parameter_file, directory / "full",
-                                       ["Study=stability", "Complex modes/Solver=Krylov", "Output/Mode shapes=none", *arguments.settings])
-        solution = benchmarking.cpu_seconds(full, ["Mode count", "Factorisation", "Real modes", "Complex modes"])
+    def run(name, *settings):
+        record = benchmarking.run_squeal([arguments.core], SOURCE / "prm" / "robustness.prm", directory / name, settings)
+        return record, Results(directory / name)
+
+    with tempfile.TemporaryDirectory() as name:
+        directory = pathlib.Path(name)
+        full, _ = run("full", "Study=stability", "Complex modes/Solver=Krylov", "Output/Mode shapes=none")
+        solution = benchmarking.cpu_seconds(full, benchmarking.FULL_ORDER)
         print(f"steps of a full-order run: {', '.join(step['name'] for step in full['steps'])}; {solution:.1f} s are its solution")
-        sampling = [f"Robustness/Number of samples={max(sizes) + arguments.fresh}", "Robustness/Sobol indices=false", "Robustness/Worst samples=0",
-                    *arguments.settings]
-        benchmarking.run_squeal(arguments.core, arguments.parameter_file, directory / "exact", ["Robustness/Tolerance=1e-6", *sampling])
-        numbers, by_sample = read_samples(directory / "exact")
-        record = benchmarking.run_squeal(arguments.core, arguments.parameter_file, directory / "reduced", sampling)
-        _, reduced = read_samples(directory / "reduced")
+        sampling = (f"Robustness/Number of samples={max(SIZES) + arguments.fresh}", "Robustness/Sobol indices=false", "Robustness/Worst samples=0")
+        numbers, by_sample = read_samples(run("exact", "Robustness/Tolerance=1e-6", *sampling)[1])
+        record, results = run("reduced", *sampling)
+        _, reduced = read_samples(results)
     seconds = benchmarking.cpu_seconds(record)
     print(f"full-order solutions of all {len(numbers)} samples: {solution * len(numbers):.0f} s\n")
 
-    fresh = slice(max(sizes), None)
+    fresh = slice(max(SIZES), None)
     n_names = len({label for modes in by_sample for label in modes})
     print("| surrogate | full-order solutions | training [s] | modes of | relative error of lambda: median | 95 % | largest | wrong verdicts [%] |")
     print("|---|---|---|---|---|---|---|---|")
@@ -152,11 +146,11 @@ def main():
     print(f"| one reduced model, {record['counts']['basis vectors']} vectors | 0; all samples: {seconds:.0f} s | 0 | {n_names} of {n_names} names "
           f"| {row_of(pairs)} | {wrong_verdicts(by_sample[fresh], (modes.values() for modes in reduced[fresh])):.1f} |", flush=True)
     for name, make in (("polynomial chaos", chaos), ("Kriging", kriging)):
-        for n_train in sizes:
+        for n_train in SIZES:
             found, seconds = trained(ot, make, numbers, by_sample, n_train)
             pairs = [(modes[label][0], found[label][i]) for i, modes in list(enumerate(by_sample))[fresh] for label in found
                      if len(modes.get(label, [])) == 1]
-            wrong = wrong_verdicts(by_sample[fresh], ([[values[i]] for values in found.values()] for i in range(max(sizes), len(numbers))))
+            wrong = wrong_verdicts(by_sample[fresh], ([[values[i]] for values in found.values()] for i in range(max(SIZES), len(numbers))))
             print(f"| {name} | {n_train}: {solution * n_train:.0f} s | {seconds:.0f} | {len(found)} of {n_names} names "
                   f"| {row_of(pairs)} | {wrong:.1f} |", flush=True)
 

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The whole table of doc/benchmarks.md: charts, one friction coefficient and the default run, on one core and on two.
+"""The tables of doc/benchmarks.md: charts, one friction coefficient and the default run, on one core and on two.
 
     scripts/benchmark_table.py [--runs 3] [--cores 0,1] [--rows chart,damped,one,default]
 
@@ -9,14 +9,18 @@ Each row is a run of squeal from the mesh to its tables and, in the same round, 
 
     chart    prm/sweep.prm, 90 friction coefficients without dissipation: 90 times the mean of SLEPc's times at five of them
     damped   prm/sweep_damped.prm without mode count, 90 with dissipation and 90 without: 90 times the sum of both means
-    one      one friction coefficient from the assembled matrices, including real modes and mode count, without and with dissipation
+    one      one friction coefficient from the assembled matrices, including real modes and mode count, without and with dissipation;
+             SLEPc in every applicable formulation of scripts/slepc_modes.py
     default  prm/disc_pins.prm with all fields, without SLEPc
 
-Times on one core are CPU seconds. On two cores the same run is timed by wall clock with one and two threads; the ratio is the speed-up.
-Prints medians of all rounds with the smallest and largest values. All rows except the last require SLEPc (scripts/setup.sh peers).
+Times on one core are CPU seconds; those of SLEPc are from the assembled matrices in memory to the modes, whose number is given. On two
+cores the same run is timed by wall clock with one and two threads; the ratio is the speed-up. Prints medians of all rounds with the
+smallest and largest values. All rows except the last require SLEPc (scripts/setup.sh peers).
 """
 
+import json
 import pathlib
+import statistics
 import tempfile
 
 import benchmarking
@@ -24,10 +28,12 @@ import slepc_modes
 from benchmarking import Rounds
 from squeal.command_line import Parser, exit_on_error
 from squeal.errors import Error
+from squeal.results import Results
 
 PRM = benchmarking.SOURCE / "prm"
 NO_FIELDS = ["Output/Mode shapes=none"]
 DISSIPATION = "Operation/Radial dissipation=consistent"
+PARTS = (0.1, 0.3, 0.5, 0.7, 0.9)  # positions in the range of a sweep at which SLEPc solves
 
 
 def gain_of_cores(rounds, cores, parameter_file, folder, settings):
@@ -42,7 +48,34 @@ def gain_of_cores(rounds, cores, parameter_file, folder, settings):
 
 
 def model_of(folder, damped, core):
-    return benchmarking.matrices_of(folder / ("damped" if damped else "undamped"), PRM / "sweep.prm", [DISSIPATION] if damped else [], core)
+    """The results of the default model with its matrices, written once."""
+    folder = folder / ("damped" if damped else "undamped")
+    if not folder.exists():
+        settings = [*NO_FIELDS, "Study=stability", "Output/Write matrices=true", *([DISSIPATION] if damped else [])]
+        benchmarking.run_squeal(core, PRM / "sweep.prm", folder, settings)
+    return Results(folder)
+
+
+def mean_of_slepc(rounds, core, model, options):
+    """Mean CPU seconds of solutions by SLEPc, each with a list of options of scripts/slepc_modes.py."""
+    solutions = [solution_by_slepc(core, model, own) for own in options]
+    mean = statistics.mean(solution["CPU time [s]"] for solution in solutions)
+    rounds.add(f"SLEPc {solutions[0]['formulation']}, one friction coefficient, CPU [s]", mean)
+    return mean
+
+
+def solution_by_slepc(core, model, options):
+    """The record of one solution."""
+    n_modes = len(model.table("complex_modes"))
+    with tempfile.NamedTemporaryFile(suffix=".json") as file:
+        command = [benchmarking.PEER, model.folder, "--modes", n_modes, "--runs", 1, "--json", file.name, *options]
+        benchmarking.run_on_cores(core, command)
+        solution, = json.loads(pathlib.Path(file.name).read_text(encoding="utf-8"))
+    if solution["modes"] != n_modes:
+        print(f"  note: SLEPc {solution['formulation']} found {solution['modes']} of {n_modes} modes", flush=True)
+    elif solution.get("largest difference"):
+        print(f"  SLEPc {solution['formulation']}: all modes, largest difference {solution['largest difference']:.1e}", flush=True)
+    return solution
 
 
 def chart(cores, folder, n_rounds, damped):
@@ -52,7 +85,16 @@ def chart(cores, folder, n_rounds, damped):
     rounds = Rounds(f"{parameter_file.name}{', without mode count' if damped else ''}")
     models = [model_of(folder, of_damped, cores[:1]) for of_damped in ((False, True) if damped else (False,))]
     for _ in range(n_rounds):
-        benchmarking.compare_sweep(rounds, cores[:1], parameter_file, settings, folder / "sweep", models)
+        record = benchmarking.run_squeal(cores[:1], parameter_file, folder / "sweep", settings)
+        seconds = benchmarking.cpu_seconds(record)
+        rounds.add("squeal, the whole run, CPU [s]", seconds)
+        for name in dict.fromkeys(step["name"] for step in record["steps"]):
+            rounds.add(f"  {name}", benchmarking.cpu_seconds(record, {name}))
+        number, first, last = (Results(folder / "sweep").number(f"Sweep/{name}") for name in
+                               ("Number of friction coefficients", "First friction coefficient", "Last friction coefficient"))
+        chosen = [["--mu", repr(first + part * (last - first))] for part in PARTS]
+        of_slepc = number * sum(mean_of_slepc(rounds, cores[:1], model, chosen) for model in models)
+        rounds.add(f"{number:.0f} solutions by SLEPc / the run [-]", of_slepc / seconds)
         gain_of_cores(rounds, cores, parameter_file, folder, settings)
     rounds.print()
 
@@ -63,10 +105,13 @@ def one(cores, folder, n_rounds):
         rounds = Rounds(f"one friction coefficient, {'consistent' if damped else 'no'} dissipation, from the assembled matrices")
         model = model_of(folder, damped, cores[:1])
         for _ in range(n_rounds):
-            record = benchmarking.run_squeal(cores[:1], PRM / "disc_pins.prm", folder / "one", [*NO_FIELDS, *([DISSIPATION] if damped else [])])
-            seconds = benchmarking.cpu_seconds(record, {"Mode count", "Factorisation", "Real modes", "Complex modes"})
+            settings = [*NO_FIELDS, *([DISSIPATION] if damped else [])]
+            record = benchmarking.run_squeal(cores[:1], PRM / "disc_pins.prm", folder / "one", settings)
+            seconds = benchmarking.cpu_seconds(record, benchmarking.FULL_ORDER)
             rounds.add("squeal, count, factor, real and complex modes, CPU [s]", seconds)
-            rounds.add("squeal / SLEPc [-]", seconds / benchmarking.mean_peer(rounds, cores[:1], model, [0.4]))
+            for formulation in slepc_modes.FORMULATIONS[damped:]:
+                of_slepc = mean_of_slepc(rounds, cores[:1], model, [["--formulation", formulation]])
+                rounds.add(f"  squeal / SLEPc {formulation} [-]", seconds / of_slepc)
         rounds.print()
 
 

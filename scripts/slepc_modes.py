@@ -35,7 +35,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "python"))
 from squeal import exported_matrices, quadratic
 from squeal.command_line import Parser, exit_on_error
 from squeal.errors import Error
-from squeal.results import Table
+from squeal.results import Results
 
 FORMULATIONS = ("linear", "toar", "q-arnoldi", "linearised")
 
@@ -77,8 +77,7 @@ class Solution:
             raise Error("PETSc has complex scalars", "petsc4py", "choose the PETSc for real scalars")
         self.formulation = formulation or applicable(problem)[0]
         self.shift = shift
-        wall, cpu = time.perf_counter(), time.process_time()
-
+        start = time.perf_counter(), time.process_time()
         matrices = [problem.stiffness, problem.mass] if self.formulation == "linear" else [problem.stiffness, problem.damping, problem.mass]
         operators = [petsc_matrix(matrix) for matrix in matrices]
         solver = self.solver(operators)
@@ -86,11 +85,9 @@ class Solution:
         solver.setDimensions(n_eigenvalues, min(basis or default_basis(self.formulation, n_eigenvalues), size))
         solver.setTolerances(tol=tolerance, max_it=1000)
         solver.setFromOptions()
-        start = operators[0].createVecRight()
-        start.setArray(np.random.default_rng(seed).standard_normal(problem.size))
-        solver.setInitialSpace(start)
-        solver.setUp()
-        self.setup_wall, self.setup_cpu = time.perf_counter() - wall, time.process_time() - cpu
+        first = operators[0].createVecRight()
+        first.setArray(np.random.default_rng(seed).standard_normal(problem.size))
+        solver.setInitialSpace(first)
         solver.solve()
 
         n_converged = solver.getConverged()
@@ -102,8 +99,7 @@ class Solution:
         self.found = np.array(eigenvalues, dtype=complex)
         self.eigenvalues = 1j * np.sqrt(self.found) if self.formulation == "linear" else self.found
         self.vectors = np.array(vectors, dtype=complex).reshape(n_converged, problem.size).T
-        self.wall, self.cpu = time.perf_counter() - wall, time.process_time() - cpu
-
+        self.wall, self.cpu = time.perf_counter() - start[0], time.process_time() - start[1]
         solver.destroy()
         for operator in operators:
             operator.destroy()
@@ -137,12 +133,10 @@ class Solution:
 
     def covers(self, band):
         """Whether the eigenvalues reach beyond the band, so that those within are complete except for multiple ones."""
-        if self.found.size == 0:
-            return False
         end = 2 * math.pi * band
         if self.formulation == "linear":
-            return abs(self.found + self.shift**2).max() > end**2 + self.shift**2
-        return abs(self.found - self.shift).max() > end + abs(self.shift)
+            return abs(self.found + self.shift**2).max(initial=0.0) > end**2 + self.shift**2
+        return abs(self.found - self.shift).max(initial=0.0) > end + abs(self.shift)
 
 
 def petsc_matrix(matrix):
@@ -182,19 +176,12 @@ def solve_band(problem, band, n_modes, shift=0.0):
     return quadratic.collect(solve)
 
 
-def largest_difference(eigenvalues, table):
-    """Largest relative difference from the eigenvalues in a table of modes, matched one to one; None if the numbers differ."""
-    expected = Table(table).eigenvalues()
-    return float(quadratic.match(expected, eigenvalues)[2].max(initial=0)) if len(expected) == len(eigenvalues) else None
-
-
 @exit_on_error()
 def main():
     parser = Parser(__doc__)
     parser.add_argument("directory", metavar="DIRECTORY", help="output of a run with Output/Write matrices = true")
     parser.add_argument("--formulation", choices=FORMULATIONS, help="(default: the fastest one)")
     parser.add_argument("--mu", type=float, help="friction coefficient (default: that of the run)")
-    parser.add_argument("--band", type=float, help="upper end of the band in Hz (default: that of the run)")
     parser.add_argument("--modes", type=int, default=66, help="number of modes (default: %(default)s)")
     parser.add_argument("--runs", type=int, default=3, help="repetitions (default: %(default)s)")
     parser.add_argument("--tolerance", type=float, default=1e-12, help="SLEPc's tolerance (default: %(default)s)")
@@ -208,15 +195,11 @@ def main():
     slepc4py.init([sys.argv[0], *options])
     from petsc4py import PETSc
 
-    friction_coefficient = exported_matrices.run_parameter(arguments.directory, "Operation/Friction coefficient", arguments.mu)
-    band = exported_matrices.run_parameter(arguments.directory, "Band/Maximum frequency", arguments.band)
-    start = time.perf_counter()
-    matrices = exported_matrices.read_matrices(arguments.directory)
-    print(f"reading the matrices: {time.perf_counter() - start:.2f} s (not counted)")
-    start = time.perf_counter()
-    problem = exported_matrices.couple(matrices, friction_coefficient)
-    print(f"coupling them: {time.perf_counter() - start:.2f} s (not counted); {problem.size} dofs, "
-          f"{problem.stiffness.nnz} entries in the stiffness")
+    results = Results(arguments.directory)
+    band = results.number("Band/Maximum frequency")
+    friction_coefficient = results.number("Operation/Friction coefficient") if arguments.mu is None else arguments.mu
+    problem = exported_matrices.couple(exported_matrices.read_matrices(arguments.directory), friction_coefficient)
+    print(f"{problem.size} dofs, {problem.stiffness.nnz} entries in the stiffness")
     if arguments.formulation == "linear" and not is_undamped(problem):
         raise Error("with damping the problem is not linear in lambda^2", "--formulation", "choose another one")
     formulation = arguments.formulation or applicable(problem)[0]
@@ -229,19 +212,16 @@ def main():
         except PETSc.Error as error:
             raise Error(f"SLEPc failed: {error}", arguments.directory, "give another --basis") from error
         listed = exported_matrices.in_band(solution.eigenvalues, band)
-        errors = problem.backward_errors(solution.eigenvalues[listed], solution.vectors[:, listed])
-        records.append({"formulation": formulation, "CPU time [s]": solution.cpu, "wall time [s]": solution.wall,
-                        "modes": int(listed.sum()), "covers the band": bool(solution.covers(band)),
-                        "largest backward error": float(errors.max(initial=0))})
-        if arguments.mu is None and arguments.band is None:
-            records[-1]["largest difference"] = largest_difference(
-                solution.eigenvalues[listed], pathlib.Path(arguments.directory) / "complex_modes.csv")
-        print(f"run {run + 1}, {formulation}: {solution.wall:.2f} s wall, {solution.cpu:.2f} s CPU "
-              f"(setup {solution.setup_wall:.2f} s wall, {solution.setup_cpu:.2f} s CPU); {listed.sum()} modes up to {band:g} Hz, "
-              f"{'the band is covered' if solution.covers(band) else 'the band is not covered'}, "
-              f"largest backward error {errors.max(initial=0):.1e}")
-    print(f"median: {statistics.median(record['wall time [s]'] for record in records):.2f} s wall, "
-          f"{statistics.median(record['CPU time [s]'] for record in records):.2f} s CPU")
+        found, vectors = solution.eigenvalues[listed], solution.vectors[:, listed]
+        records.append({"formulation": formulation, "CPU time [s]": solution.cpu, "wall time [s]": solution.wall, "modes": len(found),
+                        "covers the band": bool(solution.covers(band)),
+                        "largest backward error": float(problem.backward_errors(found, vectors).max(initial=0))})
+        expected = results.table("complex_modes").eigenvalues()
+        if arguments.mu is None and len(found) == len(expected):
+            records[-1]["largest difference"] = float(quadratic.match(expected, found)[2].max(initial=0))
+        print(f"run {run + 1}: " + ", ".join(f"{name}: {value:.3g}" if isinstance(value, float) else f"{name}: {value}"
+                                             for name, value in records[-1].items()), flush=True)
+    print(f"median: {statistics.median(record['CPU time [s]'] for record in records):.2f} s of CPU")
     if arguments.json:
         pathlib.Path(arguments.json).write_text(json.dumps(records, indent=1) + "\n", encoding="utf-8")
 
