@@ -23,7 +23,7 @@ squeal_root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 packages=(g++ cmake ninja-build git
           libdeal.ii-dev libsuitesparse-dev libmumps-dev libparpack2-dev libgmsh-dev
           libopenblas-dev liblapacke-dev libeigen3-dev libboost-serialization-dev nlohmann-json3-dev libmuparser-dev libnlopt-cxx-dev libceres-dev libopenturns-dev zlib1g-dev libseccomp-dev
-          libgtest-dev openmpi-bin python3 python3-numpy python3-scipy python3-matplotlib python3-pandas python3-yaml
+          libgtest-dev openmpi-bin python3 python3-numpy python3-scipy python3-matplotlib python3-mpmath python3-pandas python3-yaml
           python3-plotly libjs-three libjs-jquery libjs-jquery-datatables)
 packages_browser=(chromium chromium-driver python3-selenium)
 packages_pictures=(python3-vtk9 libgl1-mesa-dri xvfb xauth)

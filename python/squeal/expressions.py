@@ -6,9 +6,13 @@ Operators are + - * / ^, functions sin, cos, tan, exp, log and ln (natural), sqr
 """
 
 import ast
+import functools
 import math
 import operator
 import re
+
+import mpmath
+from mpmath import iv
 
 from squeal.errors import Error
 
@@ -53,8 +57,12 @@ class Expression:
 
     def check_range(self, ranges):
         """Raises Error if a divisor vanishes within the ranges of the parameters, name -> (lower, upper)."""
-        for node in ast.walk(self._tree):
-            if is_division(node) and (zero := find_zero(divisor(node), {name: ranges[name] for name in self.names})) is not None:
+        for node in filter(is_division, ast.walk(self._tree)):
+            # The divisor of a power is its base, where the exponent is negative
+            is_power = isinstance(node.op, ast.Pow)
+            if is_power and not interval_of(node.right, ranges).a < 0:
+                continue
+            if (zero := find_zero(node.left if is_power else node.right, ranges)) is not None:
                 place = ", ".join(f"{name} = {value:.6g}" for name, value in zero.items())
                 raise Error(f"`{self.text}` divides by zero" + (f" at {place}, inside the range" if place else ""), self.where,
                             "change the ranges of the parameters or the expression")
@@ -88,117 +96,52 @@ def names_in(node):
     raise ValueError(node)
 
 
-def evaluate(node, values, functions=FUNCTIONS, number=float):
+def evaluate(node, values, functions=FUNCTIONS, operators=OPERATORS, number=float):
     """The value of a tree for floats or intervals; `number` converts the constants."""
+    own = functools.partial(evaluate, values=values, functions=functions, operators=operators, number=number)
     if isinstance(node, ast.Constant):
         return number(node.value)
     if isinstance(node, ast.Name):
         name = node.id[2:]
         return number(CONSTANTS[name]) if name in CONSTANTS else values[name]
     if isinstance(node, ast.UnaryOp):
-        value = evaluate(node.operand, values, functions, number)
-        return -value if isinstance(node.op, ast.USub) else value
+        return -own(node.operand) if isinstance(node.op, ast.USub) else own(node.operand)
     if isinstance(node, ast.Call):
-        return functions[node.func.id[2:]](evaluate(node.args[0], values, functions, number))
-    return OPERATORS[type(node.op)](*(evaluate(side, values, functions, number) for side in (node.left, node.right)))
+        return functions[node.func.id[2:]](own(node.args[0]))
+    return operators[type(node.op)](own(node.left), own(node.right))
 
 
 def is_division(node):
     return isinstance(node, ast.BinOp) and isinstance(node.op, (ast.Div, ast.Pow))
 
 
-def divisor(node):
-    """The divisor; that of a power is its base if the exponent is negative."""
-    return node.right if isinstance(node.op, ast.Div) else ast.IfExp(test=node.right, body=node.left, orelse=ast.Constant(1.0))
+EVERYTHING = iv.mpf([-math.inf, math.inf])
 
 
-class Interval:
-    """The interval [lower, upper]; operations return intervals that contain all results for numbers in the operands."""
+def guarded(operation):
+    """An operation on intervals whose result is everything if it is undefined somewhere in its operands."""
+    def result(*operands):
+        try:
+            found = operation(*operands)
+        except (mpmath.libmp.ComplexResult, NotImplementedError, OverflowError, ValueError, ZeroDivisionError):
+            return EVERYTHING
+        return found if isinstance(found, type(EVERYTHING)) else EVERYTHING  # not if it is complex
 
-    def __init__(self, lower, upper=None):
-        self.lower, self.upper = lower, lower if upper is None else upper
-
-    @classmethod
-    def around(cls, values):
-        values = list(values)
-        return EVERYTHING if any(math.isnan(value) for value in values) else cls(min(values), max(values))
-
-    @property
-    def ends(self):
-        return self.lower, self.upper
-
-    def __contains__(self, value):
-        return self.lower <= value <= self.upper
-
-    def __neg__(self):
-        return Interval(-self.upper, -self.lower)
-
-    def __add__(self, other):
-        return Interval(self.lower + other.lower, self.upper + other.upper)
-
-    def __sub__(self, other):
-        return self + -other
-
-    def __mul__(self, other):
-        return Interval.around(a * b for a in self.ends for b in other.ends)
-
-    def __truediv__(self, other):
-        return EVERYTHING if 0 in other else Interval.around(a / b for a in self.ends for b in other.ends)
-
-    def __pow__(self, exponent):
-        if exponent.lower < 0:
-            return EVERYTHING if 0 in self else Interval(1.0) / self**-exponent
-        if exponent.lower == exponent.upper and exponent.lower.is_integer():
-            ends = (bounded(pow, end, exponent.lower) for end in self.ends)
-            return Interval.around([*ends, 0.0] if exponent.lower > 0 and 0 in self else ends)
-        return EVERYTHING if self.lower < 0 else Interval.around(bounded(pow, a, b) for a in self.ends for b in exponent.ends)
-
-    def __abs__(self):
-        return Interval.around([*map(abs, self.ends), *([0.0] if 0 in self else [])])
+    return result
 
 
-EVERYTHING = Interval(-math.inf, math.inf)
-
-
-def bounded(function, *values):
-    """The value of a function, infinite on overflow."""
-    try:
-        return function(*values)
-    except OverflowError:
-        return math.inf
-
-
-def monotonic(function, least):
-    """An increasing function of intervals, undefined for numbers up to `least`."""
-    return lambda x: EVERYTHING if x.lower <= least else Interval(*(bounded(function, end) for end in x.ends))
-
-
-def wave(function, top):
-    """Sine or cosine of intervals, with its maximum at `top`."""
-    def of(x):
-        if not x.upper - x.lower < 2 * math.pi:
-            return Interval(-1.0, 1.0)
-        extremes = [value for value, place in ((1.0, top), (-1.0, top + math.pi))
-                    if place + 2 * math.pi * math.ceil((x.lower - place) / (2 * math.pi)) in x]
-        return Interval.around([*map(function, x.ends), *extremes])
-
-    return of
-
-
-SIN, COS = wave(math.sin, math.pi / 2), wave(math.cos, 0.0)
-OF_INTERVALS = {"sin": SIN, "cos": COS, "tan": lambda x: SIN(x) / COS(x), "exp": monotonic(math.exp, -math.inf), "log": monotonic(math.log, 0.0),
-                "ln": monotonic(math.log, 0.0), "sqrt": monotonic(math.sqrt, -math.ulp(0.0)), "abs": abs}
+INTERVAL_FUNCTIONS = {name: abs if name == "abs" else guarded(getattr(iv, name)) for name in FUNCTIONS}
+INTERVAL_OPERATORS = {kind: guarded(operation) for kind, operation in OPERATORS.items()}
 
 
 def interval_of(node, ranges):
-    """An interval that contains all values of a tree for parameters within ranges."""
-    return evaluate(node, {name: Interval(*ends) for name, ends in ranges.items()}, OF_INTERVALS, Interval)
+    """An interval that contains all values of a tree for parameters within ranges, name -> (lower, upper)."""
+    values = {name: iv.mpf(ranges[name]) for name in names_in(node)}
+    return evaluate(node, values, INTERVAL_FUNCTIONS, INTERVAL_OPERATORS, iv.mpf)
 
 
 def find_zero(node, ranges):
     """Parameters near a zero of a tree, None if it has none; bisects the ranges until every interval excludes zero."""
-    if isinstance(node, ast.IfExp):
-        return find_zero(node.body, ranges) if interval_of(node.test, ranges).lower < 0 else None
     boxes = [(0, {name: ranges[name] for name in names_in(node)})]
     while boxes:
         halvings, box = boxes.pop()
