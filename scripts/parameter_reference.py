@@ -9,7 +9,6 @@
 The environment variable SQUEAL is the path of the program (default: build/release/squeal).
 """
 
-import dataclasses
 import pathlib
 import re
 import subprocess
@@ -29,54 +28,29 @@ a run. `--set "Section/Name=value"` overrides one. This page is written by `scri
 """
 
 
-@dataclasses.dataclass
-class Parameter:
-    section: str
-    name: str
-    default: str
-    meaning: str
-    unit: str
-    accepts: str
-
-
-def parameter(section, name, default, words):
-    """Splits the words of a comment into meaning, units and accepted values."""
-    text, _, accepts = " ".join(words).partition(ACCEPTS)
+def cells_of(name, default, comment):
+    """Cells of a parameter, whose comment has its meaning, unit and accepted values."""
+    text, _, accepts = comment.partition(ACCEPTS)
     meaning, _, unit = text.partition(UNITS)
     unit = unit.rstrip(".")
-    return Parameter(section, name, default, meaning, "" if unit == "none" else unit, accepts.rstrip("."))
-
-
-def parameters(listing):
-    """The parameters printed by the program, in its order."""
-    section, words, found = "", [], []
-    for line in map(str.strip, listing.splitlines()):
-        if line.startswith("subsection "):
-            section, words = line.removeprefix("subsection "), []
-        elif line in TITLE:
-            words = []
-        elif line.startswith("#"):
-            words.append(line.lstrip("# "))
-        elif match := re.match(r"set (.*?)\s*=\s*(.*)$", line):
-            found.append(parameter(section, match[1], match[2], words))
-            words = []
-        elif not line:
-            words = []
-    return found
-
-
-def cell(text):
-    return text.replace("|", "\\|")
+    return name, f"`{default}`" if default else "", "" if unit == "none" else unit, meaning, accepts.rstrip(".")
 
 
 def page(listing):
-    text, section = HEAD, None
-    for one in parameters(listing):
-        if one.section != section:
-            section = one.section
-            text += f"\n## {section or 'Without a section'}\n\n| parameter | default | unit | meaning | accepts |\n|---|---|---|---|---|\n"
-        default = f"`{one.default}`" if one.default else ""
-        text += f"| {cell(one.name)} | {cell(default)} | {cell(one.unit)} | {cell(one.meaning)} | {cell(one.accepts)} |\n"
+    """The page for the parameters that the program prints."""
+    text, words, in_section = HEAD, [], False
+    for line in map(str.strip, listing.splitlines()):
+        if line.startswith("#") and line not in TITLE:
+            words.append(line.lstrip("# "))
+            continue
+        section, parameter = re.match(r"subsection (.*)", line), re.match(r"set (.*?)\s*=\s*(.*)$", line)
+        if section or parameter and not in_section:
+            in_section = True
+            text += f"\n## {section[1] if section else 'Without a section'}\n\n| parameter | default | unit | meaning | accepts |\n|---|---|---|---|---|\n"
+        if parameter:
+            cells = cells_of(parameter[1], parameter[2], " ".join(words))
+            text += "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |\n"
+        words = []
     return text
 
 

@@ -51,6 +51,7 @@ class Squeal(CMakePackage):
         depends_on("py-numpy", type="run")
         depends_on("py-scipy", type="run")
         depends_on("py-matplotlib", type="run")
+        depends_on("py-mpmath", type="run")
         depends_on("py-pandas", type="run")
         depends_on("py-meshio", type="run")
         depends_on("py-h5py", type="run")
