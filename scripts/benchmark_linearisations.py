@@ -35,18 +35,18 @@ import slepc_modes
 from squeal import exported_matrices
 from squeal.command_line import exit_on_error
 from squeal.errors import Error
+from squeal.results import Results
 
 N_VECTORS, N_MODES = 234, 66
 
 
 def small_problem(directory):
     """M, C and K in the lowest real modes of the frictionless system, and the end of the band [Hz]."""
-    matrices = exported_matrices.read_matrices(directory)
+    matrices, results = exported_matrices.read_matrices(directory), Results(directory)
     bare = exported_matrices.couple(matrices, 0.0)
-    full = exported_matrices.couple(matrices, exported_matrices.run_parameter(directory, "Operation/Friction coefficient"))
-    band = exported_matrices.run_parameter(directory, "Band/Maximum frequency")
+    full = exported_matrices.couple(matrices, results.number("Operation/Friction coefficient"))
     _, basis = scipy.sparse.linalg.eigsh(sparse.csc_matrix(bare.stiffness), N_VECTORS, sparse.csc_matrix(bare.mass), sigma=0.0)
-    return [basis.T @ (matrix @ basis) for matrix in (full.mass, full.damping, full.stiffness)], band
+    return [basis.T @ (matrix @ basis) for matrix in (full.mass, full.damping, full.stiffness)], results.number("Band/Maximum frequency")
 
 
 def companion_form(M, C, K):

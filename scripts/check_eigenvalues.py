@@ -3,7 +3,7 @@
 
 """Checks the complex modes of a run with independent eigensolvers.
 
-    scripts/check_eigenvalues.py DIRECTORY [--modes FILE] [--solver scipy|slepc|both] [--system FOLDER]
+    scripts/check_eigenvalues.py DIRECTORY [--solver scipy|slepc|both] [--system FOLDER]
 
 DIRECTORY is the output of a run with Output/Write matrices = true, or of any run of the system in FOLDER (doc/python.md). The coupled
 quadratic problem is assembled from the exported matrices and solved by SciPy (ARPACK on the companion form) and, if installed, by SLEPc
@@ -29,10 +29,10 @@ import scipy.sparse.linalg
 import slepc_modes
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "python"))
-from squeal import exported_matrices, parameter_file, quadratic
+from squeal import exported_matrices, quadratic
 from squeal.command_line import Parser, exit_on_error
 from squeal.errors import Error
-from squeal.results import Table
+from squeal.results import Results
 from squeal.system import System
 
 STRUCTURE_TOLERANCE = 1e-10
@@ -44,39 +44,17 @@ ESTIMATE_SAFETY = 3.0
 SINGULAR_CONDITION = 1e12
 
 
-def read_modes(path):
-    """Labels, eigenvalues and, if present, estimated errors of a table of modes.
-
-    The columns are `frequency [Hz]`, `growth rate [1/s]` and `estimated error of lambda [-]`.
-    """
-    table = Table(path)
-    for name in ("frequency [Hz]", "growth rate [1/s]"):
-        if name not in table.columns:
-            raise Error(f"there is no column `{name}`", path, f"name a table with it; this one has: {', '.join(table.columns)}")
-    labels = table.texts("label") if "label" in table.columns else [""] * len(table)
-    error = "estimated error of lambda [-]"
-    return labels, np.array(table.eigenvalues(), dtype=complex), table.numbers(error) if error in table.columns else []
-
-
 def choose_shift(problem, band):
     """A shift [1/s]: zero, or a twentieth of the end of the band if the stiffness is singular."""
-    n = problem.size
+    n, away = problem.size, 0.05 * 2 * math.pi * band
     try:
         factor = scipy.sparse.linalg.splu(problem.stiffness.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.1,
                                           options={"SymmetricMode": True})
     except RuntimeError:  # exactly singular
-        return 0.05 * 2 * math.pi * band
+        return away
     inverse = scipy.sparse.linalg.LinearOperator((n, n), matvec=factor.solve, rmatvec=lambda x: factor.solve(x, trans="T"), dtype=float)
     condition = scipy.sparse.linalg.norm(problem.stiffness, 1) * scipy.sparse.linalg.onenormest(inverse)
-    return 0.0 if condition < SINGULAR_CONDITION else 0.05 * 2 * math.pi * band
-
-
-def choose_tolerance(errors):
-    """The largest accepted relative difference, and its origin."""
-    estimate = ESTIMATE_SAFETY * max(errors, default=0.0)
-    if estimate > TOLERANCE:
-        return estimate, f"{ESTIMATE_SAFETY:g} times the largest error estimated in the table"
-    return TOLERANCE, "for converged eigenvalues"
+    return 0.0 if condition < SINGULAR_CONDITION else away
 
 
 def solve_by_scipy(problem, band, n_modes, shift=0.0):
@@ -105,7 +83,9 @@ def problem_of_system(arguments):
 
 def problem_of_run(arguments):
     """The coupled quadratic problem of exported matrices, and whether their structure is correct."""
-    friction_coefficient = exported_matrices.run_parameter(arguments.directory, "Operation/Friction coefficient", arguments.mu)
+    friction_coefficient = arguments.mu
+    if friction_coefficient is None:
+        friction_coefficient = Results(arguments.directory).number("Operation/Friction coefficient")
     matrices, right = exported_matrices.read_matrices(arguments.directory), True
     for description, error in exported_matrices.structure_errors(matrices).items():
         fails = error > STRUCTURE_TOLERANCE
@@ -143,33 +123,30 @@ def compare(name, labels, eigenvalues, found, tolerance):
 def main():
     parser = Parser(__doc__)
     parser.add_argument("directory", metavar="DIRECTORY", type=pathlib.Path, help="output of a run with Output/Write matrices = true")
-    parser.add_argument("--modes", metavar="FILE", default="complex_modes.csv", help="table of modes in DIRECTORY (default: %(default)s)")
     parser.add_argument("--solver", choices=("scipy", "slepc", "both"), default="both", help="(default: %(default)s)")
     parser.add_argument("--system", metavar="FOLDER", help="system of matrices of the run, instead of exported matrices")
     parser.add_argument("--parameter", action="append", default=[], metavar="NAME=VALUE", help="overrides a parameter of the system")
     parser.add_argument("--mu", type=float, help="friction coefficient (default: that of the run)")
-    parser.add_argument("--band", type=float, help="upper end of the band in Hz (default: that of the run)")
-    parser.add_argument("--shift", type=float, help="real shift in 1/s (default: 0, or chosen if a body can move freely)")
     parser.add_argument("--tolerance", type=float,
                         help=f"largest relative difference (default: {TOLERANCE:g}, or from the errors estimated in the table)")
     arguments = parser.parse_args()
 
-    band = exported_matrices.run_parameter(arguments.directory, "Band/Maximum frequency", arguments.band)
-    labels, eigenvalues, errors = read_modes(arguments.directory / arguments.modes)
+    results = Results(arguments.directory)
+    if results.parameters.get("Damping/Modal damping ratio"):
+        raise Error("the run has modal damping, which is not exported", results.folder, "repeat it without Damping/Modal damping ratio")
+    table, band = results.table("complex_modes"), results.number("Band/Maximum frequency")
+    labels, eigenvalues = np.array(table.texts("label")), np.array(table.eigenvalues(), dtype=complex)
     listed = exported_matrices.in_band(eigenvalues, band)
-    labels, eigenvalues = [label for label, keep in zip(labels, listed) if keep], eigenvalues[listed]
-    file = pathlib.Path(arguments.directory) / "parameters.prm"
-    parameters = parameter_file.read_parameters(file) if file.is_file() else {}
-    if parameters.get("Damping/Modal damping ratio"):
-        raise Error("the run has modal damping, which is not exported", file, "repeat it without Damping/Modal damping ratio")
+    labels, eigenvalues = labels[listed], eigenvalues[listed]
     problem, right = (problem_of_system if arguments.system else problem_of_run)(arguments)
     print(f"modes up to {band:g} Hz")
-    shift = arguments.shift
-    if shift is None:
-        shift = choose_shift(problem, band)
-        if shift != 0:
-            print(f"  a body can move freely: the shift is {shift:.0f} 1/s")
-    tolerance, source = (arguments.tolerance, "as given") if arguments.tolerance is not None else choose_tolerance(errors)
+    if (shift := choose_shift(problem, band)) != 0:
+        print(f"  a body can move freely: the shift is {shift:.0f} 1/s")
+    error = "estimated error of lambda [-]"
+    estimate = ESTIMATE_SAFETY * max(table.numbers(error), default=0.0) if error in table.columns else 0.0
+    tolerance, source = ((arguments.tolerance, "as given") if arguments.tolerance is not None else
+                         (estimate, f"{ESTIMATE_SAFETY:g} times the largest error estimated in the table") if estimate > TOLERANCE else
+                         (TOLERANCE, "for converged eigenvalues"))
     print(f"  tolerance {tolerance:.1e}, {source}")
     solvers = {"SciPy": solve_by_scipy} if arguments.solver in ("scipy", "both") else {}
     if arguments.solver in ("slepc", "both"):

@@ -35,7 +35,6 @@ import scipy.sparse.linalg
 
 from squeal import quadratic
 from squeal.errors import Error
-from squeal.parameter_file import read_parameters
 
 
 @dataclasses.dataclass
@@ -117,29 +116,10 @@ def structure_errors(matrices):
     rigid, T_c = rigid_rows(matrices), matrices["T_c"]
     P_n, P_t, P_b, S = (matrix[rigid] for matrix in (matrices["P_n"], matrices["P_t"], matrices["P_b"], reactions(matrices)))
     n_contact, n_dofs = P_n.shape
-    errors = {
-        "S P_n^T - I": largest(S @ P_n.T - sparse.identity(n_contact)),
-        "S P_t^T": largest(S @ P_t.T),
-        "S P_b^T": largest(S @ P_b.T),
-        "P_n T_c": largest(P_n @ T_c),
-        "columns of T_c - (n - n_c)": float(abs(T_c.shape[1] - (n_dofs - n_contact))),
-    }
-    for name in ("M", "C", "K", "C_b"):
-        matrix = matrices[name]
-        errors[f"{name} - {name}^T"] = largest(matrix - matrix.T) / (largest(matrix) or 1.0)
-    errors["G + G^T"] = largest(matrices["G"] + matrices["G"].T) / (largest(matrices["G"]) or 1.0)
-    return errors
-
-
-def run_parameter(directory, name, given=None):
-    """A numerical parameter of the run: `given`, or its value in DIRECTORY/parameters.prm if that is None."""
-    if given is not None:
-        return given
-    path = pathlib.Path(directory) / "parameters.prm"
-    values = read_parameters(path) if path.is_file() else {}
-    if name not in values:
-        raise Error(f"{name} is missing", path, "give it on the command line")
-    return float(values[name])
+    skewness = {f"{name} {sign} {name}^T": largest(matrices[name] - factor * matrices[name].T) / (largest(matrices[name]) or 1.0)
+                for name, sign, factor in (("M", "-", 1), ("C", "-", 1), ("K", "-", 1), ("C_b", "-", 1), ("G", "+", -1))}
+    return {"S P_n^T - I": largest(S @ P_n.T - sparse.identity(n_contact)), "S P_t^T": largest(S @ P_t.T), "S P_b^T": largest(S @ P_b.T),
+            "P_n T_c": largest(P_n @ T_c), "columns of T_c - (n - n_c)": float(abs(T_c.shape[1] - (n_dofs - n_contact))), **skewness}
 
 
 def in_band(eigenvalues, band):

@@ -74,6 +74,7 @@ def write_run(directory, band=20000.0):
     for name, matrix in {"M": M, "C": 0 * M, "K": K, "C_b": C_b, "P_n": P_n, "P_t": P_t, "P_b": P_b, "T_c": T_c}.items():
         symmetry = "symmetric" if name in ("M", "K") else "general"
         scipy.io.mmwrite(directory / "matrices" / f"{name}.mtx", sparse.coo_matrix(matrix), precision=17, symmetry=symmetry)
+    (directory / "run.json").write_text("{}", encoding="utf-8")
     (directory / "parameters.prm").write_text(
         f"subsection Operation\n  set Friction coefficient = {FRICTION_COEFFICIENT} # none\n  set Rotation = positive\nend\n"
         f"subsection Band\n  set Maximum frequency = {band}\nend\n", encoding="utf-8")
