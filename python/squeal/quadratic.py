@@ -160,46 +160,28 @@ class ShiftInvert:
         return eigenvalues, vectors[:n, finite], radius
 
 
-class Rectangle:
-    """A region of the complex plane, with (lower, upper) real and imaginary parts [1/s]."""
-
-    def __init__(self, real, imaginary):
-        self.real, self.imaginary = real, imaginary
-
-    @property
-    def centre(self):
-        return complex(sum(self.real) / 2, sum(self.imaginary) / 2)
-
-    @property
-    def radius(self):
-        return 0.5 * math.hypot(self.real[1] - self.real[0], self.imaginary[1] - self.imaginary[0])
-
-    def contains(self, eigenvalues, margin=0.0):
-        return ((eigenvalues.real >= self.real[0] - margin) & (eigenvalues.real <= self.real[1] + margin)
-                & (eigenvalues.imag >= self.imaginary[0] - margin) & (eigenvalues.imag <= self.imaginary[1] + margin))
-
-    def halves(self):
-        along_real = self.real[1] - self.real[0] > self.imaginary[1] - self.imaginary[0]
-        lower, upper = self.real if along_real else self.imaginary
-        parts = ((lower, 0.5 * (lower + upper)), (0.5 * (lower + upper), upper))
-        return [Rectangle(part, self.imaginary) if along_real else Rectangle(self.real, part) for part in parts]
+def inside(eigenvalues, region, margin=0.0):
+    """Mask of the eigenvalues in a rectangle: an array with rows (lower, upper) of real and imaginary parts [1/s]."""
+    parts = np.array([eigenvalues.real, eigenvalues.imag])
+    return ((parts >= region[:, :1] - margin) & (parts <= region[:, 1:] + margin)).all(axis=0)
 
 
 def solve_region(solver, region, seed):
     """Eigenvalues and vectors in a rectangle, which is halved if one shift requires too many eigenvalues."""
-    sigma = region.centre if region.centre.imag else region.centre.real
-    factor, number = solver.factor(sigma), FIRST_NUMBER
+    widths, centre = np.ptp(region, axis=1), complex(*region.mean(axis=1))
+    factor, number = solver.factor(centre if centre.imag else centre.real), FIRST_NUMBER
     while True:
-        eigenvalues, vectors, radius = solver.nearest(sigma, number, seed, factor)
-        reach = region.radius + abs(factor[0] - region.centre)
+        eigenvalues, vectors, radius = solver.nearest(factor[0], number, seed, factor)
+        reach = 0.5 * math.hypot(*widths) + abs(factor[0] - centre)
         if radius > reach:
-            inside = region.contains(eigenvalues, EQUAL * solver.gamma)
-            return eigenvalues[inside], vectors[:, inside]
+            found = inside(eigenvalues, region, EQUAL * solver.gamma)
+            return eigenvalues[found], vectors[:, found]
         # Extrapolate to the number that reaches the corners
         number = max(2 * number, math.ceil(1.2 * number * (reach / radius)))
         if number > LARGEST_NUMBER:
-            parts = [solve_region(solver, half, seed) for half in region.halves()]
-            eigenvalues, vectors = np.concatenate([part[0] for part in parts]), np.hstack([part[1] for part in parts])
+            halves, axis = np.array([region, region]), np.argmax(widths)
+            halves[0, axis, 1] = halves[1, axis, 0] = region[axis].mean()
+            eigenvalues, vectors = map(np.hstack, zip(*(solve_region(solver, half, seed) for half in halves)))
             kept = merge(eigenvalues, vectors)
             return eigenvalues[kept], vectors[:, kept]
 
@@ -276,14 +258,14 @@ def solve(M, C, K, number=None, largest=None, region=None, shift=None, where="sy
         if number is not None:
             eigenvalues, vectors = collect(lambda seed: solver.nearest(shift or 0.0, number + 8, seed)[:2])
         else:
-            rectangle = Rectangle((-largest, largest), (0.0, largest)) if region is None else Rectangle(*region)
+            rectangle = np.array([(-largest, largest), (0.0, largest)] if region is None else region, dtype=float)
             eigenvalues, vectors = collect(lambda seed: solve_region(solver, rectangle, seed))
             if region is None:
                 above = eigenvalues.imag > EQUAL * abs(eigenvalues)
                 eigenvalues = np.concatenate([eigenvalues[above].conj(), eigenvalues])
                 vectors = np.hstack([vectors[:, above].conj(), vectors])
     if region is not None:
-        chosen = Rectangle(*region).contains(eigenvalues)
+        chosen = inside(eigenvalues, np.array(region, dtype=float))
     elif largest is not None:
         chosen = abs(eigenvalues) <= largest
     else:

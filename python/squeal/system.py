@@ -182,9 +182,8 @@ class System:
             raise Error(f"the file is not a `{FORMAT}` of version {VERSION}", path, f'write "format": "{FORMAT}", "version": {VERSION}')
         known = ("format", "version", "description", "parameters", "terms", "groups", "positions", "displacements", "measured modes", "reduction")
         check_keys(data, known, path)
-        parameters = {}
-        for name, entry in as_kind(data.get("parameters", {}), dict, f"{path}, parameters").items():
-            parameters[name] = read_entry(Parameter, entry, f"{path}, parameter `{name}`", needed=("value",))
+        parameters = {name: read_entry(Parameter, entry, f"{path}, parameter `{name}`", needed=("value",))
+                      for name, entry in as_kind(data.get("parameters", {}), dict, f"{path}, parameters").items()}
         terms = []
         for number, entry in enumerate(as_kind(data.get("terms", []), list, f"{path}, terms"), start=1):
             where = f"{path}, term {number}"
@@ -231,22 +230,18 @@ class System:
                 "parameters": {name: parameter.as_json() for name, parameter in self.parameters.items()}, "terms": entries}
         if self.groups:
             data["groups"] = {name: [[int(end) for end in ends] for ends in ranges] for name, ranges in self.groups.items()}
-        if self.positions is not None:
-            data["positions"] = "positions.mtx"
-            write_array(folder / "positions.mtx", self.positions)
         if self.measured_modes is not None:
             data["measured modes"] = str(self.measured_modes)
-        if self.displacements is not None:
-            data["displacements"] = "displacements.mtx"
-            write_matrix(folder / "displacements.mtx", self.displacements)
+        for key, value, write in (("positions", self.positions, write_array), ("displacements", self.displacements, write_matrix)):
+            if value is not None:
+                data[key] = f"{key}.mtx"
+                write(folder / data[key], value)
         if self.reduction is not None:
             data["reduction"] = dict(self.reduction)
-            if "basis" in self.reduction:
-                data["reduction"]["basis"] = "basis.mtx"
-                write_array(folder / "basis.mtx", self.reduction["basis"])
-            if "points" in self.reduction:
-                data["reduction"]["points"] = "points.csv"
-                write_rows(folder / "points.csv", self.reduction["points"])
+            for key, file, write in (("basis", "basis.mtx", write_array), ("points", "points.csv", write_rows)):
+                if key in self.reduction:
+                    data["reduction"][key] = file
+                    write(folder / file, self.reduction[key])
         (folder / FILE).write_text(json.dumps(data, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
 
     def values(self, p=None):
