@@ -13,50 +13,70 @@ The exit status is 1 if a case is neither right nor refused as expected. The env
 
 import collections
 import concurrent.futures
+import dataclasses
 import os
 import pathlib
+import re
 import sys
 import tempfile
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-from extremes import page
 from extremes.cases import CASES
 from extremes.judge import judge
 from squeal.command_line import Parser, exit_on_error
 
+PAGE = pathlib.Path(__file__).resolve().parents[1] / "doc" / "extremes.md"
+BEGIN, END = "<!-- cases -->", "<!-- end of cases -->"
+COLUMNS = ("case", "value", "outcome", "modes", "residual", "count", "oracle", "deviation", "digits", "remark")  # of judge.Row
+HEAD = "| " + " | ".join(COLUMNS) + " |\n" + "|---" * len(COLUMNS) + "|"
 
-def judge_in(number, case, keep):
-    """The row of a case, run in DIR/NUMBER or in a temporary folder."""
-    with tempfile.TemporaryDirectory() as temporary:
-        folder = keep / f"{number:03d}" if keep else pathlib.Path(temporary)
-        folder.mkdir(parents=True, exist_ok=True)
-        return judge(case, folder)
+
+def line(row):
+    return "| " + " | ".join(cell.replace("|", "\\|") for cell in dataclasses.astuple(row)) + " |"
+
+
+def known_lines():
+    """Lines of the table by group and value of their cases."""
+    table = re.split(f"{BEGIN}|{END}", PAGE.read_text(encoding="utf-8"))[1]
+    return {tuple(cell.strip() for cell in text.strip("| ").split(" | ")[:2]): text for text in table.strip().splitlines()[2:]}
+
+
+def write(rows):
+    """Replaces the rows of the measured cases, keeps the others, and drops those that are no cases any more."""
+    lines = {**known_lines(), **{(row.group, row.value): line(row) for row in rows}}
+    before, _, after = re.split(f"{BEGIN}|{END}", PAGE.read_text(encoding="utf-8"))
+    names = [(case.group, case.value) for case in CASES]
+    table = "\n".join([HEAD, *(lines[name] for name in names if name in lines)])
+    PAGE.write_text(f"{before}{BEGIN}\n{table}\n{END}{after}", encoding="utf-8")
+
+
+def judge_in_folder(case):
+    """The row of a case."""
+    with tempfile.TemporaryDirectory() as folder:
+        return judge(case, pathlib.Path(folder))
 
 
 @exit_on_error()
 def main():
     parser = Parser(__doc__)
     parser.add_argument("--only", default="", metavar="WORDS", help="only the cases whose name contains WORDS")
-    parser.add_argument("--quick", action="store_true", help="only the cases that the tests run")
     parser.add_argument("--missing", action="store_true", help="only the cases missing in the table of doc/extremes.md")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), metavar="N", help="number of concurrent cases (default: %(default)s)")
-    parser.add_argument("--keep", type=pathlib.Path, metavar="DIR", help="folder in which the runs are kept")
     parser.add_argument("--write", action="store_true", help="updates the measured rows of the table of doc/extremes.md")
     arguments = parser.parse_args()
-    known = page.known_lines() if arguments.missing else ()
-    chosen = [case for case in CASES if arguments.only in case.name and (case.quick or not arguments.quick)
-              and (case.group, case.value) not in known]
+    known = known_lines() if arguments.missing else ()
+    chosen = [case for case in CASES if arguments.only in case.name and (case.group, case.value) not in known]
     rows = []
-    print(page.HEAD)
+    print(HEAD)
     with concurrent.futures.ProcessPoolExecutor(arguments.jobs) as pool:
-        for row in pool.map(judge_in, range(len(chosen)), chosen, [arguments.keep] * len(chosen)):
+        for row in pool.map(judge_in_folder, chosen):
             rows.append(row)
-            print(page.line(row), flush=True)
+            print(line(row), flush=True)
     outcomes = collections.Counter(row.outcome for row in rows)
     print(f"\n{len(rows)} cases: " + ", ".join(f"{count} {outcome}" for outcome, count in outcomes.items()))
     if arguments.write:
-        page.write(rows, [(case.group, case.value) for case in CASES])
+        write(rows)
     return 0 if all(row.is_as_expected for row in rows) else 1
 
 

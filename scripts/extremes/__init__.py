@@ -5,8 +5,6 @@
     cases.py     the models as data
     oracle.py    all eigenvalues of the exported matrices by SciPy, refined in extended precision
     judge.py     runs a case and decides whether it is right, refused or wrong
-    scaling.py   the small model in other units of length
-    page.py      the table of doc/extremes.md
 """
 
 import pathlib

@@ -4,8 +4,6 @@
 
 import dataclasses
 
-from extremes.scaling import LENGTHS, scaled
-
 # A pin on each side of a disc with one layer of elements: 780 dofs, 32 modes, one of them unstable
 BASE = """
 subsection Geometry
@@ -27,6 +25,9 @@ end
 DISC_MODULUS, DISC_DENSITY = 2.1e11, 7850.0
 OUTER_RADIUS, PIN_DIAMETER = 0.3155, 0.052
 RIGHT = "right"
+LENGTHS = {"Disc inner radius": 0.2, "Disc outer radius": 0.3155, "Disc thickness": 0.0463, "Pin diameter": 0.052, "Pin height": 0.0318,
+           "Element size": 0.0577, "Top pin radii": 0.257, "Bottom pin radii": 0.257, "Pairing tolerance": 1e-6}
+MOUNT = (0, 7.8e10, 1.88e10)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -45,6 +46,21 @@ class Case:
     @property
     def name(self):
         return f"{self.group}, {self.value}"
+
+
+def scaled(s, *, held=True, damped=False):
+    """Settings of the small model with lengths scaled by s, for the same dimensionless results.
+
+    At constant Young's moduli, densities and pressures, frequencies, rates and speeds scale with 1 / s, forces with s^2, mount stiffnesses
+    per area with 1 / s, and damping coefficients of contact nodes with s^2.
+    """
+    settings = [f"Geometry/{name}={value * s!r}" for name, value in LENGTHS.items()]
+    settings += [f"Band/Maximum frequency={5000 / s!r}", f"Operation/Load per side={1000 * s**2!r}", f"Operation/Rotation speed={4 / s!r}"]
+    stiffnesses = ", ".join(repr(stiffness / s) for stiffness in MOUNT)
+    settings.append(f"Mounts/Elastic mounts={f'disc_bore: {stiffnesses}' if held else ''}")
+    if damped:
+        settings += ["Operation/Radial dissipation=consistent", f"Disc material/Rayleigh beta={1e-7 * s!r}", f"Pin material/Rayleigh alpha={20 / s!r}"]
+    return tuple(settings)
 
 
 CASES = []

@@ -11,7 +11,7 @@ import subprocess
 
 import numpy as np
 
-from extremes import oracle, scaling
+from extremes import oracle
 from extremes.cases import BASE, RIGHT
 from squeal import exported_matrices, parameter_file, quadratic
 from squeal.program import find_program, words_of
@@ -70,14 +70,6 @@ def call(*arguments, folder):
     return process
 
 
-def eigenvalues_of(folder):
-    """lambda of the complex modes and the real eigenvalues in the tables."""
-    modes = Table(folder / "complex_modes.csv").eigenvalues()
-    path = folder / "real_eigenvalues.csv"
-    real = Table(path).numbers("growth rate [1/s]") if path.exists() else []
-    return np.array(modes, dtype=complex), np.array(real, dtype=float)
-
-
 def check_numbers(folder):
     """Raises Wrong if a cell of a table is infinite or not a number."""
     for path in folder.glob("*.csv"):
@@ -123,7 +115,8 @@ def judge_results(case, process, folder, row):
     parameters = parameter_file.read_parameters(run / "parameters.prm")
     band = 2 * math.pi * float(parameters["Band/Maximum frequency"])
     friction_coefficient = float(parameters["Operation/Friction coefficient"])
-    modes, real = eigenvalues_of(run)
+    modes, path = np.array(Table(run / "complex_modes.csv").eigenvalues(), dtype=complex), run / "real_eigenvalues.csv"
+    real = np.array(Table(path).numbers("growth rate [1/s]") if path.exists() else [])
     row.modes = f"{len(modes)}" + (f" + {len(real)} real" if len(real) else "")
 
     # ------------------------------------------------ self-consistency
@@ -138,15 +131,12 @@ def judge_results(case, process, folder, row):
 
     # ------------------------------------------------ an independent solution
     matrices = exported_matrices.read_matrices(run)
+    undamped = {**matrices, **{name: 0 * matrices[name] for name in ("C", "C_b", "G")}}
+    frequencies = np.array(Table(run / "real_modes.csv").numbers("frequency [Hz]"))
     worst, methods, own_error, dense_error = 0.0, [], 0.0, 0.0
-    for what, mu, actual in (("real modes", 0.0, None), ("complex modes", friction_coefficient, np.concatenate([modes, real]))):
-        if actual is None:
-            matrices_here = {**matrices, "C": 0 * matrices["C"], "C_b": 0 * matrices["C_b"], "G": 0 * matrices["G"]}
-            actual = 2j * math.pi * np.array(Table(run / "real_modes.csv").numbers("frequency [Hz]"))
-            radius = band
-        else:
-            matrices_here, radius = matrices, 1.01**0.5 * band
-        solution = oracle.Oracle(matrices_here, mu, band / (2 * math.pi)).solve(radius)
+    for what, mu, own, actual, radius in (("real modes", 0.0, undamped, 2j * math.pi * frequencies, band),
+                                          ("complex modes", friction_coefficient, matrices, np.concatenate([modes, real]), 1.01**0.5 * band)):
+        solution = oracle.Oracle(own, mu, band / (2 * math.pi)).solve(radius)
         worst = max(worst, compare(what, actual, solution.values, band, radius))
         methods.append(solution.method)
         own_error, dense_error = max(own_error, solution.error), max(dense_error, solution.first_error)
@@ -178,11 +168,29 @@ def compare_units(case, folder, row):
     process = call("scene.prm", "--output", "metres", *words_of(case.unit), folder=folder)
     if process.returncode != 0:
         raise Wrong(f"refused in metres: {process.stderr}")
-    largest = max(scaling.difference(Table(folder / "metres" / name).rows, Table(folder / "run" / name).rows, case.scale)
+    largest = max(difference(Table(folder / "metres" / name).rows, Table(folder / "run" / name).rows, case.scale)
                   for name in ("complex_modes.csv", "real_modes.csv", "component_modes.csv"))
     if largest > SAME_IN_ALL_UNITS:
         raise Wrong(f"differs by {largest:.1e} from the model in metres")
     row.remark = f"{largest:.0e} from the model in metres"
+
+
+def difference(rows, others, scale):
+    """Largest difference of two tables of modes, the second with lengths times `scale`: of frequencies and growth rates relative to the
+    frequency, of dimensionless numbers absolute; infinite if texts or numbers of rows differ."""
+    largest = 0.0 if len(rows) == len(others) else math.inf
+    for row, other in zip(rows, others):
+        for column, cell in row.items():
+            try:
+                one, two = float(cell), float(other[column])
+            except ValueError:
+                largest = max(largest, 0.0 if cell == other[column] else math.inf)
+                continue
+            if column in ("frequency [Hz]", "growth rate [1/s]"):
+                largest = max(largest, abs(one - scale * two) / (float(row["frequency [Hz]"]) or 1.0))
+            else:
+                largest = max(largest, abs(one - two) / (100 if "[%]" in column else 1))
+    return largest
 
 
 def compare(what, actual, expected, band, radius):
