@@ -26,10 +26,9 @@ STEP = re.compile(r"^  (\S.*?)\s{2,}[\d.]+ s\b")
 
 
 def resident(pid):
-    """Resident size of a process [byte]; zero once it has ended."""
+    """Resident size of a process [byte]; zero before it has started and once it has ended."""
     try:
-        with open(f"/proc/{pid}/statm", encoding="ascii") as file:
-            return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+        return int(pathlib.Path(f"/proc/{pid}/statm").read_text(encoding="ascii").split()[1]) * os.sysconf("SC_PAGE_SIZE")
     except (OSError, IndexError):
         return 0
 
@@ -39,10 +38,8 @@ def ranks(program, measurement):
     result = {}
     for folder in pathlib.Path("/proc").glob("[0-9]*"):
         try:
-            if os.path.realpath(folder / "exe") != str(program):
-                continue
             environment = dict(entry.split(b"=", 1) for entry in (folder / "environ").read_bytes().split(b"\0") if b"=" in entry)
-            if int(environment[b"PARENT_OF_MEASUREMENT"]) == measurement:
+            if os.path.realpath(folder / "exe") == str(program) and int(environment[b"PARENT_OF_MEASUREMENT"]) == measurement:
                 result[int(environment.get(b"OMPI_COMM_WORLD_RANK", b"0"))] = int(folder.name)
         except (OSError, KeyError, ValueError):
             continue
@@ -50,31 +47,27 @@ def ranks(program, measurement):
 
 
 class Sampler(threading.Thread):
-    """Samples the largest sizes since the end of the last step."""
+    """Samples the sizes of the processes; `samples` are those since the end of the last step, a row for each time."""
 
     def __init__(self, program, n):
         super().__init__(daemon=True)
-        self.program, self.n, self.lock, self.done = program, n, threading.Lock(), False
-        self.first, self.largest, self.at_once = None, [0] * n, 0
+        self.program, self.n, self.samples, self.first = program, n, [], None
 
     def run(self):
         pids = {}
-        while not self.done:
+        while True:
             if len(pids) < self.n:
                 pids = ranks(self.program, os.getpid())
-            sizes = [resident(pids[rank]) if rank in pids else 0 for rank in range(self.n)]
-            with self.lock:
-                if self.first is None and all(sizes):
-                    self.first = sizes
-                self.largest = [max(pair) for pair in zip(self.largest, sizes)]
-                self.at_once = max(self.at_once, sum(sizes))
+            sizes = [resident(pids.get(rank)) for rank in range(self.n)]
+            if self.first is None and all(sizes):
+                self.first = sizes
+            self.samples.append(sizes)
             time.sleep(INTERVAL)
 
     def end_step(self):
-        with self.lock:
-            result = self.largest, self.at_once
-            self.largest, self.at_once = [0] * self.n, 0
-        return result
+        """The largest size of each process in the step, and the largest sum."""
+        samples, self.samples = self.samples or [[0] * self.n], []
+        return [max(sizes) for sizes in zip(*samples)], max(map(sum, samples))
 
 
 @exit_on_error()
@@ -93,19 +86,17 @@ def main():
     rows = []
     for line in process.stdout:
         if step := STEP.match(line):
-            rows.append((step[1], line.split("  ")[-1].strip(), *sampler.end_step()))
+            rows.append((step[1], *sampler.end_step()))
         elif "error" in line.lower():
             print(line, end="")
-    sampler.done = True
     if process.wait() != 0:
         sys.exit(f"the program ended with {process.returncode}")
-    mega = lambda size: f"{size / 1e6:9.0f}"
-    print(f"{'[MB]':24}" + "".join(f"{'rank ' + str(rank):>9}" for rank in range(n)) + f"{'all':>9}")
     if sampler.first:
-        print(f"{'at the start':24}" + "".join(map(mega, sampler.first)) + mega(sum(sampler.first)))
-    for name, _, largest, at_once in rows:
-        print(f"{name:24}" + "".join(map(mega, largest)) + mega(at_once))
-    print(f"{'largest':24}" + "".join(mega(max(row[2][rank] for row in rows)) for rank in range(n)) + mega(max(row[3] for row in rows)))
+        rows.insert(0, ("at the start", sampler.first, sum(sampler.first)))
+    rows.append(("largest", [max(sizes) for sizes in zip(*(sizes for _, sizes, _ in rows))], max(at_once for *_, at_once in rows)))
+    print(f"{'[MB]':24}" + "".join(f"{'rank ' + str(rank):>9}" for rank in range(n)) + f"{'all':>9}")
+    for name, sizes, at_once in rows:
+        print(f"{name:24}" + "".join(f"{size / 1e6:9.0f}" for size in (*sizes, at_once)))
 
 
 if __name__ == "__main__":
