@@ -56,6 +56,6 @@ class Page:
             label.set_horizontalalignment(alignment)
         self.text(caption, 0.03, 84 / self.size[1], 21, INK)
 
-    def save(self, path, width=None):
-        """Writes the page, `width` pixels wide if given."""
-        self.figure.savefig(path, dpi=100 * (width or self.size[0]) / self.size[0])
+    def save(self, path, width=SIZE[0]):
+        """Writes the page, `width` pixels wide."""
+        self.figure.savefig(path, dpi=100 * width / self.size[0])

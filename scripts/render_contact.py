@@ -53,8 +53,8 @@ def rotation_of(path):
     raise Error("there is no parameters.prm with the sliding direction", path, "name a file in a folder of results")
 
 
-def draw(path, picture, field, view, title):
-    """Draws the field of the contact file `path` into the file `picture`; title may be None."""
+def draw(path, picture, field, view):
+    """Draws the field of the contact file `path` into the file `picture`."""
     bodies = path.with_name(path.name.replace("_contact.vtu", ".vtu"))
     if bodies == path or not bodies.is_file():
         raise Error("there is no file of disc and pins", path, "name a contact file NAME_contact.vtu next to NAME.vtu")
@@ -105,7 +105,7 @@ def draw(path, picture, field, view, title):
     (left, low), (right, high) = corners.min(axis=0) - margin, corners.max(axis=0) + margin
     axes.set(xlim=(left, right), ylim=(low, high))
 
-    page.title(title or f"{caption[0].upper()}{caption[1:]} on the {'upper' if side > 0 else 'lower'} pins, seen from {view}")
+    page.title(f"{caption[0].upper()}{caption[1:]} on the {'upper' if side > 0 else 'lower'} pins, seen from {view}")
     page.colour_bar(f"{caption} [{unit}]" if unit else caption)
     note = f"largest {values[shown].max():.3g} {unit}, smallest {values[shown].min():.3g} {unit}"
     page.text(note.replace(" ,", ",") + (f";  rings: {is_open.sum()} open nodes of {len(shown)}" if is_open.any() else ""), 0.5, 0.05)
@@ -119,12 +119,11 @@ def main():
     parser.add_argument("-o", "--output", metavar="PICTURE", type=pathlib.Path, help="(default: CONTACT.png next to CONTACT.vtu)")
     parser.add_argument("--field", default="pressure", help=", ".join(QUANTITIES) + " or another point field (default: %(default)s)")
     parser.add_argument("--view", choices=tuple(VIEWS), default="above", help="(default: %(default)s)")
-    parser.add_argument("--title", help="(default: field and side)")
     arguments = parser.parse_args()
     if not arguments.contact.is_file():
         raise Error(f"there is no file {arguments.contact}", "CONTACT.vtu", "name a file of results")
     picture = arguments.output or arguments.contact.with_suffix(".png")
-    draw(arguments.contact, picture, arguments.field, arguments.view, arguments.title)
+    draw(arguments.contact, picture, arguments.field, arguments.view)
     print(picture)
 
 

@@ -19,7 +19,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "python"))
-from pictures import ONE_SIGN, PHASE, TWO_SIGNS, Page, nice_range
+from pictures import ONE_SIGN, PHASE, SIZE, TWO_SIGNS, Page, nice_range
 from squeal.command_line import Parser, ensure_display, exit_on_error
 from squeal.errors import Error
 from squeal.surface import edges_of, outer_faces, sharp_edges
@@ -73,11 +73,11 @@ def colours_of(mesh, mode, field):
     components = {"axial": mode[:, 2],
                   "radial": mode[:, 0] * np.cos(azimuth) + mode[:, 1] * np.sin(azimuth),
                   "circumferential": mode[:, 1] * np.cos(azimuth) - mode[:, 0] * np.sin(azimuth)}
-    name = max(components, key=lambda key: np.sum(abs(components[key]) ** 2))
+    name, values = max(components.items(), key=lambda item: np.sum(abs(item[1]) ** 2))
     if field == "phase":
-        return Colours(np.degrees(np.angle(components[name])), f"phase of the {name} displacement [degree]", PHASE, (-180, 180))
+        return Colours(np.degrees(np.angle(values)), f"phase of the {name} displacement [degree]", PHASE, (-180, 180))
     part = ", imaginary part" if field == "displacement_imag" else ", real part" if np.any(mode.imag) else ""
-    values = components[name].imag if field == "displacement_imag" else components[name].real
+    values = values.imag if field == "displacement_imag" else values.real
     return Colours(values / largest, f"{name} displacement{part}, share of the largest", TWO_SIGNS)
 
 
@@ -285,8 +285,8 @@ def rendered(actors, points, size, direction, up):
     return vtk_to_numpy(image.GetPointData().GetScalars()).reshape(height, width, -1)[::-1]
 
 
-def draw_one(mode, picture, view, title, width):
-    """Draws a mode into the file `picture`; title may be None."""
+def draw_one(mode, picture, view, width):
+    """Draws a mode into the file `picture`."""
     page = Page(mode.colours.map, common_limits([mode.colours]))
     if view == "iso":
         mode.draw(page, (0.02, 0.13, 0.69, 0.93), VIEWS["iso"])
@@ -296,7 +296,7 @@ def draw_one(mode, picture, view, title, width):
         page.text("from the side", 0.72, 0.375)
     else:
         mode.draw(page, (0.01, 0.14, 0.99, 0.93), VIEWS[view])
-    page.title(title or mode.title)
+    page.title(mode.title)
     page.text(f"largest displacement drawn as {mode.drawn():.3g} mm; grey: at rest", 0.50, 0.05)
     page.colour_bar(mode.colours.caption)
     page.save(picture, width)
@@ -327,27 +327,20 @@ def main():
                              "(default: %(default)s)")
     parser.add_argument("--bodies", choices=("all", "moving"), default="all",
                         help="moving: only bodies that participate in the mode (default: %(default)s)")
-    parser.add_argument("--scale", default="auto", help="magnification of the displacement, or auto (default)")
+    parser.add_argument("--scale", type=float, help="magnification of the displacement (default: from the size of the bodies)")
     parser.add_argument("--view", choices=tuple(VIEWS), default="iso", help="(default: %(default)s)")
-    parser.add_argument("--title", help="title of a single mode (default: from the file)")
-    parser.add_argument("--width", type=int, help="width of the picture [pixels] (default: 1600)")
+    parser.add_argument("--width", type=int, default=SIZE[0], help="width of the picture [pixels] (default: %(default)s)")
     arguments = parser.parse_args()
     for path in arguments.modes:
         if not path.is_file():
             raise Error(f"there is no file {path}", "MODE", "name a file of results")
-    if arguments.title and len(arguments.modes) > 1:
-        parser.error("--title requires a single mode")
-    if arguments.width is not None and arguments.width < 1:
+    if arguments.width < 1:
         parser.error(f"--width takes a positive number, not {arguments.width}")
-    try:
-        scale = None if arguments.scale == "auto" else float(arguments.scale)
-    except ValueError:
-        parser.error(f"--scale takes a number or auto, not {arguments.scale}")
     ensure_display("pictures")
     picture = arguments.output or arguments.modes[0].with_suffix(".png")
-    modes = [Mode(path, arguments.field, scale, arguments.bodies) for path in arguments.modes]
+    modes = [Mode(path, arguments.field, arguments.scale, arguments.bodies) for path in arguments.modes]
     if len(modes) == 1:
-        draw_one(modes[0], picture, arguments.view, arguments.title, arguments.width)
+        draw_one(modes[0], picture, arguments.view, arguments.width)
     else:
         draw_several(modes, picture, arguments.view, arguments.width)
     print(picture)
