@@ -60,12 +60,12 @@ def draw(path, picture, field, view):
         raise Error("there is no file of disc and pins", path, "name a contact file NAME_contact.vtu next to NAME.vtu")
     side, contact = VIEWS[view], VtuFile(path)
     values, caption, unit = in_units(field, contact.field(field))
-    points, faces = np.array(contact.points), outer_faces(contact)
+    points, faces = contact.points, outer_faces(contact)
     faces = faces[(side * points[faces, 2] > 0).all(axis=1)]
     if not len(faces):
         raise Error(f"no contact face is seen from {view}", path, "choose another --view")
     shown, mesh = np.unique(faces), VtuFile(bodies)
-    disc, disc_points = outer_faces(mesh, [0]), np.array(mesh.points)
+    disc, disc_points = outer_faces(mesh, [0]), mesh.points
 
     # If the pins lie on one side of the axis, up is outwards and the picture shows the width of the disc there
     distances, centre = np.linalg.norm(points[shown, :2], axis=1), points[shown, :2].mean(axis=0)

@@ -69,7 +69,7 @@ def colours_of(mesh, mode, field):
     if field == "amplitude":
         return Colours(amplitude / largest, "amplitude, share of the largest", ONE_SIGN, (0, 1))
     # The dominant component with its sign or phase shows the shape
-    azimuth = np.arctan2(*np.array(mesh.points)[:, [1, 0]].T)
+    azimuth = np.arctan2(*mesh.points[:, [1, 0]].T)
     components = {"axial": mode[:, 2],
                   "radial": mode[:, 0] * np.cos(azimuth) + mode[:, 1] * np.sin(azimuth),
                   "circumferential": mode[:, 1] * np.cos(azimuth) - mode[:, 0] * np.sin(azimuth)}
@@ -155,7 +155,7 @@ class Mode:
 
     def __init__(self, path, field, scale, bodies):
         mesh = VtuFile(path)
-        self.points, is_complex = np.array(mesh.points), "displacement_real" in mesh.fields
+        self.points, is_complex = mesh.points, "displacement_real" in mesh.fields
         shape = mesh.field("displacement_real") + 1j * mesh.field("displacement_imag") if is_complex else mesh.field("displacement").astype(complex)
         chosen = moving_bodies(mesh, shape) if bodies == "moving" else None
         self.faces = outer_faces(mesh, chosen)

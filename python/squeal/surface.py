@@ -17,7 +17,7 @@ def outer_faces(mesh, bodies=None):
 
     Coincident points of one body are merged, those of two bodies in contact are not.
     """
-    points, of_cells = np.array(mesh.points), mesh.cell_fields.get("component", [0] * len(mesh.cells))
+    points, of_cells = mesh.points, mesh.cell_fields.get("component", [0] * len(mesh.cells))
     chosen = [cell for cell, body in enumerate(of_cells) if bodies is None or body in bodies]
     body = np.zeros(len(points))
     for cell in chosen:

@@ -26,7 +26,7 @@ def of_growing_modes(results, modes):
     if not growing:
         return None
     mesh = VtuFile(files[growing[0]])
-    points, faces = np.array(mesh.points), outer_faces(mesh)
+    points, faces = mesh.points, outer_faces(mesh)
     if len(faces) == 0:
         return None
     used, numbers = np.unique(faces, return_inverse=True)
@@ -37,7 +37,7 @@ def of_growing_modes(results, modes):
     for i in growing:
         row = modes[i - 1]
         fields = VtuFile(files[i]).fields
-        parts = {part: np.round(STEPS * np.array(fields[f"displacement_{part}"])[used]) for part in ("real", "imag")}
+        parts = {part: np.round(STEPS * fields[f"displacement_{part}"][used]) for part in ("real", "imag")}
         found["modes"].append({"number": i, "label": row["label"], "frequency": float(row["frequency [Hz]"]),
                                "rate": float(row["divergence rate [%]"]), **{part: text_of(values, "<i2") for part, values in parts.items()}})
     found["leading"] = max(range(len(growing)), key=lambda k: found["modes"][k]["rate"])
