@@ -36,11 +36,6 @@ def compare(run, reference):
     return modes.iloc[pairs[0]].assign(**dict(zip(FOUND, (100 * frequency[pairs], divergence[pairs]))))
 
 
-def print_largest(what, modes):
-    if len(modes):
-        print(f"  {what:<44} {len(modes):>4}   " + "   ".join(f"{modes[column].max():>9.4f}" for column in FOUND))
-
-
 @exit_on_error()
 def main():
     parser = Parser(__doc__)
@@ -48,18 +43,17 @@ def main():
     parser.add_argument("reference")
     arguments = parser.parse_args()
     run = squeal.Results(arguments.run)
-    if ESTIMATED[0] not in run.modes:
-        raise squeal.Error("the run has no estimated errors", arguments.run, "run with `set Accuracy = ...`")
     goal = run.parameters.get("Accuracy", "as given")
-    if goal == "as given":
+    if goal == "as given" or ESTIMATED[0] not in run.modes:
         raise squeal.Error("the run has no `set Accuracy`", arguments.run, "run with `set Accuracy = ...`")
     goal = float(goal.replace("%", ""))
     modes = compare(run, squeal.Results(arguments.reference))
     converged = modes[modes["converged"] == 1]
     print(f"  {'':<44} modes   f [%]       xi [points]")
-    print_largest("all", modes)
-    print_largest("converged", converged)
-    print_largest("converged, outside of clusters", converged[converged["counterpart on the coarser mesh"] == "by shape"])
+    outside = converged[converged["counterpart on the coarser mesh"] == "by shape"]
+    for what, chosen in (("all", modes), ("converged", converged), ("converged, outside of clusters", outside)):
+        if len(chosen):
+            print(f"  {what:<44} {len(chosen):>4}   " + "   ".join(f"{chosen[column].max():>9.4f}" for column in FOUND))
     n_over = sum((converged[list(FOUND)].values > converged[list(ESTIMATED)].values).any(axis=1))
     print(f"  errors larger than estimated: {n_over} of {len(converged)}")
     wrong = converged[(converged[FOUND[0]] > goal) | (converged[FOUND[1]] > goal / 10)]

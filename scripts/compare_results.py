@@ -32,25 +32,23 @@ def read_texts(path):
     return pandas.read_csv(io.StringIO("".join(lines)), dtype=str, keep_default_na=False) if lines else pandas.DataFrame()
 
 
-def compare_columns(name, old, new, tolerance):
-    """The largest relative difference of a column, and messages on the cells that differ."""
-    x, y = (pandas.to_numeric(column, errors="coerce").replace([np.inf, -np.inf], np.nan) for column in (old, new))
-    are_numbers = x.notna() & y.notna()
-    differences = ((x - y).abs() / (x.abs().max() or 1.0)).where(are_numbers, 0.0)
-    complaints = [f"{name}, row {row + 1}: " + (f"{old[row]} became {new[row]}, {differences[row]:.1e}" if are_numbers[row] else f"`{old[row]}` became `{new[row]}`")
-                  for row in np.flatnonzero(~are_numbers & (old != new) | (differences > tolerance))]
-    return differences.max(), complaints
-
-
-def compare_tables(old_file, new_file, tolerance, ignored, everything):
+def compare(old_file, new_file, arguments):
+    """The largest relative difference of two tables, and messages on what differs."""
     old, new = read_texts(old_file), read_texts(new_file)
     if missing := [name for name in old.columns if name not in new.columns]:
         return 0.0, [f"columns are missing: {', '.join(missing)}"]
     if len(old) != len(new):
         return 0.0, [f"{len(old)} rows became {len(new)}"]
-    found = [compare_columns(name, old[name], new[name], tolerance) for name in old.columns
-             if name not in ignored and (everything or not VARYING.search(name)) and len(old)]
-    return max((largest for largest, _ in found), default=0.0), [complaint for _, complaints in found for complaint in complaints]
+    old = old[[name for name in old.columns if name not in arguments.ignore and (arguments.all or not VARYING.search(name))]]
+    new = new[old.columns]
+    x, y = (frame.apply(pandas.to_numeric, errors="coerce").replace([np.inf, -np.inf], np.nan).astype(float) for frame in (old, new))
+    are_numbers = x.notna() & y.notna()
+    differences = ((x - y).abs() / x.abs().max().replace(0, np.nan).fillna(1.0)).where(are_numbers, 0.0)
+    differs = ~are_numbers & (old != new) | (differences > arguments.tolerance)
+    complaints = [f"{name}, row {row + 1}: {old[name][row]} became {new[name][row]}"
+                  + (f", {differences[name][row]:.1e}" if are_numbers[name][row] else "")
+                  for name in old.columns for row in np.flatnonzero(differs[name])]
+    return differences.to_numpy().max(initial=0.0), complaints
 
 
 @exit_on_error()
@@ -73,7 +71,7 @@ def main():
             print(f"{str(file):<36} missing in {arguments.new}")
             agree = False
             continue
-        largest, complaints = compare_tables(arguments.old / file, arguments.new / file, arguments.tolerance, arguments.ignore, arguments.all)
+        largest, complaints = compare(arguments.old / file, arguments.new / file, arguments)
         print(f"{str(file):<36} {largest:8.1e}" + (f"   {len(complaints)} cells differ" if complaints else ""))
         for complaint in complaints[:5]:
             print(f"    {complaint}")

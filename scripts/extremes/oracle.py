@@ -21,6 +21,7 @@ import dataclasses
 import numpy as np
 import scipy.linalg
 import scipy.sparse as sparse
+import scipy.sparse.csgraph
 import scipy.sparse.linalg
 
 import check_eigenvalues
@@ -75,7 +76,8 @@ class Oracle:
     def approximate(self):
         n = self.problem.size
         if n > LARGEST_DENSE:
-            found, _ = check_eigenvalues.solve_by_scipy(self.problem, 1.05 * self.band, 40, check_eigenvalues.choose_shift(self.problem, self.band))
+            shift = check_eigenvalues.choose_shift(self.problem, self.band)
+            found, _ = check_eigenvalues.solve_by_scipy(self.problem, 1.05 * self.band, 40, shift)
             return found, "ARPACK"
         mass, damping, stiffness = (matrix.toarray() for matrix in (self.problem.mass, self.problem.damping, self.problem.stiffness))
         s = self.shift
@@ -100,17 +102,10 @@ class Oracle:
 
     def refine(self, values):
         """Refines clusters of values together; values that count as zero are unchanged."""
-        order = np.lexsort((values.real, values.imag))
-        left, refined = list(values[order]), []
-        while left:
-            cluster = [left.pop(0)]
-            grown = True
-            while grown:
-                near = [value for value in left if min(abs(value - member) for member in cluster) <= CLUSTER * abs(value)]
-                left = [value for value in left if value not in near]
-                cluster += near
-                grown = bool(near)
-            refined += self.refine_cluster(cluster)
+        values = values[np.lexsort((values.real, values.imag))]
+        is_near = abs(values[:, None] - values) <= CLUSTER * abs(values)
+        n_clusters, cluster_of = scipy.sparse.csgraph.connected_components(is_near, directed=False)
+        refined = [value for number in range(n_clusters) for value in self.refine_cluster(values[cluster_of == number])]
         return np.array(refined, dtype=complex)
 
     def refine_cluster(self, cluster):
