@@ -18,8 +18,7 @@ class Solution:
 
     def __init__(self, row):
         self.family = row["element"] + ("" if row["outlines"] == "curved" else f", {row['outlines']}")
-        self.method, self.on_front = row["method"], row["Pareto front"] == "yes"
-        self.seconds = float(row["CPU time [s]"])
+        self.method, self.seconds = row["method"], float(row[TIME])
         self.is_complete = row["modes without counterpart [-]"] == "0"
         self.errors = {column: max(float(row[column]), FLOOR) for column in row if column.endswith((FREQUENCY, DIVERGENCE))}
 

@@ -3,6 +3,9 @@
 """The complex plane, as in figure 6 of the paper: divergence rate over frequency."""
 
 import dataclasses
+import itertools
+
+from matplotlib.transforms import Bbox
 
 from squeal.plotting import charts, style
 from squeal.results import symbol
@@ -24,29 +27,19 @@ class NameRoom:
 
     LETTER, LINE, GAP = 0.58 * style.SMALL, 1.25 * style.SMALL, 5.0
 
-    def __init__(self, width):
-        self.width = width
-        self.boxes = []
-
-    def occupy(self, x, y):
-        self.boxes.append((x - self.GAP, x + self.GAP, y - self.GAP, y + self.GAP))
+    def __init__(self, width, marks):
+        self.width, self.boxes = width, [Bbox.from_extents(x - self.GAP, y - self.GAP, x + self.GAP, y + self.GAP) for x, y in marks]
 
     def find(self, x, y, text):
         """Offset and horizontal alignment of a text next to a point, None if there is no space."""
         length = self.LETTER * len(text)
-        for below in (False, True):
-            for alignment in ("left", "right"):
-                left = x + self.GAP if alignment == "left" else x - self.GAP - length
-                low = y - self.LINE if below else y
-                box = (left, left + length, low, low + self.LINE)
-                if left > 0 and box[1] < self.width and not any(self.overlap(box, other) for other in self.boxes):
-                    self.boxes.append(box)
-                    return (self.GAP if alignment == "left" else -self.GAP, low - y + 0.3 * self.LINE), alignment
+        for low, alignment in itertools.product((y, y - self.LINE), ("left", "right")):
+            left = x + self.GAP if alignment == "left" else x - self.GAP - length
+            box = Bbox.from_bounds(left, low, length, self.LINE)
+            if left > 0 and box.x1 < self.width and not box.count_overlaps(self.boxes):
+                self.boxes.append(box)
+                return (self.GAP if alignment == "left" else -self.GAP, low - y + 0.3 * self.LINE), alignment
         return None
-
-    @staticmethod
-    def overlap(one, other):
-        return one[0] < other[1] and other[0] < one[1] and one[2] < other[3] and other[2] < one[3]
 
 
 class Limits:
@@ -105,11 +98,7 @@ class Plane:
 
     def draw_names(self):
         """Labels growing modes where there is space, the fastest growing first."""
-        room = NameRoom(self.points[0])
-        for one in self.series:
-            for mode in one.modes:
-                room.occupy(*self.in_points(mode))
-        named = []
+        room, named = NameRoom(self.points[0], [self.in_points(mode) for one in self.series for mode in one.modes]), []
         for one in self.series:
             for mode in sorted((mode for mode in one.modes if mode.grows and not mode.is_undecided), key=lambda mode: -mode.divergence):
                 x, y = self.in_points(mode)
@@ -179,13 +168,13 @@ def paper_figure(without, damped):
 def run_figure(results):
     """The complex modes of a run at one friction coefficient."""
     picture = style.Picture("Modes in the complex plane", 1, 1, (7.0, 4.4))
-    draw(picture.panels[0], picture.size, f"\u03bc = {results.number('Operation/Friction coefficient'):g}", [series_of_run(results)],
+    panel, = picture.panels
+    draw(panel, picture.size, f"\u03bc = {results.number('Operation/Friction coefficient'):g}", [series_of_run(results)],
          results.number("Band/Maximum frequency"))
-    if results.has("real_eigenvalues"):
-        rates = [rate for rate in results.table("real_eigenvalues").numbers("growth rate [1/s]") if rate > 0]
-        if rates:
-            text = f"and {len(rates)} real \u03bb > 0 (static divergence), up to {max(rates):.4g} 1/s"
-            picture.panels[0].text(0.02, 0.97, text, transform=picture.panels[0].transAxes, verticalalignment="top", color=style.VERMILLION)
+    rates = results.table("real_eigenvalues").numbers("growth rate [1/s]") if results.has("real_eigenvalues") else []
+    if growing := [rate for rate in rates if rate > 0]:
+        text = f"and {len(growing)} real \u03bb > 0 (static divergence), up to {max(growing):.4g} 1/s"
+        panel.text(0.02, 0.97, text, transform=panel.transAxes, verticalalignment="top", color=style.VERMILLION)
     return picture.add_key()
 
 

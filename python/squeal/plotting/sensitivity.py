@@ -2,31 +2,24 @@
 
 """Change of the divergence rates of growing modes by a 1 % increase of each parameter."""
 
-import math
-
 from squeal.plotting import style
+from squeal.reporting.sensitivity import CHANGE, ranking
 
 MOST_MODES = 4
-CHANGE = "divergence rate per 1 % [percentage points]"
 
 
 def figures(results):
     """Figures of a sensitivity study."""
-    table = results.table("sensitivities")
-    columns = [table.texts(name) for name in ("mode [-]", "label", "parameter", "body")]
-    rows = [row for row in zip(*columns, table.numbers("frequency [Hz]"), table.numbers("divergence rate [%]"), table.numbers(CHANGE))
-            if row[3] == "" and not math.isnan(row[6])]
-    modes = list(dict.fromkeys(row[0] for row in rows))[:MOST_MODES]
-    changes = {mode: {row[2]: row[6] for row in rows if row[0] == mode} for mode in modes}
-    names = sorted(changes[modes[0]], key=lambda name: -abs(changes[modes[0]][name]))
-
+    modes = list(filter(None, map(ranking, results.table("sensitivities").groups("mode [-]"))))[:MOST_MODES]
+    names = [row["parameter"] for row in modes[0]]
     picture = style.Picture("Effect of a 1 % increase of each parameter", len(modes), len(modes), (3.9, style.BAR * len(names) + 1.3))
-    for panel, mode in zip(picture.panels, modes):
-        _, label, _, _, frequency, divergence, _ = next(row for row in rows if row[0] == mode)
-        style.prepare(panel, f"{label}, {frequency:.0f} Hz, {divergence:.3g} %", "change of divergence rate [points]", "")
+    for panel, rows in zip(picture.panels, modes):
+        label, frequency, rate = (rows[0][name] for name in ("label", "frequency [Hz]", "divergence rate [%]"))
+        changes = {row["parameter"]: float(row[CHANGE]) for row in rows}
+        style.prepare(panel, f"{label}, {float(frequency):.0f} Hz, {float(rate):.3g} %", "change of divergence rate [points]", "")
         for colour, text, sign in ((style.VERMILLION, "increase: grows faster", 1), (style.BLUE, "increase: grows more slowly", -1)):
-            chosen = [place for place, name in enumerate(names) if sign * changes[mode][name] > 0]
-            style.draw_bars(panel, chosen, [changes[mode][names[place]] for place in chosen], colour, text, sign < 0)
+            chosen = [place for place, name in enumerate(names) if sign * changes[name] > 0]
+            style.draw_bars(panel, chosen, [changes[names[place]] for place in chosen], colour, text, sign < 0)
         panel.axvline(0, color=style.GREY, linewidth=1.1)
         style.name_rows(panel, names if panel is picture.panels[0] else [""] * len(names))
         panel.ticklabel_format(axis="x", style="plain", useOffset=False)

@@ -67,15 +67,11 @@ def prepare(panel, stability, title):
     panel.grid(False)
     for spine in panel.spines.values():
         spine.set_visible(True)
-    panel.set_xlim(stability.x_edges[0], stability.x_edges[-1])
+    panel.set(xlim=stability.x_edges[[0, -1]], yscale="log" if stability.is_logarithmic else "linear", ylim=stability.y_edges[[0, -1]])
     if stability.is_logarithmic:
-        panel.set_yscale("log")
-    panel.set_ylim(stability.y_edges[0], stability.y_edges[-1])
-    if not stability.is_logarithmic:
-        return
-    panel.yaxis.set_major_locator(FixedLocator(logarithmic_ticks(*panel.get_ylim())))
-    panel.yaxis.set_minor_locator(NullLocator())
-    panel.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        panel.yaxis.set_major_locator(FixedLocator(logarithmic_ticks(*panel.get_ylim())))
+        panel.yaxis.set_minor_locator(NullLocator())
+        panel.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
 
 
 def map_figure(table):

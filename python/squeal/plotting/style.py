@@ -72,12 +72,9 @@ class Picture:
 def prepare(panel, title, x_label, y_label):
     """Sets title, labels and grid of a panel."""
     panel.set_title(title, fontsize=FONT_SIZE + 1)
-    panel.set_xlabel(x_label)
-    panel.set_ylabel(y_label)
+    panel.set(xlabel=x_label, ylabel=y_label, axisbelow=True)
     panel.grid(color="#dddddd", linewidth=0.6)
-    panel.set_axisbelow(True)
-    for side in ("top", "right"):
-        panel.spines[side].set_visible(False)
+    panel.spines[["top", "right"]].set_visible(False)
 
 
 def draw_points(panel, points, **look):
