@@ -4,6 +4,8 @@
 
 import math
 
+import numpy as np
+
 from squeal.plotting import stability_cells as cells
 from squeal.reporting.charts import FREQUENCY, RATE, digits, layout, number, points
 from squeal.results import axis_title, symbol
@@ -41,13 +43,12 @@ def sections(results):
     if not stability.is_known.all():
         meanings.append("empty: not computed")
     axes = layout(axis_title(stability.abscissa), stability.ordinate, margin={"l": 60, "r": 8, "t": 30, "b": 50})
-    axes["xaxis"].update(range=[stability.x_edges[0], stability.x_edges[-1]], showgrid=False)
-    ends = [float(edge) for edge in (stability.y_edges[0], stability.y_edges[-1])]
-    ticks = cells.logarithmic_ticks(*ends) if stability.is_logarithmic else []
-    # Loads and speeds of a map are geometrically spaced
-    axes["yaxis"].update({"range": ends, "showgrid": False} if not stability.is_logarithmic else
-                         {"type": "log", "range": [math.log10(edge) for edge in ends], "tickvals": ticks,
-                          "ticktext": [f"{tick:g}" for tick in ticks], "showgrid": False})
+    axes["xaxis"].update(range=stability.x_edges[[0, -1]].tolist(), showgrid=False)
+    ends = stability.y_edges[[0, -1]].tolist()
+    axes["yaxis"].update(range=ends, showgrid=False)
+    if stability.is_logarithmic:
+        ticks = cells.logarithmic_ticks(*ends)
+        axes["yaxis"].update(type="log", range=[math.log10(edge) for edge in ends], tickvals=ticks, ticktext=[f"{tick:g}" for tick in ticks])
     caption = ("Colour: divergence rate of the fastest growing mode, which labels its region; " + "; ".join(meanings) +
                ". The black line is the stability boundary.")
     return [{"id": "map", "title": f"Stability over {axis_title(stability.abscissa).split(' [')[0]} and {ordinate(stability)}", "caption": caption, "data": traces,
@@ -76,16 +77,10 @@ def spanned(stability):
 
 
 def heatmap(stability, texts, mask, **look):
-    """Cells where a mask is true, in the colour of their rates."""
-    shown = [[rate_of(stability, (row, column)) if mask[row, column] else None for column in range(len(stability.mus))]
-             for row in range(len(stability.values))]
-    return {"type": "heatmap", "x": [float(edge) for edge in stability.x_edges], "y": [float(edge) for edge in stability.y_edges], "z": shown,
+    """Cells where a mask is true, in the colour of their rates, which are zero without a mode in the band."""
+    shown = [[float(f"{rate:.6g}") if is_shown else None for rate, is_shown in zip(*rows)] for rows in zip(np.nan_to_num(stability.rate), mask)]
+    return {"type": "heatmap", "x": stability.x_edges.tolist(), "y": stability.y_edges.tolist(), "z": shown,
             "text": texts, "hovertemplate": "%{text}<extra></extra>", "hoverongaps": False, **look}
-
-
-def rate_of(stability, cell):
-    """The rate of a cell for a chart; zero without a mode in the band."""
-    return 0.0 if math.isnan(stability.rate[cell]) else float(f"{stability.rate[cell]:.6g}")
 
 
 def texts_of(stability, table):

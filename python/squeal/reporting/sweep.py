@@ -46,14 +46,20 @@ def checks(results):
 
 
 def branches_of(results, name):
-    """Rows of each branch."""
-    return {rows[0]["branch [-]"]: rows for rows in results.table(name).groups("branch [-]")}
+    """Rows of each branch, and its largest divergence rate [%]."""
+    branches = {rows[0]["branch [-]"]: rows for rows in results.table(name).groups("branch [-]")}
+    return branches, {branch: max(number(row[RATE]) for row in rows) for branch, rows in branches.items()}
+
+
+def events_of(results, name):
+    """Rows of the thresholds of branches."""
+    name = name.replace("branches", "thresholds")
+    return results.table(name).rows if results.has(name) else []
 
 
 def branch_section(results, name, title):
     """The divergence rate of every branch over the friction coefficient."""
-    branches, parameter = branches_of(results, name), results.table(name).parameter
-    peaks = {branch: max(number(row[RATE]) for row in rows) for branch, rows in branches.items()}
+    (branches, peaks), parameter = branches_of(results, name), results.table(name).parameter
     lowest = min(number(row[RATE]) for rows in branches.values() for row in rows)
     named = names_apart({branch: peak for branch, peak in peaks.items() if peak > WEAK}, max(peaks.values()) - lowest)
     traces = []
@@ -68,9 +74,8 @@ def branch_section(results, name, title):
             text=[rows[0]["label"] if is_named and i == peak else "" for i in range(len(rows))],
             hovertemplate=f"<b>{rows[0]['label']}</b><br>{symbol(parameter)} = %{{x:.4g}}<br>%{{customdata[0]:.2f}} Hz<br>divergence rate %{{y:.4g}} %"
                           "<br>%{customdata[1]}, estimated error of λ %{customdata[2]}<extra></extra>"))
-    events = results.table(name.replace("branches", "thresholds")).rows if results.has(name.replace("branches", "thresholds")) else []
     for event, marker in (("onset", "triangle-up"), ("restabilisation", "triangle-down")):
-        own = [row for row in events if row["event"] == event]
+        own = [row for row in events_of(results, name) if row["event"] == event]
         traces.append(points(event, [number(row[parameter]) for row in own], [0] * len(own),
                              [[row["label"], row["mechanism"], number(row[FREQUENCY]), row["uncertainty [-]"]] for row in own],
                              hovertemplate=f"<b>%{{customdata[0]}}</b> {event}<br>{symbol(parameter)} = %{{x:.6g}} ± %{{customdata[3]}}<br>"
@@ -83,9 +88,8 @@ def branch_section(results, name, title):
 def bifurcation_sections(results):
     """Frequencies of pairs of modes relative to the frequency at which they coalesce, for the pairs that grow most."""
     name = "branches_without_dissipation" if results.has("branches_without_dissipation") else "branches"
-    branches, parameter = branches_of(results, name), results.table(name).parameter
-    peaks = {branch: max(number(row[RATE]) for row in rows) for branch, rows in branches.items()}
-    events = [row for row in results.table(name.replace("branches", "thresholds")).rows if row["event"] == "onset" and row["partner [-]"] in branches]
+    (branches, peaks), parameter = branches_of(results, name), results.table(name).parameter
+    events = [row for row in events_of(results, name) if row["event"] == "onset" and row["partner [-]"] in branches]
     events = sorted((row for row in events if peaks[row["branch [-]"]] > WEAK), key=lambda row: -peaks[row["branch [-]"]])[:len(COLOURS)]
     if not events:
         return []
