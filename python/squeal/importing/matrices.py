@@ -5,6 +5,7 @@
 import dataclasses
 
 import numpy as np
+import pandas
 import scipy.io
 import scipy.sparse as sparse
 
@@ -133,9 +134,8 @@ def read_dmig(path, variable):
     form, kind = headers[next(name for name in found if found[name] is entries)]
     if form not in (1, 6) or kind not in (1, 2):
         raise Error(f"the matrix has form {form} and type {kind}", path, "write a square (1) or symmetric (6) matrix of real numbers (type 1 or 2)")
-    rows, columns, values = zip(*entries) if entries else ((), (), ())
-    rows, columns = (np.array(labels, dtype=int).reshape(-1, 2) for labels in (rows, columns))
-    return Entries(rows, columns, np.array(values, dtype=float), is_half=form == 6)
+    table = np.array([(*row, *column, value) for row, column, value in entries]).reshape(-1, 5)
+    return Entries(table[:, :2].astype(int), table[:, 2:4].astype(int), table[:, 4], is_half=form == 6)
 
 
 def read_output4(path, variable):
@@ -144,10 +144,8 @@ def read_output4(path, variable):
     except ImportError as error:
         raise Error("reading OUTPUT4 requires pyNastran, which is not installed", path,
                     "pip install pyNastran, or write the matrix as DMIG (PARAM,EXTOUT,DMIGPCH)") from error
-    found = OP4(log=None, debug=False).read_op4(str(path))
-    form_and_matrix = choose(found, variable, path)
-    matrix = form_and_matrix[1] if isinstance(form_and_matrix, tuple) else form_and_matrix.data
-    return Entries.of(matrix, path)
+    found = choose(OP4(log=None, debug=False).read_op4(str(path)), variable, path)
+    return Entries.of(found[1] if isinstance(found, tuple) else found.data, path)
 
 
 READERS = {"matlab": read_matlab, "numpy": read_numpy, "text": read_text_matrix, "dmig": read_dmig, "output4": read_output4,
@@ -186,10 +184,8 @@ class Numbering:
             self.size = max(max(entries.shape) for _, entries in matrices)
             return
         parts = [part for _, entries in matrices for part in (entries.rows, entries.columns)]
-        stack = np.vstack(parts)
-        first, n_dofs = stack.min(axis=0), int(np.ptp(stack[:, 1])) + 1
-        keys, rows = np.unique((stack[:, 0] - first[0]) * n_dofs + stack[:, 1] - first[1], return_inverse=True)
-        labels = np.column_stack([keys // n_dofs, keys % n_dofs]) + first
+        groups = pandas.DataFrame(np.vstack(parts)).groupby([0, 1])
+        labels, rows = groups.size().index.to_frame().to_numpy(), groups.ngroup().to_numpy()
         rows = np.split(rows, np.cumsum([len(part) for part in parts])[:-1])
         is_held = np.zeros(len(labels), dtype=bool)
         for (_, entries), own, other in zip(matrices, rows[0::2], rows[1::2]):
@@ -208,9 +204,8 @@ class Numbering:
         if self.labels is not None:
             kept = (rows >= 0) & (columns >= 0)
             rows, columns, values = rows[kept], columns[kept], values[kept]
-        shape = (self.size, self.size)
         # In the form row, column, value, trailing rows without entries are unknown
-        shape = shape if self.labels is not None or entries.is_half is None else entries.shape
+        shape = (self.size, self.size) if self.labels is not None or entries.is_half is None else entries.shape
         matrix = sparse.csr_matrix((values, (rows, columns)), shape)
         other = sparse.csr_matrix((np.ones(len(rows)), (columns, rows)), shape)
         triangle = matrix - sparse.diags(matrix.diagonal()) if shape[0] == shape[1] else matrix

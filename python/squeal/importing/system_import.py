@@ -25,13 +25,8 @@ def number_of(value, where):
 
 def ranges_of(numbers):
     """Increasing numbers as inclusive ranges."""
-    found = []
-    for number in numbers:
-        if found and number == found[-1][1] + 1:
-            found[-1][1] = number
-        else:
-            found.append([number, number])
-    return found
+    parts = np.split(numbers, np.flatnonzero(np.diff(numbers) > 1) + 1)
+    return [[int(part[0]), int(part[-1])] for part in parts if len(part)]
 
 
 def groups_of(entries, numbering, where):
