@@ -45,8 +45,10 @@ def small_problem(directory):
     matrices, results = exported_matrices.read_matrices(directory), Results(directory)
     bare = exported_matrices.couple(matrices, 0.0)
     full = exported_matrices.couple(matrices, results.number("Operation/Friction coefficient"))
-    _, basis = scipy.sparse.linalg.eigsh(sparse.csc_matrix(bare.stiffness), N_VECTORS, sparse.csc_matrix(bare.mass), sigma=0.0)
-    return [basis.T @ (matrix @ basis) for matrix in (full.mass, full.damping, full.stiffness)], results.number("Band/Maximum frequency")
+    K, M = sparse.csc_matrix(bare.stiffness), sparse.csc_matrix(bare.mass)
+    _, basis = scipy.sparse.linalg.eigsh(K, N_VECTORS, M, sigma=0.0)
+    projected = [basis.T @ (matrix @ basis) for matrix in (full.mass, full.damping, full.stiffness)]
+    return projected, results.number("Band/Maximum frequency")
 
 
 def companion_form(M, C, K):
@@ -79,8 +81,8 @@ def by_values(M, C, K, band):
 
 def by_toar(M, C, K, _):
     for transpose in (False, True):
-        blocks = [sparse.csr_matrix(A.T if transpose else A) for A in (M, C, K)]
-        solution = slepc_modes.Solution(exported_matrices.QuadraticProblem(*blocks), slepc_modes.n_wanted("toar", N_MODES), "toar")
+        problem = exported_matrices.QuadraticProblem(*(sparse.csr_matrix(A.T if transpose else A) for A in (M, C, K)))
+        solution = slepc_modes.Solution(problem, slepc_modes.n_wanted("toar", N_MODES), "toar")
     return solution.eigenvalues
 
 

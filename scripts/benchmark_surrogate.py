@@ -5,10 +5,10 @@
 
     scripts/benchmark_surrogate.py [--fresh 500] [--core 0]
 
-The study of prm/robustness.prm, without Sobol' indices, computes all modes of the samples to a tolerance of 1e-6, which are considered
-exact: the first samples are for training, the last ones for testing. OpenTURNS builds surrogates of Re lambda and Im lambda of every mode whose name is
-unique in all training samples: sparse polynomial chaos (least angle regression, hyperbolic truncation, degree 6) and Kriging (linear
-trend, Matern 5/2). Errors of lambda are those of test samples in which the name is unique, too. A sample squeals if a divergence rate
+The study of prm/robustness.prm, without Sobol' indices, computes all modes of the samples to a tolerance of 1e-6, which
+are considered exact: the first samples are for training, the last ones for testing. OpenTURNS builds surrogates of
+Re lambda and Im lambda of every mode whose name is unique in all training samples: sparse polynomial chaos (least angle
+regression, hyperbolic truncation, degree 6) and Kriging (linear trend, Matern 5/2). Errors of lambda are those of test samples in which the name is unique, too. A sample squeals if a divergence rate
 exceeds 0.01 %.
 
 Times are CPU seconds on one core. That of a full-order solution is from a stability run with the Krylov solver: from the mode count to the
@@ -118,15 +118,16 @@ def main():
     print(benchmarking.describe_machine(arguments.core), flush=True)
 
     def run(name, *settings):
-        record = benchmarking.run_squeal([arguments.core], SOURCE / "prm" / "robustness.prm", directory / name, settings)
-        return record, Results(directory / name)
+        file = SOURCE / "prm" / "robustness.prm"
+        return benchmarking.run_squeal([arguments.core], file, directory / name, settings), Results(directory / name)
 
     with tempfile.TemporaryDirectory() as name:
         directory = pathlib.Path(name)
         full, _ = run("full", "Study=stability", "Complex modes/Solver=Krylov", "Output/Mode shapes=none")
         solution = benchmarking.cpu_seconds(full, benchmarking.FULL_ORDER)
         print(f"steps of a full-order run: {', '.join(step['name'] for step in full['steps'])}; {solution:.1f} s are its solution")
-        sampling = (f"Robustness/Number of samples={max(SIZES) + arguments.fresh}", "Robustness/Sobol indices=false", "Robustness/Worst samples=0")
+        sampling = (f"Robustness/Number of samples={max(SIZES) + arguments.fresh}", "Robustness/Sobol indices=false",
+                    "Robustness/Worst samples=0")
         numbers, by_sample = read_samples(run("exact", "Robustness/Tolerance=1e-6", *sampling)[1])
         record, results = run("reduced", *sampling)
         _, reduced = read_samples(results)
@@ -150,7 +151,8 @@ def main():
             found, seconds = trained(ot, make, numbers, by_sample, n_train)
             pairs = [(modes[label][0], found[label][i]) for i, modes in list(enumerate(by_sample))[fresh] for label in found
                      if len(modes.get(label, [])) == 1]
-            wrong = wrong_verdicts(by_sample[fresh], ([[values[i]] for values in found.values()] for i in range(max(SIZES), len(numbers))))
+            tests = range(max(SIZES), len(numbers))
+            wrong = wrong_verdicts(by_sample[fresh], ([[values[i]] for values in found.values()] for i in tests))
             print(f"| {name} | {n_train}: {solution * n_train:.0f} s | {seconds:.0f} | {len(found)} of {n_names} names "
                   f"| {row_of(pairs)} | {wrong:.1f} |", flush=True)
 

@@ -35,7 +35,8 @@ def swept(results):
     """Name of the parameter of a sweep and its values."""
     words = [word.strip() for word in results.parameter("Sweep/Parameter").split(",")]
     if len(words) != 4:
-        raise Error("the sweep has no parameter of a system", results.folder, "set Sweep/Parameter = NAME, FIRST, LAST, NUMBER")
+        raise Error("the sweep has no parameter of a system", results.folder,
+                    "set Sweep/Parameter = NAME, FIRST, LAST, NUMBER")
     return words[0], np.linspace(float(words[1]), float(words[2]), int(words[3]))
 
 
@@ -75,14 +76,16 @@ def main():
     rounds, problems = benchmarking.Rounds(arguments.parameter_file.name), []
     with tempfile.TemporaryDirectory() as directory:
         for run in range(1, arguments.runs + 1):
-            seconds = benchmarking.cpu_seconds(benchmarking.run_squeal([arguments.core], arguments.parameter_file, directory, arguments.settings))
+            record = benchmarking.run_squeal([arguments.core], arguments.parameter_file, directory, arguments.settings)
+            seconds = benchmarking.cpu_seconds(record)
             if not problems:
                 results = Results(directory)
                 (name, values), band = swept(results), results.number("Band/Maximum frequency")
                 system = System.read(arguments.parameter_file.parent / results.parameter("System"))
                 problems = [exported_matrices.QuadraticProblem(*system.matrices({name: float(value)})) for value in values]
                 expected = [listed(found, band) for found in modes_by_value(results, values)]
-                number = smallest_number([problems[0], problems[len(problems) // 2], problems[-1]], band, 2 * max(map(len, expected)) + 4)
+                some = [problems[0], problems[len(problems) // 2], problems[-1]]
+                number = smallest_number(some, band, 2 * max(map(len, expected)) + 4)
                 print(f"{system.size} dofs, {len(values)} values of {name}; SLEPc computes {number} eigenvalues", flush=True)
             found = [slepc_modes.Solution(problem, number, "toar", seed=run) for problem in problems]
             of_slepc = sum(solution.cpu for solution in found)
@@ -91,10 +94,11 @@ def main():
             rounds.add("  one of them, mean", of_slepc / len(values))
             rounds.add(f"{len(values)} solutions by SLEPc / the run [-]", of_slepc / seconds)
             pairs = [(listed(solution.eigenvalues, band), one) for solution, one in zip(found, expected)]
-            n_uncovered, n_unequal = sum(not solution.covers(band) for solution in found), sum(len(one) != len(other) for one, other in pairs)
+            n_uncovered = sum(not solution.covers(band) for solution in found)
+            n_unequal = sum(len(one) != len(other) for one, other in pairs)
             distance = max(quadratic.match(*pair)[2].max(initial=0.0) for pair in pairs)
-            print(f"run {run}: {min(map(len, expected))} to {max(map(len, expected))} modes, different numbers at {n_unequal} values, "
-                  f"band not covered at {n_uncovered}, largest relative difference {distance:.1e}", flush=True)
+            print(f"run {run}: {min(map(len, expected))} to {max(map(len, expected))} modes, different numbers at {n_unequal} "
+                  f"values, band not covered at {n_uncovered}, largest relative difference {distance:.1e}", flush=True)
     rounds.print()
 
 

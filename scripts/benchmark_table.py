@@ -74,7 +74,8 @@ def solution_by_slepc(core, model, options):
     if solution["modes"] != n_modes:
         print(f"  note: SLEPc {solution['formulation']} found {solution['modes']} of {n_modes} modes", flush=True)
     elif solution.get("largest difference"):
-        print(f"  SLEPc {solution['formulation']}: all modes, largest difference {solution['largest difference']:.1e}", flush=True)
+        difference = solution["largest difference"]
+        print(f"  SLEPc {solution['formulation']}: all modes, largest difference {difference:.1e}", flush=True)
     return solution
 
 
@@ -90,8 +91,8 @@ def chart(cores, folder, n_rounds, damped):
         rounds.add("squeal, the whole run, CPU [s]", seconds)
         for name in dict.fromkeys(step["name"] for step in record["steps"]):
             rounds.add(f"  {name}", benchmarking.cpu_seconds(record, {name}))
-        number, first, last = (Results(folder / "sweep").number(f"Sweep/{name}") for name in
-                               ("Number of friction coefficients", "First friction coefficient", "Last friction coefficient"))
+        names = ("Number of friction coefficients", "First friction coefficient", "Last friction coefficient")
+        number, first, last = (Results(folder / "sweep").number(f"Sweep/{name}") for name in names)
         chosen = [["--mu", repr(first + part * (last - first))] for part in PARTS]
         of_slepc = number * sum(mean_of_slepc(rounds, cores[:1], model, chosen) for model in models)
         rounds.add(f"{number:.0f} solutions by SLEPc / the run [-]", of_slepc / seconds)

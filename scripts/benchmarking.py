@@ -15,7 +15,8 @@ from squeal.errors import Error
 from squeal.program import SOURCE, find_program, words_of
 
 PEER = SOURCE / "scripts" / "slepc_modes.py"
-FULL_ORDER = ("Mode count", "Factorisation", "Real modes", "Complex modes")  # steps from the assembled matrices to the modes
+# Steps from the assembled matrices to the modes
+FULL_ORDER = ("Mode count", "Factorisation", "Real modes", "Complex modes")
 
 
 def cpu():

@@ -133,7 +133,8 @@ def main():
 
     results = Results(arguments.directory)
     if results.parameters.get("Damping/Modal damping ratio"):
-        raise Error("the run has modal damping, which is not exported", results.folder, "repeat it without Damping/Modal damping ratio")
+        raise Error("the run has modal damping, which is not exported", results.folder,
+                    "repeat it without Damping/Modal damping ratio")
     table, band = results.table("complex_modes"), results.number("Band/Maximum frequency")
     labels, eigenvalues = np.array(table.texts("label")), np.array(table.eigenvalues(), dtype=complex)
     listed = exported_matrices.in_band(eigenvalues, band)
@@ -144,9 +145,11 @@ def main():
         print(f"  a body can move freely: the shift is {shift:.0f} 1/s")
     error = "estimated error of lambda [-]"
     estimate = ESTIMATE_SAFETY * max(table.numbers(error), default=0.0) if error in table.columns else 0.0
-    tolerance, source = ((arguments.tolerance, "as given") if arguments.tolerance is not None else
-                         (estimate, f"{ESTIMATE_SAFETY:g} times the largest error estimated in the table") if estimate > TOLERANCE else
-                         (TOLERANCE, "for converged eigenvalues"))
+    tolerance, source = TOLERANCE, "for converged eigenvalues"
+    if arguments.tolerance is not None:
+        tolerance, source = arguments.tolerance, "as given"
+    elif estimate > TOLERANCE:
+        tolerance, source = estimate, f"{ESTIMATE_SAFETY:g} times the largest error estimated in the table"
     print(f"  tolerance {tolerance:.1e}, {source}")
     solvers = {"SciPy": solve_by_scipy} if arguments.solver in ("scipy", "both") else {}
     if arguments.solver in ("slepc", "both"):

@@ -39,15 +39,16 @@ def compare(old_file, new_file, arguments):
         return 0.0, [f"columns are missing: {', '.join(missing)}"]
     if len(old) != len(new):
         return 0.0, [f"{len(old)} rows became {len(new)}"]
-    old = old[[name for name in old.columns if name not in arguments.ignore and (arguments.all or not VARYING.search(name))]]
-    new = new[old.columns]
-    x, y = (frame.apply(pandas.to_numeric, errors="coerce").replace([np.inf, -np.inf], np.nan).astype(float) for frame in (old, new))
+    names = [name for name in old.columns if name not in arguments.ignore and (arguments.all or not VARYING.search(name))]
+    old, new = old[names], new[names]
+    x, y = (frame.apply(pandas.to_numeric, errors="coerce").astype(float).replace([np.inf, -np.inf], np.nan)
+            for frame in (old, new))
     are_numbers = x.notna() & y.notna()
     differences = ((x - y).abs() / x.abs().max().replace(0, np.nan).fillna(1.0)).where(are_numbers, 0.0)
     differs = ~are_numbers & (old != new) | (differences > arguments.tolerance)
     complaints = [f"{name}, row {row + 1}: {old[name][row]} became {new[name][row]}"
                   + (f", {differences[name][row]:.1e}" if are_numbers[name][row] else "")
-                  for name in old.columns for row in np.flatnonzero(differs[name])]
+                  for name in names for row in np.flatnonzero(differs[name])]
     return differences.to_numpy().max(initial=0.0), complaints
 
 

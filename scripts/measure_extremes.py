@@ -28,7 +28,8 @@ from squeal.command_line import Parser, exit_on_error
 
 PAGE = pathlib.Path(__file__).resolve().parents[1] / "doc" / "extremes.md"
 BEGIN, END = "<!-- cases -->", "<!-- end of cases -->"
-COLUMNS = ("case", "value", "outcome", "modes", "residual", "count", "oracle", "deviation", "digits", "remark")  # of judge.Row
+# Of judge.Row
+COLUMNS = ("case", "value", "outcome", "modes", "residual", "count", "oracle", "deviation", "digits", "remark")
 HEAD = "| " + " | ".join(COLUMNS) + " |\n" + "|---" * len(COLUMNS) + "|"
 
 
@@ -39,7 +40,8 @@ def line(row):
 def known_lines():
     """Lines of the table by group and value of their cases."""
     table = re.split(f"{BEGIN}|{END}", PAGE.read_text(encoding="utf-8"))[1]
-    return {tuple(cell.strip() for cell in text.strip("| ").split(" | ")[:2]): text for text in table.strip().splitlines()[2:]}
+    return {tuple(cell.strip() for cell in text.strip("| ").split(" | ")[:2]): text
+            for text in table.strip().splitlines()[2:]}
 
 
 def write(rows):

@@ -28,7 +28,8 @@ STEP = re.compile(r"^  (\S.*?)\s{2,}[\d.]+ s\b")
 def resident(pid):
     """Resident size of a process [byte]; zero before it has started and once it has ended."""
     try:
-        return int(pathlib.Path(f"/proc/{pid}/statm").read_text(encoding="ascii").split()[1]) * os.sysconf("SC_PAGE_SIZE")
+        pages = int(pathlib.Path(f"/proc/{pid}/statm").read_text(encoding="ascii").split()[1])
+        return pages * os.sysconf("SC_PAGE_SIZE")
     except (OSError, IndexError):
         return 0
 
@@ -93,7 +94,8 @@ def main():
         sys.exit(f"the program ended with {process.returncode}")
     if sampler.first:
         rows.insert(0, ("at the start", sampler.first, sum(sampler.first)))
-    rows.append(("largest", [max(sizes) for sizes in zip(*(sizes for _, sizes, _ in rows))], max(at_once for *_, at_once in rows)))
+    largest = [max(sizes) for sizes in zip(*(sizes for _, sizes, _ in rows))]
+    rows.append(("largest", largest, max(at_once for *_, at_once in rows)))
     print(f"{'[MB]':24}" + "".join(f"{'rank ' + str(rank):>9}" for rank in range(n)) + f"{'all':>9}")
     for name, sizes, at_once in rows:
         print(f"{name:24}" + "".join(f"{size / 1e6:9.0f}" for size in (*sizes, at_once)))

@@ -29,7 +29,8 @@ def run(study, mesh):
     names = ("Element size", "Disc layers", "Nodes per pin face", "Pin layers")
     settings = {f"Geometry/{name}": value for name, value in zip(names, mesh)}
     with tempfile.TemporaryDirectory() as folder:
-        return squeal.run(benchmarking.SOURCE / "prm" / STUDIES[study], {**settings, "Output/Mode shapes": "none"}, f"{folder}/run").record
+        file = benchmarking.SOURCE / "prm" / STUDIES[study]
+        return squeal.run(file, {**settings, "Output/Mode shapes": "none"}, f"{folder}/run").record
 
 
 def columns(record):

@@ -21,6 +21,7 @@ from squeal.program import SOURCE, find_program
 PAGE = SOURCE / "doc" / "parameters.md"
 TITLE = ("# Listing of Parameters", "# ---------------------")  # deal.II's
 ACCEPTS, UNITS = " Accepts ", " Units: "
+TABLE_HEAD = "| parameter | default | unit | meaning | accepts |\n|---|---|---|---|---|\n"
 HEAD = """# Parameters
 
 Every parameter of a `.prm` file with its default, as `squeal --print-parameters` prints them; after `PRM --print-parameters` the values are those of
@@ -46,7 +47,7 @@ def page(listing):
         section, parameter = re.match(r"subsection (.*)", line), re.match(r"set (.*?)\s*=\s*(.*)$", line)
         if section or parameter and not in_section:
             in_section = True
-            text += f"\n## {section[1] if section else 'Without a section'}\n\n| parameter | default | unit | meaning | accepts |\n|---|---|---|---|---|\n"
+            text += f"\n## {section[1] if section else 'Without a section'}\n\n{TABLE_HEAD}"
         if parameter:
             cells = cells_of(parameter[1], parameter[2], " ".join(words))
             text += "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |\n"

@@ -116,10 +116,13 @@ def structure_errors(matrices):
     rigid, T_c = rigid_rows(matrices), matrices["T_c"]
     P_n, P_t, P_b, S = (matrix[rigid] for matrix in (matrices["P_n"], matrices["P_t"], matrices["P_b"], reactions(matrices)))
     n_contact, n_dofs = P_n.shape
-    skewness = {f"{name} {sign} {name}^T": largest(matrices[name] - factor * matrices[name].T) / (largest(matrices[name]) or 1.0)
-                for name, sign, factor in (("M", "-", 1), ("C", "-", 1), ("K", "-", 1), ("C_b", "-", 1), ("G", "+", -1))}
-    return {"S P_n^T - I": largest(S @ P_n.T - sparse.identity(n_contact)), "S P_t^T": largest(S @ P_t.T), "S P_b^T": largest(S @ P_b.T),
-            "P_n T_c": largest(P_n @ T_c), "columns of T_c - (n - n_c)": float(abs(T_c.shape[1] - (n_dofs - n_contact))), **skewness}
+    errors = {"S P_n^T - I": largest(S @ P_n.T - sparse.identity(n_contact)), "S P_t^T": largest(S @ P_t.T),
+              "S P_b^T": largest(S @ P_b.T), "P_n T_c": largest(P_n @ T_c),
+              "columns of T_c - (n - n_c)": float(abs(T_c.shape[1] - (n_dofs - n_contact)))}
+    for name, sign, factor in (("M", "-", 1), ("C", "-", 1), ("K", "-", 1), ("C_b", "-", 1), ("G", "+", -1)):
+        A = matrices[name]
+        errors[f"{name} {sign} {name}^T"] = largest(A - factor * A.T) / (largest(A) or 1.0)
+    return errors
 
 
 def in_band(eigenvalues, band):

@@ -232,10 +232,10 @@ class System:
             data["groups"] = {name: [[int(end) for end in ends] for ends in ranges] for name, ranges in self.groups.items()}
         if self.measured_modes is not None:
             data["measured modes"] = str(self.measured_modes)
-        for key, value, write in (("positions", self.positions, write_array), ("displacements", self.displacements, write_matrix)):
-            if value is not None:
+        for key, write in (("positions", write_array), ("displacements", write_matrix)):
+            if getattr(self, key) is not None:
                 data[key] = f"{key}.mtx"
-                write(folder / data[key], value)
+                write(folder / data[key], getattr(self, key))
         if self.reduction is not None:
             data["reduction"] = dict(self.reduction)
             for key, file, write in (("basis", "basis.mtx", write_array), ("points", "points.csv", write_rows)):

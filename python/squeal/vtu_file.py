@@ -16,8 +16,8 @@ TYPES = {"Float32": ("<f4", float), "Int32": ("<i4", int), "UInt8": ("u1", int)}
 
 
 class VtuFile:
-    """Points (n x 3) and point fields (n x 3 or n) as arrays; cells as a list of arrays of their points, with fields and VTK types (see
-    SHAPES); the title, or None. Coincident points of several pieces are repeated."""
+    """Points (n x 3) and point fields (n x 3 or n) as arrays; cells as a list of arrays of their points, with fields and VTK
+    types (see SHAPES); the title, or None. Coincident points of several pieces are repeated."""
 
     def __init__(self, path):
         self.path = path
@@ -26,10 +26,12 @@ class VtuFile:
         assert root.get("compressor") == "vtkZLibDataCompressor" and root.get("header_type") == "UInt64", path
         title = root.find(".//FieldData/DataArray[@Name='mode']")
         self.title = None if title is None else bytes(map(int, title.text.split()[:-1])).decode()
-        pieces = [{(part.tag, data.get("Name")): self.values(data) for part in piece for data in part} for piece in root.iter("Piece")]
+        pieces = [{(part.tag, data.get("Name")): self.values(data) for part in piece for data in part}
+                  for piece in root.iter("Piece")]
 
         def joined(tag):
-            return {name: np.concatenate([piece[tag, name] for piece in pieces]) for part, name in pieces[0] if part == tag}
+            names = [name for part, name in pieces[0] if part == tag]
+            return {name: np.concatenate([piece[tag, name] for piece in pieces]) for name in names}
 
         self.n_pieces, self.fields, self.cell_fields = len(pieces), joined("PointData"), joined("CellData")
         self.points, = joined("Points").values()
@@ -63,5 +65,6 @@ class VtuFile:
 
         of_blocks = {SHAPES[kind]: np.flatnonzero(self.cell_types == kind) for kind in np.unique(self.cell_types)}
         blocks = [(shape, np.array([self.cells[cell] for cell in numbers])) for shape, numbers in of_blocks.items()]
-        cell_data = {name: [values[numbers] for numbers in of_blocks.values()] for name, values in self.cell_fields.items()}
+        cell_data = {name: [values[numbers] for numbers in of_blocks.values()]
+                     for name, values in self.cell_fields.items()}
         return meshio.Mesh(self.points, blocks, point_data=dict(self.fields), cell_data=cell_data)

@@ -132,10 +132,11 @@ def judge_results(case, process, folder, row):
     # ------------------------------------------------ an independent solution
     matrices = exported_matrices.read_matrices(run)
     undamped = {**matrices, **{name: 0 * matrices[name] for name in ("C", "C_b", "G")}}
-    frequencies = np.array(Table(run / "real_modes.csv").numbers("frequency [Hz]"))
+    real_modes = 2j * math.pi * np.array(Table(run / "real_modes.csv").numbers("frequency [Hz]"))
+    complex_modes = np.concatenate([modes, real])
     worst, methods, own_error, dense_error = 0.0, [], 0.0, 0.0
-    for what, mu, own, actual, radius in (("real modes", 0.0, undamped, 2j * math.pi * frequencies, band),
-                                          ("complex modes", friction_coefficient, matrices, np.concatenate([modes, real]), 1.01**0.5 * band)):
+    for what, mu, own, actual, radius in (("real modes", 0.0, undamped, real_modes, band),
+                                          ("complex modes", friction_coefficient, matrices, complex_modes, 1.01**0.5 * band)):
         solution = oracle.Oracle(own, mu, band / (2 * math.pi)).solve(radius)
         worst = max(worst, compare(what, actual, solution.values, band, radius))
         methods.append(solution.method)

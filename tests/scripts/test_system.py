@@ -97,7 +97,8 @@ class Expressions(unittest.TestCase):
         for text in ("1/mu", "1/(mu-0.3)", "1/(mu-0.3)^2", "mu^-2", "1/cos(omega)", "1/(mu-omega)", "mu^(1-2*mu)", "1/(lambda-lambda)", "1/0"):
             with self.assertRaisesRegex(Error, "divides by zero", msg=text):
                 Expression(text, self.NAMES, "test").check_range(ranges)
-        for text in ("1/lambda", "1/(mu^2-mu+1)", "1/(sin(omega)+2)", "mu^2/(1+mu)", "lambda^-mu", "1/(exp(mu)-mu)", "1/(2+mu-mu)", "1/sqrt(lambda)", "1/2^mu", "2^(mu-0.5)"):
+        for text in ("1/lambda", "1/(mu^2-mu+1)", "1/(sin(omega)+2)", "mu^2/(1+mu)", "lambda^-mu", "1/(exp(mu)-mu)", "1/(2+mu-mu)", "1/sqrt(lambda)", "1/2^mu",
+                     "2^(mu-0.5)"):
             Expression(text, self.NAMES, "test").check_range(ranges)
 
 

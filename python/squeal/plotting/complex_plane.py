@@ -28,7 +28,8 @@ class NameRoom:
     LETTER, LINE, GAP = 0.58 * style.SMALL, 1.25 * style.SMALL, 5.0
 
     def __init__(self, width, marks):
-        self.width, self.boxes = width, [Bbox.from_extents(x - self.GAP, y - self.GAP, x + self.GAP, y + self.GAP) for x, y in marks]
+        self.width = width
+        self.boxes = [Bbox.from_extents(x - self.GAP, y - self.GAP, x + self.GAP, y + self.GAP) for x, y in marks]
 
     def find(self, x, y, text):
         """Offset and horizontal alignment of a text next to a point, None if there is no space."""
@@ -169,8 +170,8 @@ def run_figure(results):
     """The complex modes of a run at one friction coefficient."""
     picture = style.Picture("Modes in the complex plane", 1, 1, (7.0, 4.4))
     panel, = picture.panels
-    draw(panel, picture.size, f"\u03bc = {results.number('Operation/Friction coefficient'):g}", [series_of_run(results)],
-         results.number("Band/Maximum frequency"))
+    title = f"\u03bc = {results.number('Operation/Friction coefficient'):g}"
+    draw(panel, picture.size, title, [series_of_run(results)], results.number("Band/Maximum frequency"))
     rates = results.table("real_eigenvalues").numbers("growth rate [1/s]") if results.has("real_eigenvalues") else []
     if growing := [rate for rate in rates if rate > 0]:
         text = f"and {len(growing)} real \u03bb > 0 (static divergence), up to {max(growing):.4g} 1/s"

@@ -16,7 +16,8 @@ def figures(results):
     for panel, rows in zip(picture.panels, modes):
         label, frequency, rate = (rows[0][name] for name in ("label", "frequency [Hz]", "divergence rate [%]"))
         changes = {row["parameter"]: float(row[CHANGE]) for row in rows}
-        style.prepare(panel, f"{label}, {float(frequency):.0f} Hz, {float(rate):.3g} %", "change of divergence rate [points]", "")
+        title = f"{label}, {float(frequency):.0f} Hz, {float(rate):.3g} %"
+        style.prepare(panel, title, "change of divergence rate [points]", "")
         for colour, text, sign in ((style.VERMILLION, "increase: grows faster", 1), (style.BLUE, "increase: grows more slowly", -1)):
             chosen = [place for place, name in enumerate(names) if sign * changes[name] > 0]
             style.draw_bars(panel, chosen, [changes[names[place]] for place in chosen], colour, text, sign < 0)

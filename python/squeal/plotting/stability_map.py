@@ -67,7 +67,8 @@ def prepare(panel, stability, title):
     panel.grid(False)
     for spine in panel.spines.values():
         spine.set_visible(True)
-    panel.set(xlim=stability.x_edges[[0, -1]], yscale="log" if stability.is_logarithmic else "linear", ylim=stability.y_edges[[0, -1]])
+    panel.set(xlim=stability.x_edges[[0, -1]], yscale="log" if stability.is_logarithmic else "linear")
+    panel.set_ylim(stability.y_edges[[0, -1]])
     if stability.is_logarithmic:
         panel.yaxis.set_major_locator(FixedLocator(logarithmic_ticks(*panel.get_ylim())))
         panel.yaxis.set_minor_locator(NullLocator())

@@ -48,7 +48,8 @@ def sections(results):
     axes["yaxis"].update(range=ends, showgrid=False)
     if stability.is_logarithmic:
         ticks = cells.logarithmic_ticks(*ends)
-        axes["yaxis"].update(type="log", range=[math.log10(edge) for edge in ends], tickvals=ticks, ticktext=[f"{tick:g}" for tick in ticks])
+        axes["yaxis"].update(type="log", range=[math.log10(edge) for edge in ends], tickvals=ticks,
+                             ticktext=[f"{tick:g}" for tick in ticks])
     caption = ("Colour: divergence rate of the fastest growing mode, which labels its region; " + "; ".join(meanings) +
                ". The black line is the stability boundary.")
     return [{"id": "map", "title": f"Stability over {axis_title(stability.abscissa).split(' [')[0]} and {ordinate(stability)}", "caption": caption, "data": traces,
@@ -78,7 +79,8 @@ def spanned(stability):
 
 def heatmap(stability, texts, mask, **look):
     """Cells where a mask is true, in the colour of their rates, which are zero without a mode in the band."""
-    shown = [[float(f"{rate:.6g}") if is_shown else None for rate, is_shown in zip(*rows)] for rows in zip(np.nan_to_num(stability.rate), mask)]
+    shown = [[float(f"{rate:.6g}") if is_shown else None for rate, is_shown in zip(rates, are_shown)]
+             for rates, are_shown in zip(np.nan_to_num(stability.rate), mask)]
     return {"type": "heatmap", "x": stability.x_edges.tolist(), "y": stability.y_edges.tolist(), "z": shown,
             "text": texts, "hovertemplate": "%{text}<extra></extra>", "hoverongaps": False, **look}
 
