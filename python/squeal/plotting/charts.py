@@ -11,13 +11,18 @@ WITHOUT, WITH = "without radial dissipation", "with radial dissipation"
 
 @dataclasses.dataclass
 class Mode:
-    """A mode with frequency [Hz] and divergence rate [%]."""
+    """A mode with frequency [Hz] and divergence rate [%]; both None if a branch has no mode at a value of the parameter of a sweep."""
 
     label: str
     frequency: float
     divergence: float
     grows: bool
     is_undecided: bool
+    mu: float = None
+
+    @property
+    def is_shown(self):
+        return self.frequency is not None
 
 
 @dataclasses.dataclass
@@ -29,20 +34,6 @@ class Threshold:
     branch: int
     partner: int  # None: no other branch takes part
     frequency: float
-
-
-@dataclasses.dataclass
-class CurvePoint:
-    """A point of a branch with frequency [Hz] and divergence rate [%]; both None if the branch has no mode in the band."""
-
-    mu: float
-    frequency: float = None
-    divergence: float = None
-    grows: bool = False
-
-    @property
-    def is_shown(self):
-        return self.frequency is not None
 
 
 class Chart:
@@ -60,23 +51,19 @@ class Chart:
                    branches.numbers("divergence rate [%]"), branches.flags("growing [-]"), branches.texts("verdict"))
         for branch, mu, label, frequency, divergence, grows, verdict in zip(*columns):
             self.labels[int(branch)] = label
-            self.modes.setdefault(int(branch), {})[mu] = Mode(label, frequency, divergence, grows, verdict == "undecided")
+            mode = Mode(label, frequency, divergence, grows, verdict == "undecided", mu)
+            self.modes.setdefault(int(branch), {})[mu] = mode
         columns = (thresholds.numbers(self.parameter), thresholds.texts("event"), thresholds.numbers("branch [-]"),
                    thresholds.texts("partner [-]"), thresholds.numbers("frequency [Hz]"))
         self.thresholds = [Threshold(mu, event, int(branch), int(partner) if partner else None, frequency)
                            for mu, event, branch, partner, frequency in zip(*columns) if frequency <= band_end]
 
     def curve(self, branch):
-        """Points of a branch, including its thresholds."""
-        points = []
-        events = [threshold for threshold in self.thresholds if branch in (threshold.branch, threshold.partner)]
-        for mu in self.mus:
-            while events and events[0].mu <= mu:
-                points.append(CurvePoint(events[0].mu, events[0].frequency, 0.0))
-                events.pop(0)
-            mode = self.modes[branch].get(mu)
-            points.append(CurvePoint(mu, mode.frequency, mode.divergence, mode.grows) if mode else CurvePoint(mu))
-        return points
+        """Modes of a branch at all values, and at its thresholds."""
+        points = [Mode("", event.frequency, 0.0, False, False, event.mu) for event in self.thresholds
+                  if branch in (event.branch, event.partner) and event.mu <= self.mus[-1]]
+        points += [self.modes[branch].get(mu, Mode("", None, None, False, False, mu)) for mu in self.mus]
+        return sorted(points, key=lambda point: point.mu)
 
     def grows_somewhere(self, branch):
         return any(mode.grows for mode in self.modes[branch].values())

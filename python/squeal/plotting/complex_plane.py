@@ -2,7 +2,7 @@
 
 """The complex plane, as in figure 6 of the paper: divergence rate over frequency."""
 
-import dataclasses
+import collections
 import itertools
 
 from matplotlib.transforms import Bbox
@@ -13,13 +13,7 @@ from squeal.results import symbol
 ROUNDING = 1e-6  # divergence rates [%] up to this are treated as zero
 SAME_PLACE = 0.05  # share of the width within which modes of two series share a label
 
-
-@dataclasses.dataclass
-class Series:
-    """Modes with one form of the dissipation."""
-
-    title: str
-    modes: list
+Series = collections.namedtuple("Series", "title modes")  # modes with one form of the dissipation
 
 
 class NameRoom:
