@@ -127,6 +127,7 @@ def main():
     parser.add_argument("--system", metavar="FOLDER", help="system of matrices of the run, instead of exported matrices")
     parser.add_argument("--parameter", action="append", default=[], metavar="NAME=VALUE", help="overrides a parameter of the system")
     parser.add_argument("--mu", type=float, help="friction coefficient (default: that of the run)")
+    parser.add_argument("--shift", type=float, help="real shift in 1/s (default: 0, or chosen if a body can move freely)")
     parser.add_argument("--tolerance", type=float,
                         help=f"largest relative difference (default: {TOLERANCE:g}, or from the errors estimated in the table)")
     arguments = parser.parse_args()
@@ -141,7 +142,8 @@ def main():
     labels, eigenvalues = labels[listed], eigenvalues[listed]
     problem, right = (problem_of_system if arguments.system else problem_of_run)(arguments)
     print(f"modes up to {band:g} Hz")
-    if (shift := choose_shift(problem, band)) != 0:
+    shift = arguments.shift if arguments.shift is not None else choose_shift(problem, band)
+    if arguments.shift is None and shift != 0:
         print(f"  a body can move freely: the shift is {shift:.0f} 1/s")
     error = "estimated error of lambda [-]"
     estimate = ESTIMATE_SAFETY * max(table.numbers(error), default=0.0) if error in table.columns else 0.0

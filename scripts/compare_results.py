@@ -3,7 +3,7 @@
 
 """Compares the tables of two results folders and prints the largest difference of each.
 
-    scripts/compare_results.py OLD NEW [--tolerance 1e-9] [--ignore COLUMN]... [--tables PATTERN]
+    scripts/compare_results.py OLD NEW [--tolerance 1e-9] [--all]
 
 Every CSV file below OLD is compared with that of the same name below NEW, cell by cell: numbers by their difference relative to the largest
 number of their column in OLD, texts exactly. Columns that vary from run to run (times, memory, residuals, estimates at rounding level) are
@@ -39,7 +39,7 @@ def compare(old_file, new_file, arguments):
         return 0.0, [f"columns are missing: {', '.join(missing)}"]
     if len(old) != len(new):
         return 0.0, [f"{len(old)} rows became {len(new)}"]
-    names = [name for name in old.columns if name not in arguments.ignore and (arguments.all or not VARYING.search(name))]
+    names = [name for name in old.columns if arguments.all or not VARYING.search(name)]
     old, new = old[names], new[names]
     x, y = (frame.apply(pandas.to_numeric, errors="coerce").astype(float).replace([np.inf, -np.inf], np.nan)
             for frame in (old, new))
@@ -58,14 +58,12 @@ def main():
     parser.add_argument("old", metavar="OLD", type=pathlib.Path)
     parser.add_argument("new", metavar="NEW", type=pathlib.Path)
     parser.add_argument("--tolerance", type=float, default=1e-9, help="relative to the largest of a column (default: %(default)s)")
-    parser.add_argument("--ignore", action="append", default=[], metavar="COLUMN", help="column to skip; may be repeated")
-    parser.add_argument("--tables", default="*.csv", metavar="PATTERN", help="tables to compare (default: %(default)s)")
     parser.add_argument("--all", action="store_true", help="includes the columns that vary from run to run")
     arguments = parser.parse_args()
 
-    files = sorted(path.relative_to(arguments.old) for path in arguments.old.rglob(arguments.tables))
+    files = sorted(path.relative_to(arguments.old) for path in arguments.old.rglob("*.csv"))
     if not files:
-        raise Error(f"there is no table {arguments.tables}", arguments.old, "name a folder of results")
+        raise Error("there is no table", arguments.old, "name a folder of results")
     agree = True
     for file in files:
         if not (arguments.new / file).is_file():
@@ -77,7 +75,7 @@ def main():
         for complaint in complaints[:5]:
             print(f"    {complaint}")
         agree = agree and not complaints
-    for path in sorted(path.relative_to(arguments.new) for path in arguments.new.rglob(arguments.tables)):
+    for path in sorted(path.relative_to(arguments.new) for path in arguments.new.rglob("*.csv")):
         if path not in files:
             print(f"{str(path):<36} new")
     sys.exit(0 if agree else 1)

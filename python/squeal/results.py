@@ -183,16 +183,13 @@ class Results:
         return self.parameters[name]
 
     def number(self, name):
-        return self.number_list(name)[0]
-
-    def number_list(self, name):
-        """The numbers of a parameter, separated by commas; none if it is empty."""
+        """The number of a parameter, the first of several separated by commas."""
         text = self.parameter(name)
         try:
-            return [float(word) for word in text.split(",")] if text.strip() else []
+            return float(text.split(",")[0])
         except ValueError:
             where = f"file {self.folder / 'parameters.prm'}, parameter {name}"
-            raise Error(f"`{text}` is not a list of numbers", where, "run squeal again") from None
+            raise Error(f"`{text}` is not a number", where, "run squeal again") from None
 
     def plot(self, ending="svg", output=None):
         """Draws the plots of the tables; returns their files and notes on files that were renamed."""
