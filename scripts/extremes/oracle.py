@@ -31,6 +31,8 @@ LARGEST_DENSE = 1600
 # Relative distance up to which eigenvalues are refined together
 CLUSTER = 1e-6
 N_ITERATIONS = 4
+# Relative distance of eigenvalues by ARPACK that are copies of one if their vectors are linearly dependent
+COPIES = 1e-5
 # |lambda| / end of the band up to which eigenvalues count as zero and are not refined
 ZERO = 0.9e-4
 # Relative change at which refinement stops
@@ -77,8 +79,9 @@ class Oracle:
         n = self.problem.size
         if n > LARGEST_DENSE:
             shift = check_eigenvalues.choose_shift(self.problem, self.band)
-            found, _ = check_eigenvalues.solve_by_scipy(self.problem, 1.05 * self.band, 40, shift)
-            return found, "ARPACK"
+            found, vectors = check_eigenvalues.solve_by_scipy(self.problem, 1.05 * self.band, 40, shift)
+            # Copies of modes far below the band, whose vectors are the least accurate
+            return found[quadratic.merge(found, vectors, COPIES)], "ARPACK"
         mass, damping, stiffness = (matrix.toarray() for matrix in (self.problem.mass, self.problem.damping, self.problem.stiffness))
         s = self.shift
         scale = 1 / np.sqrt(abs(np.diagonal(stiffness + s * damping + s**2 * mass)))
