@@ -36,10 +36,10 @@ namespace Squeal
         {
           const std::string there = content(folder / key_file);
           if (there.rfind("squeal designs", 0) != 0)
-            throw FileError("the folder `" + name + "` contains files other than an unfinished study of designs", "folder " + name,
+            throw FileError("the folder `" + name + "` contains files other than an unfinished study", "folder " + name,
                             "choose another --output, or empty the folder");
           if (there != title + key)
-            throw FileError("the folder contains an unfinished study of other designs, another mesh or another version of the program: " +
+            throw FileError("the folder contains an unfinished study with other parameters, another model or another version of the program: " +
                               first_difference(there, title + key),
                             "folder " + name,
                             "finish it with its own parameters, at the beginning of `" + (folder / key_file).string() +
@@ -73,7 +73,7 @@ namespace Squeal
     return (fs::path(output) / "").lexically_normal().parent_path().string() + ".checkpoint";
   }
 
-  DesignStore::DesignStore(const fs::path &folder, const std::string &key, const MPI_Comm communicator)
+  Checkpoint::Checkpoint(const fs::path &folder, const std::string &key, const MPI_Comm communicator)
     : folder(folder)
   {
     std::vector<std::string> problem;
@@ -81,6 +81,7 @@ namespace Squeal
       try
         {
           open(folder, key);
+          is_creator = true;
         }
       catch (const FileError &error)
         {
@@ -96,13 +97,32 @@ namespace Squeal
       throw FileError(problem[0], problem[1], problem[2]);
   }
 
-  DesignStore::DesignStore(const fs::path &folder)
+  Checkpoint::Checkpoint(const fs::path &folder)
     : folder(folder)
   {}
 
-  fs::path DesignStore::file_of(const int design) const
+  Checkpoint::~Checkpoint()
   {
-    return folder / text("design-", design, ".result");
+    std::error_code ignored;
+    if (is_creator && fs::directory_iterator(folder, ignored) != fs::directory_iterator() &&
+        std::next(fs::directory_iterator(folder, ignored)) == fs::directory_iterator())
+      fs::remove_all(folder, ignored);
+  }
+
+  void Checkpoint::write(const std::string &name, const std::vector<char> &packed) const
+  {
+    replace_file(folder / name, {packed.data(), packed.size()});
+  }
+
+  std::vector<char> Checkpoint::read(const std::string &name) const
+  {
+    const std::string packed = content(folder / name);
+    return {packed.begin(), packed.end()};
+  }
+
+  static std::string file_of(const int design)
+  {
+    return text("design-", design, ".result");
   }
 
   fs::path DesignStore::folder_of(const std::vector<int> &designs) const
@@ -112,10 +132,7 @@ namespace Squeal
 
   std::optional<DesignResult> DesignStore::find(const int design) const
   {
-    if (!fs::exists(file_of(design)))
-      return {};
-    const std::string packed = content(file_of(design));
-    return dealii::Utilities::unpack<DesignResult>(std::vector<char>(packed.begin(), packed.end()), false);
+    return Checkpoint::find<DesignResult>(file_of(design));
   }
 
   std::size_t DesignStore::n_known(const std::vector<int> &designs) const
@@ -125,8 +142,7 @@ namespace Squeal
 
   void DesignStore::keep(const DesignResult &result) const
   {
-    const std::vector<char> packed = dealii::Utilities::pack(result, false);
-    replace_file(file_of(result.number), {packed.data(), packed.size()});
+    Checkpoint::keep(file_of(result.number), result);
   }
 
   void solve_side_by_side(const std::vector<std::vector<int>>             &batches,

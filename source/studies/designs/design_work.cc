@@ -2,7 +2,6 @@
 
 #include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
-#include <squeal/base/file_writing.h>
 #include <squeal/base/memory.h>
 #include <squeal/base/version.h>
 #include <squeal/base/worker_process.h>
@@ -10,10 +9,8 @@
 #include <squeal/studies/designs/design_work.h>
 
 #include <deal.II/base/mpi.h>
-#include <deal.II/base/utilities.h>
 
 #include <fstream>
-#include <iterator>
 #include <ostream>
 
 namespace Squeal
@@ -96,7 +93,7 @@ namespace Squeal
     }
   } // namespace
 
-  std::string design_key(const Run &run, const Scene &scene, const DesignPlan &plan)
+  std::string study_key(const Run &run, const std::string &model)
   {
     Parameters parameters          = run.parameters;
     parameters.designs.n_processes = 0;
@@ -105,7 +102,21 @@ namespace Squeal
     std::ostringstream stream;
     stream << "# squeal " << version << '\n';
     parameters.print(stream, false);
-    stream << "# mesh: " << cell_counts(scene.mesh) << ", nodes " << std::hex << checksum(scene.mesh) << std::dec << '\n';
+    stream << "# " << model << '\n';
+    return stream.str();
+  }
+
+  std::string model_key(const Scene &scene)
+  {
+    std::ostringstream stream;
+    stream << "mesh: " << cell_counts(scene.mesh) << ", nodes " << std::hex << checksum(scene.mesh);
+    return stream.str();
+  }
+
+  std::string design_key(const Run &run, const Scene &scene, const DesignPlan &plan)
+  {
+    std::ostringstream stream;
+    stream << study_key(run, model_key(scene));
     for (const auto &values : plan.designs)
       {
         for (const std::string &value : values)
@@ -147,12 +158,8 @@ namespace Squeal
 
   ReferenceModes design_reference(Scene &scene, Run &run, const fs::path &file)
   {
-    if (fs::exists(file))
-      {
-        std::ifstream           stream(file, std::ios::binary);
-        const std::vector<char> packed{std::istreambuf_iterator<char>(stream), {}};
-        return dealii::Utilities::unpack<ReferenceModes>(packed, false);
-      }
+    if (auto known = Checkpoint(file.parent_path()).find<ReferenceModes>(file.filename()))
+      return *std::move(known);
     run.progress.begin("Reference modes");
     Progress   silent;
     Parameters parameters             = run.parameters;
@@ -175,10 +182,7 @@ namespace Squeal
       {
         const ReferenceModes modes = design_reference(scene, run, file);
         if (run.is_root)
-          {
-            const std::vector<char> packed = dealii::Utilities::pack(modes, false);
-            replace_file(file, {packed.data(), packed.size()});
-          }
+          store.Checkpoint::keep(DesignStore::reference_file, modes);
       }
     run.progress.begin("Designs");
     const std::size_t                   n_known = store.n_known(work.designs);

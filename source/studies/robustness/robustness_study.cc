@@ -2,11 +2,14 @@
 
 #include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
-#include <squeal/parameters/design_plan.h>
-#include <squeal/studies/designs/design_work.h>
+#include <squeal/base/tasks.h>
 #include <squeal/studies/robustness/robustness.h>
 #include <squeal/studies/steps/parameter_usage.h>
 
+#include <deal.II/base/mpi.h>
+
+#include <fstream>
+#include <iterator>
 #include <map>
 #include <numeric>
 
@@ -36,18 +39,63 @@ namespace Squeal
       return result;
     }
 
-    /// Solves the first @p n points of a contact set, the samples. Returns their largest estimated error.
-    double solve_contact_set(SweepModel &model, const std::size_t n, const double tolerance, std::vector<std::optional<Sample>> &samples)
-    {
-      const auto                        begin = model.regime.points.begin();
-      const std::vector<OperatingPoint> points(begin, begin + static_cast<std::ptrdiff_t>(n));
-      const auto                        keep = [&](const int i, ChartPoint &&point) { samples[points[i].line] = modes_of(model, point); };
+    constexpr const char *stored_samples = "samples-";
 
-      const ErrorControlledSweep found = solve_points(model, points, n_training_samples, tolerance, keep, "Samples");
-      if (found.n_left > 0)
-        model.run.warn(text(found.n_left, " samples miss the tolerance of ", tolerance, ": ", found.why_stopped,
+    using StoredSamples = std::vector<std::pair<int, Sample>>; ///< by index
+
+    /// Takes the samples that an interrupted run has stored.
+    void take_known(const Checkpoint &checkpoint, std::vector<std::optional<Sample>> &samples, Run &run)
+    {
+      StoredSamples known;
+      if (run.is_root)
+        for (const auto &file : std::filesystem::directory_iterator(checkpoint.folder))
+          if (const std::string name = file.path().filename(); name.rfind(stored_samples, 0) == 0)
+            for (auto &sample : checkpoint.find<StoredSamples>(name).value_or(StoredSamples()))
+              known.push_back(std::move(sample));
+      known = dealii::Utilities::MPI::broadcast(run.communicator, known, 0);
+      for (auto &[s, sample] : known)
+        samples[s] = std::move(sample);
+      if (!known.empty())
+        run.progress.note(text("  continuing an interrupted study: ", known.size(), " of ", samples.size(), " samples are finished"));
+    }
+
+    /// Solves the samples among the first @p n points of a contact set that are not known.
+    void solve_contact_set(SweepModel                         &model,
+                           const std::size_t                   n,
+                           const double                        tolerance,
+                           const Checkpoint                   *checkpoint,
+                           std::vector<std::optional<Sample>> &samples)
+    {
+      std::vector<OperatingPoint> points;
+      std::copy_if(model.regime.points.begin(), model.regime.points.begin() + static_cast<std::ptrdiff_t>(n), std::back_inserter(points),
+                   [&](const OperatingPoint &point) { return !samples[point.line]; });
+      if (points.empty())
+        return;
+      // Labels are found in parallel, for several points at a time
+      constexpr std::size_t                   n_at_once = 128;
+      std::vector<std::pair<int, ChartPoint>> kept;
+      const auto                              label = [&] {
+        StoredSamples found(kept.size());
+        const auto    one = [&](const int k) { found[k] = {points[kept[k].first].line, modes_of(model, kept[k].second)}; };
+        if (!kept.empty())
+          one(0); // extends products with the references to the latest basis
+        run_tasks(static_cast<int>(kept.size()) - 1, [&](const int k) { one(k + 1); });
+        if (checkpoint && model.run.is_root && !found.empty())
+          checkpoint->keep(text(stored_samples, found.front().first), found);
+        for (auto &[s, sample] : found)
+          samples[s] = std::move(sample);
+        kept.clear();
+      };
+      const auto keep = [&](const int i, ChartPoint &&point) {
+        kept.emplace_back(i, std::move(point));
+        if (kept.size() == n_at_once)
+          label();
+      };
+      const ErrorControlledSweep result = solve_points(model, points, n_training_samples, tolerance, keep, "Samples");
+      label();
+      if (result.n_left > 0)
+        model.run.warn(text(result.n_left, " samples miss the tolerance of ", tolerance, ": ", result.why_stopped,
                             "; they count as undecided. Raise the tolerance"));
-      return found.worst_error;
     }
 
     /// Writes the samples with the largest divergence rates as parameter files of stability runs.
@@ -69,6 +117,23 @@ namespace Squeal
         }
     }
 
+    /// Checksums of the files of a system.
+    std::string system_key(const std::filesystem::path &system)
+    {
+      const std::filesystem::path        folder = std::filesystem::is_directory(system) ? system : system.parent_path();
+      std::map<std::string, std::size_t> files;
+      for (const auto &file : std::filesystem::directory_iterator(folder.empty() ? "." : folder))
+        if (file.is_regular_file())
+          {
+            std::ifstream stream(file.path(), std::ios::binary);
+            files[file.path().filename()] = std::hash<std::string>()({std::istreambuf_iterator<char>(stream), {}});
+          }
+      std::string result = "system:";
+      for (const auto &[name, checksum] : files)
+        result += text(' ', name, ' ', checksum);
+      return result;
+    }
+
     void check_bands(const Parameters &parameters)
     {
       const auto &ends = parameters.robustness.frequency_bands;
@@ -79,14 +144,19 @@ namespace Squeal
                              "parameter Robustness/Frequency bands", "give two or more in ascending order, up to Band/Maximum frequency");
     }
 
-    void run_samples(const SamplePlan &plan, const SampledSystems &systems, Run &run)
+    /// @param model content of the model, for the key of the checkpoint
+    void run_samples(const SamplePlan &plan, const SampledSystems &systems, const std::string &model, Run &run)
     {
-      const auto [samples, followed] = solve_samples(systems, plan.n(), run.parameters.robustness.tolerance, run);
+      const Checkpoint checkpoint(checkpoint_folder(run.folder().name()), study_key(run, model), run.communicator);
+      const auto [samples, followed] = solve_samples(systems, plan.n(), run.parameters.robustness.tolerance, run, &checkpoint);
       write_samples(plan, samples, run);
       write_worst_samples(plan, samples, run);
       if (!followed.empty())
         write_onsets(followed, systems.plan.axis.name, run);
-      run.finish();
+      run.finish([&] {
+        if (run.is_root)
+          std::filesystem::remove_all(checkpoint.folder);
+      });
     }
   } // namespace
 
@@ -160,18 +230,28 @@ namespace Squeal
     return result;
   }
 
-  SolvedSamples solve_samples(const SampledSystems &systems, const int n_samples, const double tolerance, Run &run)
+  SolvedSamples solve_samples(const SampledSystems &systems,
+                              const int             n_samples,
+                              const double          tolerance,
+                              Run                  &run,
+                              const Checkpoint     *checkpoint)
   {
     SolvedSamples result{std::vector<std::optional<Sample>>(n_samples), std::vector<FollowedSample>(systems.plan.lines.size())};
-    double        worst     = 0.;
-    int           n_vectors = 0;
+    if (checkpoint)
+      take_known(*checkpoint, result.samples, run);
+    int n_vectors = 0;
     for (std::size_t i = 0; i < systems.plan.regimes.size(); ++i)
       {
         const auto model = sample_model(systems, i, run);
-        worst            = std::max(worst, solve_contact_set(*model, systems.n_samples[i], tolerance, result.samples));
+        solve_contact_set(*model, systems.n_samples[i], tolerance, checkpoint, result.samples);
         follow_samples(*model, systems.n_samples[i], result.followed);
         n_vectors = std::max(n_vectors, model->reduced ? model->reduced->size() : 0);
       }
+    double worst = 0.;
+    for (const std::optional<Sample> &sample : result.samples)
+      if (sample)
+        for (const SampledMode &mode : *sample)
+          worst = std::max(worst, mode.error);
     run.count("basis vectors", n_vectors);
     run.measure("largest estimated error of lambda [-]", worst);
     return result;
@@ -185,7 +265,7 @@ namespace Squeal
     const auto       nominal = [&run](const std::string &name) { return nominal_value(run.parameters, name); };
     const SamplePlan plan    = sample_plan(run.parameters.robustness, nominal, alike_pins(scene, run.parameters));
     const BodyTerms  bodies  = assemble_scene(scene, run);
-    run_samples(plan, sampled_scene(scene, bodies, plan, run), run);
+    run_samples(plan, sampled_scene(scene, bodies, plan, run), model_key(scene), run);
   }
 
   static void run_robustness_of_system(Run &run)
@@ -194,7 +274,7 @@ namespace Squeal
     SystemFile       file = read_system(run);
     const SamplePlan plan =
       sample_plan(run.parameters.robustness, [&](const std::string &name) { return value_in(file, name, run.parameters); }, {});
-    run_samples(plan, sampled_file(std::move(file), plan, run), run);
+    run_samples(plan, sampled_file(std::move(file), plan, run), system_key(run.parameters.system.path()), run);
   }
 
   extern const Study robustness_study = [] {

@@ -5,21 +5,59 @@
 #include <squeal/studies/designs/design_solution.h>
 #include <squeal/studies/steps/parameter_usage.h>
 
+#include <deal.II/base/utilities.h>
+
 namespace Squeal
 {
   /// Folder next to the results @p output for an unfinished study; not touched by ResultFolder.
   std::string checkpoint_folder(const std::string &output);
 
-  /// Stored state of an unfinished study of designs: its key, the reference modes, and the finished designs.
-  class DesignStore
+  /// Stored results of an unfinished study.
+  class Checkpoint
   {
   public:
     /// Collective; the root creates the @p folder if necessary. @p key contains everything that affects results. Throws FileError if the
     /// folder contains another study, or anything else.
-    DesignStore(const std::filesystem::path &folder, const std::string &key, MPI_Comm communicator);
+    Checkpoint(const std::filesystem::path &folder, const std::string &key, MPI_Comm communicator);
 
-    /// Opens the store in a worker process of the study.
-    explicit DesignStore(const std::filesystem::path &folder);
+    /// Opens the checkpoint in a worker process of the study.
+    explicit Checkpoint(const std::filesystem::path &folder);
+
+    /// The process that created it removes the folder if nothing has been stored.
+    ~Checkpoint();
+
+    Checkpoint(const Checkpoint &)            = delete;
+    Checkpoint &operator=(const Checkpoint &) = delete;
+
+    /// Stores an object that Boost serialises; a killed run leaves a complete file or none.
+    template <typename Object>
+    void keep(const std::string &name, const Object &object) const
+    {
+      write(name, dealii::Utilities::pack(object, false));
+    }
+
+    /// A stored object; nothing if there is none with this name.
+    template <typename Object>
+    std::optional<Object> find(const std::string &name) const
+    {
+      const std::vector<char> packed = read(name);
+      return packed.empty() ? std::nullopt : std::optional(dealii::Utilities::unpack<Object>(packed, false));
+    }
+
+    const std::filesystem::path folder;
+
+  private:
+    void              write(const std::string &name, const std::vector<char> &packed) const;
+    std::vector<char> read(const std::string &name) const;
+
+    bool is_creator = false;
+  };
+
+  /// The reference modes and the finished designs of an unfinished study of designs.
+  class DesignStore : public Checkpoint
+  {
+  public:
+    using Checkpoint::Checkpoint;
 
     /// Folder in which a worker process solves designs.
     std::filesystem::path folder_of(const std::vector<int> &designs) const;
@@ -33,14 +71,8 @@ namespace Squeal
     /// Stores the result of a design.
     void keep(const DesignResult &result) const;
 
-    const std::filesystem::path folder;
-
     /// File with the reference modes, in the folder of the study.
     static constexpr const char *reference_file = "reference.modes";
-
-  private:
-    /// File with the result of a design.
-    std::filesystem::path file_of(int design) const;
   };
 
   /**
@@ -64,6 +96,12 @@ namespace Squeal
     DesignPlan       plan;
     std::vector<int> designs; ///< counted from one
   };
+
+  /// Everything that affects the results of a study of a @p model: version, parameters and model.
+  std::string study_key(const Run &run, const std::string &model);
+
+  /// The mesh of a model, for study_key().
+  std::string model_key(const Scene &scene);
 
   /// Key of everything that affects the results of a study; @p plan: designs known beforehand.
   std::string design_key(const Run &run, const Scene &scene, const DesignPlan &plan);

@@ -2,7 +2,7 @@
 
 #pragma once
 
-#include <squeal/parameters/design_plan.h>
+#include <squeal/studies/designs/design_work.h>
 #include <squeal/studies/robustness/uncertainty.h>
 #include <squeal/studies/sweep/sweep_charts.h>
 
@@ -84,6 +84,13 @@ namespace Squeal
     Verdict              verdict;
     std::string          label;
     bool                 is_alone; ///< no other mode of the sample has this label
+
+    /// Serialises for Boost.
+    template <class Archive>
+    void serialize(Archive &archive, const unsigned int /*version*/)
+    {
+      archive &lambda &error &verdict &label &is_alone;
+    }
   };
 
   /// Modes of a sample in ascending order of frequency.
@@ -123,8 +130,10 @@ namespace Squeal
                                     const KeepPoint                   &keep,
                                     const std::string                 &name);
 
-  /// Solves all samples with one reduced model for each contact set, as steps of the run.
-  SolvedSamples solve_samples(const SampledSystems &systems, int n_samples, double tolerance, Run &run);
+  /// Solves all samples with one reduced model for each contact set, as steps of the run. Samples known from an interrupted run are taken
+  /// from the @p checkpoint, if there is one, and others stored there.
+  SolvedSamples
+  solve_samples(const SampledSystems &systems, int n_samples, double tolerance, Run &run, const Checkpoint *checkpoint = nullptr);
 
   /// Follows the modes of lines over the friction coefficient with the basis of the samples, which is extended if a point misses
   /// Sweep/Tolerance, as a step of the run.
