@@ -39,11 +39,12 @@ namespace Squeal
             throw FileError("the folder `" + name + "` contains files other than an unfinished study", "folder " + name,
                             "choose another --output, or empty the folder");
           if (there != title + key)
-            throw FileError("the folder contains an unfinished study with other parameters, another model or another version of the program: " +
-                              first_difference(there, title + key),
-                            "folder " + name,
-                            "finish it with its own parameters, at the beginning of `" + (folder / key_file).string() +
-                              "`; choose another --output; or delete the folder");
+            throw FileError(
+              "the folder contains an unfinished study with other parameters, another model or another version of the program: " +
+                first_difference(there, title + key),
+              "folder " + name,
+              "finish it with its own parameters, at the beginning of `" + (folder / key_file).string() +
+                "`; choose another --output; or delete the folder");
         }
       fs::create_directories(folder);
       replace_file(folder / key_file, title + key);

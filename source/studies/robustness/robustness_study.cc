@@ -6,6 +6,8 @@
 #include <squeal/studies/robustness/robustness.h>
 #include <squeal/studies/steps/parameter_usage.h>
 
+#include <boost/serialization/utility.hpp>
+#include <boost/serialization/vector.hpp>
 #include <deal.II/base/mpi.h>
 
 #include <fstream>

@@ -132,8 +132,11 @@ namespace Squeal
 
   /// Solves all samples with one reduced model for each contact set, as steps of the run. Samples known from an interrupted run are taken
   /// from the @p checkpoint, if there is one, and others stored there.
-  SolvedSamples
-  solve_samples(const SampledSystems &systems, int n_samples, double tolerance, Run &run, const Checkpoint *checkpoint = nullptr);
+  SolvedSamples solve_samples(const SampledSystems &systems,
+                              int                   n_samples,
+                              double                tolerance,
+                              Run                  &run,
+                              const Checkpoint     *checkpoint = nullptr);
 
   /// Follows the modes of lines over the friction coefficient with the basis of the samples, which is extended if a point misses
   /// Sweep/Tolerance, as a step of the run.
