@@ -74,7 +74,7 @@ class System:
     """Parameters by name, terms, groups of dofs (name -> inclusive ranges from 1), and the `reduction` of a reduced model with its basis.
 
     Mode shapes are drawn at points with `positions` [m] (n_points x 3), whose displacements are `displacements` (3 n_points x n, sparse;
-    rows x, y and z of point after point) times a vector; if `displacements` is None, dofs 3 i - 2 to 3 i are those of point i.
+    rows x, y and z for one point after the other) times a vector; if `displacements` is None, dofs 3 i - 2 to 3 i are those of point i.
 
     Arguments `p` are dictionaries of parameter values that override those of the file.
     """

@@ -14,7 +14,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Number of characters shown of a longer text.
+    /// Maximum number of characters of a text that are shown.
     constexpr std::size_t largest_length = 80;
 
     /// Characters without special meaning in any shell, as in Python's shlex.quote; other bytes are quoted.
@@ -62,7 +62,7 @@ namespace Squeal
   std::string legible(const std::string &text)
   {
     std::size_t length = std::min(text.size(), largest_length);
-    // Not within a multi-byte character
+    // Do not truncate within a multi-byte character
     while (length < text.size() && length > 0 && (static_cast<unsigned char>(text[length]) & 0xC0) == 0x80)
       --length;
     std::string result = text.substr(0, length);

@@ -59,7 +59,7 @@ namespace Squeal
       return result;
     }
 
-    /// A line of Gmsh's output, which may quote arbitrary file contents: without control characters and truncated.
+    /// A line of Gmsh's output, truncated and without control characters: it may quote arbitrary file contents.
     std::string shown(std::string line)
     {
       constexpr std::size_t longest_line = 500;

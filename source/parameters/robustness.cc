@@ -123,11 +123,11 @@ namespace Squeal
                      "Band limits in ascending order: the probability of squeal is also reported for each band between two limits.", {0.});
     declarations.add(
       "Samples with onsets", n_onsets, "none",
-      "Number of samples, the first ones, whose modes are followed over the friction coefficients of the section Sweep, to its "
+      "Number of samples, counted from the first, whose modes are followed over the friction coefficients of the section Sweep, to its "
       "tolerance, to find their onsets of growth.",
       {0., 1e5});
     declarations.add("Worst samples", n_worst, "none",
-                     "Number of samples, those with the largest divergence rates, written as parameter files of full-order runs.",
+                     "Number of samples with the largest divergence rates that are written as parameter files of full-order runs.",
                      {0., 1000.});
   }
 

@@ -82,7 +82,7 @@ TEST(PinGrid, PinsOfASceneHaveRingsAndThinnerLayersAtTheirHeldEnd)
   const double z_face = parameters.disc_thickness / 2.;
   for (const double side : {1., -1.})
     {
-      // Layer heights from the face on: 4 : 2 : 1
+      // Layer heights away from the face: 4 : 2 : 1
       std::set<double> heights;
       for (const Mesh::Point &p : mesh.points)
         if (side * p[2] >= z_face)

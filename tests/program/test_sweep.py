@@ -282,7 +282,8 @@ class Onsets(SweepTest):
 
     def test_summary_and_thresholds(self):
         self.assertEqual([row["divergence rate beyond [%]"] for row in read_table(self.coarse / "onsets.csv")], ["0", "0.01"])
-        self.assertEqual(re.search(r"squeal from mu = (\S+) on \((.*?)\), beyond 0.01 % from mu = (\S+) on \((.*?)\)", self.screen).groups(),
+        self.assertEqual(re.search(r"squeal begins at mu = (\S+) \((.*?)\), divergence rate exceeds 0.01 % at mu = (\S+) \((.*?)\)",
+                                   self.screen).groups(),
                          (f"{self.growth[0]:.4g}", self.growth[2], f"{self.weak[0]:.4g}", self.weak[2]))
         first = thresholds(self.coarse)[0]
         self.assertEqual((first["mu [-]"], first["uncertainty [-]"], first["label"]), self.growth)

@@ -151,7 +151,7 @@ TEST(IngredientEffects, ModesWithoutCounterpartCount)
   EXPECT_FALSE(lost.changes_verdict());
   EXPECT_TRUE(effect({{{}, eigenvalue(4900., 0.2), std::nullopt, true}}).changes_verdict());
   EXPECT_TRUE(effect({{{}, std::nullopt, eigenvalue(4900., 0.2), false, true}}).changes_verdict());
-  // A mode above the end of a shorter band is not compared
+  // A mode above the end of a narrower band is not compared
   Effect shorter   = lost;
   shorter.band_end = circular_frequency(2500.);
   EXPECT_EQ(shorter.frequency().amount, 0.);
@@ -176,7 +176,7 @@ TEST(IngredientSelection, CheapestChangesThatKeepTheAccuracyTogether)
     return std::accumulate(chosen.begin(), chosen.end(), 0., [&](const double s, const int i) { return s + unlike[i].severity; });
   };
   for (const auto &[changes, severity_of, expected] :
-       std::vector<Case>{// All changes that keep the accuracy
+       std::vector<Case>{// All changes that meet the accuracy
                          {{{"a", 0.2}, {"b", 1.5}, {"c", 0.9}}, always(0.95), {{0, 2}, {}, 1, 0.95}},
                          // The most important change is put back
                          {unlike, sum, {{0, 2}, {1}, 2, 0.8}},

@@ -239,7 +239,7 @@ TEST(ParameterUsage, OfEveryStudy)
                                   always.count(path.substr(0, slash)) > 0 || of_materials.count(path.substr(slash + 1)) > 0;
       EXPECT_TRUE(is_always_used || conditional.count(path) > 0) << path << " has no usage rule";
     }
-  // Paths in study rules exist; a misspelt path in a general rule leaves a parameter without a rule above.
+  // Every path in a study rule must exist; a misspelt path in a general rule would leave a parameter without a rule above.
   for (const Study *study : studies())
     {
       std::vector<std::string> beginnings(study->own_parameters.begin(), study->own_parameters.end());

@@ -507,7 +507,7 @@ TEST(Branches, Refusals)
 
 TEST(GrowthOnset, LiesBetweenTheValuesOfTheChart)
 {
-  // At 0.6 the second mode grows faster, but the first one, which grows from 0.33 on, has reached the level earlier
+  // At 0.6 the second mode grows faster, but the first one, which grows above 0.33, has reached the level earlier
   const Family         modes = given_modes({growing(5., 1e-3, 0.33), growing(7., 4e-3, 0.41)});
   const StabilityChart chart = modes.chart({0., 0.3, 0.6}, precise(10., 1e-10));
   const auto           found = onsets(modes, chart);
@@ -549,7 +549,7 @@ TEST(GrowthOnset, GrowthAtTheFirstValueBeganBefore)
 
 TEST(GrowthOnset, ModesThatEnterTheBandCountFromThereOn)
 {
-  // Grows from 0.05 on and enters the band at 0.25; another mode grows only above the band
+  // Grows above 0.05 and enters the band at 0.25; another mode grows only above the band
   const auto   entering = [](const double mu) { return Complex(0.1 * (mu - 0.05), 12. - 8. * mu); };
   const Family modes    = given_modes({entering, growing(13., 1e-2, 0.01)});
   for (const auto &onset : onsets(modes, modes.chart({0., 0.2, 0.4, 0.6}, precise(10., 1e-10))))

@@ -80,7 +80,6 @@ namespace Squeal
    * pins) count together. If each mode is dominated by a different component mode, it gets the label of that one. If several modes compete
    * (an A0-5 mode with larger motion of the pins), labels are distributed so that the sum of all participations is largest and no label
    * occurs more often than there are component modes with it. A participation below 0.1 gives no label.
-   * component modes of it. A participation below a tenth gives no name.
    *
    * @param references component modes, as for shape_shares()
    * @param shares     result of shape_shares(), one entry per coupled mode

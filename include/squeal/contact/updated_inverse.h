@@ -33,8 +33,8 @@ namespace Squeal
    *
    *   Q(s)⁻¹ = S⁻¹ + μ X (I − μ V X)⁻¹ V S⁻¹
    *
-   * The factor and X serve every μ; only the n_c × n_c matrix is refactorised. If X is not kept, its columns are solved for in blocks to
-   * compute V X, and Q(s)⁻¹ B = S⁻¹ (B + μ A (I − μ V X)⁻¹ V S⁻¹ B).
+   * The factor and X are reused for every μ; only the n_c × n_c matrix is refactorised. If X is not kept, its columns are solved for in
+   * blocks to compute V X, and Q(s)⁻¹ B = S⁻¹ (B + μ A (I − μ V X)⁻¹ V S⁻¹ B).
    */
   class UpdatedInverse : public LinearOperator
   {

@@ -57,7 +57,7 @@ namespace Squeal
    * and left reduced eigenvectors of all modes above the tolerance, compressed by their principal axes in the M-norm. See
    * estimate_eigenvalues() for the errors.
    *
-   * One Cholesky factor of K_c serves every step and every μ.
+   * One Cholesky factor of K_c is reused for every step and every μ.
    *
    * @param real_modes Φ_R, n × n_R, M-orthonormal
    * @param inverse    factor of K_c (or of the shifted stiffness) and K_c⁻¹ A

@@ -39,7 +39,7 @@ namespace Squeal
    *
    *   det N = det N_⊥ det W,   N_⊥ = I + G S_⊥⁻¹ E,   W = I + D⁻¹ Φᵀ E N_⊥⁻¹ G Φ
    *
-   * The series converges for all λ except ±iω, ω ≥ ω_d. The matrices V_K T_k ... E are small and serve every μ. Because |T_k| ≤ 1 in the
+   * The series converges for all λ except ±iω, ω ≥ ω_d. The matrices V_K T_k ... E are small and independent of μ. Because |T_k| ≤ 1 in the
    * inner product of K_c + s M_c, the truncation error of N after m terms is bounded by
    *
    *   ‖G (K_c + s M_c)^−½‖ Σ_{k > m} |c_k| ‖(K_c + s M_c)^−½ E‖   on the complement.

@@ -20,7 +20,7 @@ namespace Squeal
   {
     Entry() = default;
 
-    /// Entry for a value of any type; other than numbers and texts, its to_string().
+    /// Entry for a value of any type; types other than numbers and texts are converted by their to_string().
     template <typename Value>
     Entry(const Value &value)
     {

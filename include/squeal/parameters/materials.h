@@ -128,7 +128,7 @@ namespace Squeal
     double ratio;     ///< ζ [-]
   };
 
-  /// Modal damping (section `Damping`). Material damping is in the materials, contact damping in the operation.
+  /// Modal damping (section `Damping`). Material damping is part of MaterialParameters, contact damping of OperationParameters.
   struct DampingParameters
   {
     std::vector<ModalDampingRatio> modal_ratios; ///< ascending frequencies; empty: none

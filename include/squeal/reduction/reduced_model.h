@@ -20,7 +20,7 @@ namespace Squeal
 
   /**
    * Galerkin projection of the coupled system on a basis T, n × r (eqs. (12) and (13) of the paper). The terms A of the system, TᵀAT, or
-   * LᵀT and RᵀT for low rank, are projected once and serve all values of their coefficients: friction, load and speed.
+   * LᵀT and RᵀT for low rank, are projected once and reused for all values of their coefficients: friction, load and speed.
    *
    * extend() appends vectors to the basis and projects only these.
    */

@@ -83,7 +83,7 @@ def convergence(runs):
             yield from of_mode(f"{name}: {label}", results.leading(label), *numbers_in(cell))
 
 
-@entry("table1", "F1 at 3353 Hz: the coupled modes up to there in the paper's table")
+@entry("table1", "F1 at 3353 Hz: the coupled modes up to this frequency in the paper's table")
 def coupled_modes_up_to_f1(runs):
     printed = [row["coupled paper [Hz]"] for row in table_one(runs) if row["coupled paper [Hz]"] is not None]
     yield Number("coupled modes up to 3353 Hz", "18", sum(frequency <= 3353 for frequency in printed))

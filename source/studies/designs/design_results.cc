@@ -97,8 +97,8 @@ namespace Squeal
       return to_string(result.outcome) + ": " + result.reason;
     const std::string limit = text(100. * weak_divergence, " %");
     return result.weak_onset ?
-             text("beyond ", limit, " from mu = ", result.weak_onset->friction_coefficient, " on (", result.weak_onset->label, ")") :
-             "nowhere beyond " + limit;
+             text("exceeds ", limit, " at mu = ", result.weak_onset->friction_coefficient, " (", result.weak_onset->label, ")") :
+             "nowhere above " + limit;
   }
 
   Table design_table(const std::vector<std::string> &names, const std::vector<DesignResult> &designs)

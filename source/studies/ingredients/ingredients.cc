@@ -8,7 +8,7 @@ namespace Squeal
   {
     /// Real modes of a basis with upper modes extend to (1 + this) times the end of the band.
     constexpr double upper_modes = 0.5;
-    /// End of the shorter band, as a fraction of the given one.
+    /// End of the narrower band, as a fraction of the given one.
     constexpr double shorter_band = 0.5;
 
     // Names of values ------------------------------------------------------------

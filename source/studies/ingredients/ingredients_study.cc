@@ -94,7 +94,7 @@ namespace Squeal
       return Table(columns, results);
     }
 
-    /// Every mode of every variant, with that of the reference.
+    /// Every mode of every variant with its counterpart in the reference.
     Table ingredient_mode_table(const std::vector<IngredientResult> &results)
     {
       std::vector<IngredientMode> rows;
@@ -319,7 +319,7 @@ namespace Squeal
   } // namespace
 
   /// `Study = ingredients`: varies each model feature individually: effects on every mode and on the verdict, and costs. Writes the
-  /// cheapest model that keeps the verdict and the required accuracy, as a parameter file.
+  /// cheapest model that preserves the verdict within the required accuracy, as a parameter file.
   static void run_ingredients_study(Scene &scene, Run &run)
   {
     const Parameters    &p         = run.parameters;

@@ -127,7 +127,7 @@ namespace Squeal
       return result;
     }
 
-    /// Runs searches from several starts concurrently; returns the reasons for their ends.
+    /// Runs searches from several starts concurrently; returns the reasons for termination.
     std::vector<std::string> search(const std::vector<SearchPoint> &starts, Evaluations &evaluations)
     {
       std::vector<std::string> ends(starts.size());

@@ -13,7 +13,7 @@ namespace Squeal
 
     constexpr double one_percent = 0.01;
 
-    /// Change of a mode per cent of a parameter, and per unit.
+    /// Change of a mode per 1 % and per unit of a parameter.
     struct SensitivityRow
     {
       int                         mode; ///< from 0
@@ -58,7 +58,7 @@ namespace Squeal
       for (std::size_t m = 0; m < modes.size(); ++m)
         for (const Row &row : rows_of(modes[m], static_cast<int>(m), parameters))
           rows.push_back(row);
-      // Empty per cent of a zero parameter
+      // No change per 1 % of a zero parameter
       const auto percent = [](double (Row::*value)() const) {
         return [value](const Row &row) { return row.parameter->value != 0. ? Entry((row.*value)()) : Entry(); };
       };
@@ -169,7 +169,7 @@ namespace Squeal
       return Table(columns, rows);
     }
 
-    /// Rows of the ranking on the screen.
+    /// Maximum number of rows of the ranking on the screen.
     constexpr std::size_t n_shown_parameters = 12;
 
     /// Friction coefficients of the sweep for thresholds, including that of the operation.

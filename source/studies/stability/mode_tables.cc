@@ -11,7 +11,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Number of unstable modes on the screen.
+    /// Maximum number of unstable modes on the screen.
     constexpr std::size_t n_shown_modes = 20;
 
     /// Real coupled modes: label, share, frequency, residual.

@@ -7,7 +7,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Number of modes in a warning.
+    /// Maximum number of modes listed in a warning.
     constexpr std::size_t n_named = 5;
 
     /// Warns of unconverged modes, the first ones as "A0-4 at 2315 Hz (0.3 %, 0.05 points)".

@@ -255,10 +255,10 @@ namespace Squeal
       {
         // Uncertainty visible in the digits shown
         const bool is_uncertain = onset.uncertainty > 1e-3 * onset.friction_coefficient;
-        result += text(rate > 0. ? text(", beyond ", 100. * rate, " %") : "", " from ", parameter, " = ", onset.friction_coefficient,
-                       is_uncertain ? text(" +- ", onset.uncertainty) : "", " on (", to_string(of_onset), ")");
+        result += text(rate > 0. ? text(", divergence rate exceeds ", 100. * rate, " %") : " begins", " at ", parameter, " = ",
+                       onset.friction_coefficient, is_uncertain ? text(" +- ", onset.uncertainty) : "", " (", to_string(of_onset), ")");
       }
-    return text(result, "; most at ", parameter, " = ", at, ": ", label, " at ", decimal_text(most.frequency), " Hz with ",
+    return text(result, "; largest at ", parameter, " = ", at, ": ", label, " at ", decimal_text(most.frequency), " Hz with ",
                 decimal_text(100. * most.divergence_rate), " %");
   }
 } // namespace Squeal

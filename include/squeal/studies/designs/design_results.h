@@ -86,7 +86,7 @@ namespace Squeal
     int                      number = 0; ///< counted from one
     std::vector<std::string> values;     ///< of the variables; those of the given model if the design does not set them
     DesignOutcome            outcome = DesignOutcome::failed;
-    std::string              reason; ///< for refusal or failure
+    std::string              reason; ///< for rejection or failure
 
     int    n_dofs = 0, n_modes = 0, n_counted = 0; ///< modes in the band at the smallest friction coefficient; real modes by inertia
     bool   is_complete = false;                    ///< these numbers agree, and the count is as expected at every friction coefficient
@@ -125,6 +125,6 @@ namespace Squeal
   /// Designs without growth up to the largest friction coefficient, then those with the largest onsets; as many as fit on the screen.
   Table quietest_designs(const std::vector<std::string> &names, const std::vector<DesignResult> &designs);
 
-  /// Quietest and loudest designs, and numbers of refused and failed ones, one line each.
+  /// Quietest and loudest designs, and numbers of rejected and failed ones, one line each.
   std::vector<std::string> verdict(const std::vector<std::string> &names, const std::vector<DesignResult> &designs);
 } // namespace Squeal

@@ -26,7 +26,7 @@ namespace Squeal
   /// Indices of the starting points of a search, smallest values first.
   std::vector<std::size_t> starts_of_search(const std::vector<double> &values);
 
-  /// Minimises by a method of NLopt from a starting point. Returns the reason for its end; empty if @p value ended it by returning nothing.
+  /// Minimises by a method of NLopt from a starting point. Returns the reason for termination; empty if @p value returned nothing.
   std::string minimise(const SearchParameters                                          &parameters,
                        const SearchPoint                                               &start,
                        const std::function<std::optional<double>(const SearchPoint &)> &value);

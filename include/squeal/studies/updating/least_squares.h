@@ -45,7 +45,7 @@ namespace Squeal
     std::vector<bool>                     is_at_limit;
     std::vector<std::optional<double>>    deviations;   ///< standard deviation of x; none at a limit or if undetermined
     DenseMatrix                           correlations; ///< n × n; zero for parameters without a deviation
-    std::vector<std::vector<std::size_t>> undetermined; ///< groups of parameters; the data determine only some combinations
+    std::vector<std::vector<std::size_t>> undetermined; ///< groups of parameters that the data determine only in combination
   };
 
   /**
