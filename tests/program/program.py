@@ -173,25 +173,25 @@ class ProgramTest(unittest.TestCase):
         for text in mentions:
             self.assertIn(text, process.stderr)
 
-    def interrupt(self, output, overrides, ends):
-        """Starts or resumes a design study or search once for each (number, signal) in `ends`: the signal is sent as soon as this number of
-        designs is finished, and no results are written."""
+    def interrupt(self, output, overrides, ends, kind="design"):
+        """Starts or resumes a study once for each (number, signal) in `ends`: the signal is sent as soon as this number of files of
+        finished designs, or of sets of samples, is stored, and no results are written."""
         for number, how in ends:
             with open(self.folder / "interrupted.log", "w+", encoding="utf-8") as log:
                 process = subprocess.Popen([EXECUTABLE, "scene.prm", "--output", output, *settings(overrides)], cwd=self.folder, stdout=log, stderr=log)
                 deadline = time.monotonic() + 300
-                while len(self.known_designs(output)) < number and process.poll() is None and time.monotonic() < deadline:
+                while len(self.stored(output, kind)) < number and process.poll() is None and time.monotonic() < deadline:
                     time.sleep(0.02)
                 process.send_signal(how)
                 process.wait()
                 log.seek(0)
-                self.assertGreaterEqual(len(self.known_designs(output)), number, log.read())
+                self.assertGreaterEqual(len(self.stored(output, kind)), number, log.read())
             self.assertNotEqual(process.returncode, 0)
             self.assertFalse((self.folder / output / "run.json").exists())
 
-    def known_designs(self, output):
-        """Files of the designs solved by an interrupted study."""
-        return sorted((self.folder / f"{output}.checkpoint").glob("design-*.result"))
+    def stored(self, output, kind="design"):
+        """Files of the designs or sets of samples solved by an interrupted study."""
+        return sorted((self.folder / f"{output}.checkpoint").glob(f"{kind}-*.result"))
 
     def assert_same_eigenvalues(self, actual, expected, tolerance=SAME):
         """Compares two lists of eigenvalues, independent of the order within clusters."""

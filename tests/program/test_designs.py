@@ -108,12 +108,12 @@ class DesignsTest(ProgramTest):
         while self.processes_of("killed.checkpoint") and time.monotonic() < deadline:
             time.sleep(0.1)
         self.assertEqual(self.processes_of("killed.checkpoint"), [])
-        n_known = len(self.known_designs("killed"))
+        n_known = len(self.stored("killed"))
         self.assertGreaterEqual(n_known, 4)
 
         # Another study does not resume it
         other = self.call("scene.prm", "--output", "killed", *settings((*STUDY, VARIABLES, "Sweep/Tolerance=1e-5")))
-        self.assert_message(other, ["an unfinished study of other designs"])
+        self.assert_message(other, ["an unfinished study with other parameters"])
 
         process = self.call("scene.prm", "--output", "killed", *settings((*STUDY, VARIABLES)))
         self.assertEqual(process.returncode, 0, process.stderr)

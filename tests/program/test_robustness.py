@@ -4,6 +4,7 @@
 
 import json
 import math
+import signal
 import unittest
 
 from program import ProgramTest, read_table, settings
@@ -185,6 +186,23 @@ class SearchOfSystem(test_systems.SystemTest):
 
 
 class OfScene(ProgramTest):
+    def test_killed_and_resumed(self):
+        study = ("Study=robustness", "Robustness/Number of samples=700", "Robustness/Sobol indices=false", f"Robustness/Distributions={BOX}")
+        whole = read_table(self.run_scene("whole", *study) / "samples.csv")
+        self.interrupt("killed", study, ((1, signal.SIGKILL), (2, signal.SIGTERM)), "samples")
+        self.assert_message(self.call("scene.prm", "--output", "killed", *settings((*study, "Robustness/Seed=2"))), ["an unfinished study with other parameters"])
+        process = self.call("scene.prm", "--output", "killed", *settings(study))
+        self.assertEqual(process.returncode, 0, process.stderr)
+        self.assertIn("of 700 samples are finished", process.stdout)
+        self.assertFalse((self.folder / "killed.checkpoint").exists())
+        again = read_table(self.folder / "killed" / "samples.csv")
+        self.assertEqual(len(again), 700)
+        for row, other in zip(again, whole):
+            self.assertEqual(row["Operation/Friction coefficient"], other["Operation/Friction coefficient"])
+            # Another basis, with the same tolerance of 1e-4
+            rates = [float(r["divergence rate [%]"] or 0.) for r in (row, other)]
+            self.assertAlmostEqual(*rates, delta=0.02)
+
     def test_onsets_are_those_of_sweeps(self):
         sweep = ["Sweep/Number of friction coefficients=5", "Sweep/Last friction coefficient=0.6", "Sweep/Tolerance=1e-8"]
         results = self.run_scene("onsets", "Study=robustness", "Robustness/Number of samples=10", "Robustness/Worst samples=10",

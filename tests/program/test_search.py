@@ -60,7 +60,7 @@ class SearchTest(ProgramTest):
 
     def test_killed_and_resumed(self):
         self.interrupt("killed", SEARCH, ((2, signal.SIGKILL), (4, signal.SIGTERM)))
-        n_known = len(self.known_designs("killed"))
+        n_known = len(self.stored("killed"))
         process = self.call("scene.prm", "--output", "killed", *settings(SEARCH))
         self.assertEqual(process.returncode, 0, process.stderr)
         # Reported once, not in every repeated round

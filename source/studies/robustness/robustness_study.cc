@@ -83,7 +83,7 @@ namespace Squeal
           one(0); // extends products with the references to the latest basis
         run_tasks(static_cast<int>(kept.size()) - 1, [&](const int k) { one(k + 1); });
         if (checkpoint && model.run.is_root && !found.empty())
-          checkpoint->keep(text(stored_samples, found.front().first), found);
+          checkpoint->keep(text(stored_samples, found.front().first, ".result"), found);
         for (auto &[s, sample] : found)
           samples[s] = std::move(sample);
         kept.clear();
