@@ -53,7 +53,7 @@ namespace Squeal
       if (const Term &term = system.terms[k]; term.vanishes(with_friction) && (!term.weights.empty() || term.coefficient.is_constant()))
         continue;
       else if (term.matrix)
-        sparse.push_back({&term, k, term.symmetry == Symmetry::skew ? -1. : 1., 0., {}, {}, {}});
+        sparse.push_back({&term, k, term.symmetry == Symmetry::skew ? -1. : 1., 0., {}, {}, {}, {}});
       else
         {
           low_rank.push_back(&term);
@@ -71,11 +71,6 @@ namespace Squeal
     for (Sparse &part : sparse)
       if (is_symmetric(*part.term, 0) || is_symmetric(*part.term, 2))
         part.sigma = part.term->coefficient.at(system.values) * (is_symmetric(*part.term, 2) ? shift * shift : 1.);
-    factor_gram = DenseMatrix(n_factor_columns, n_factor_columns);
-    for (const Factor &f : factors)
-      inverse.for_responses(*f.factor, [&](const int first, const MultiVector &X) {
-        factor_gram.middleCols(f.first + first, X.n_columns()) = factor_products(X);
-      });
     clear();
   }
 
@@ -137,6 +132,14 @@ namespace Squeal
         return;
       }
 
+    if (factor_gram.cols() < n_factor_columns)
+      {
+        factor_gram = DenseMatrix(n_factor_columns, n_factor_columns);
+        for (const Factor &f : factors)
+          inverse.for_responses(*f.factor, [&](const int first, const MultiVector &X) {
+            factor_gram.middleCols(f.first + first, X.n_columns()) = factor_products(X);
+          });
+      }
     const std::size_t        n = sparse.size();
     std::vector<DenseMatrix> columns(n * n, DenseMatrix(r, r - old));
     for (std::size_t k = 0; k < n; ++k)
