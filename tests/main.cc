@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+#include <squeal/base/mpi_environment.h>
 #include <squeal/linear_algebra/blas_threads.h>
 
 #include <deal.II/base/mpi.h>
@@ -8,6 +9,7 @@
 
 int main(int argc, char **argv)
 {
+  Squeal::prepare_mpi_environment();
   Squeal::set_blas_threads(1);
   // Removes GoogleTest arguments before the libraries parse argv
   ::testing::InitGoogleTest(&argc, argv);

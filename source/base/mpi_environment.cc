@@ -2,9 +2,16 @@
 
 #include <squeal/base/mpi_environment.h>
 
+#include <mpi.h>
 #include <unistd.h>
 
 #include <cstdlib>
+
+/// Replaces that of the library, since Ipopt, which OpenTURNS may load, starts MPI before main(); deal.II calls MPI_Init_thread().
+extern "C" int MPI_Init(int * /*argc*/, char *** /*argv*/)
+{
+  return MPI_SUCCESS;
+}
 
 namespace Squeal
 {
