@@ -95,7 +95,7 @@ Decides whether a disc rubbed by friction pins squeals.
         return;
   }
 
-  /// Message of a failed run; rethrows the current exception.
+  /// Message of a failed run, from the exception that is being handled.
   std::string failure_message()
   {
     constexpr const char *defect = "\n  change: this is a defect of the program; please report it";

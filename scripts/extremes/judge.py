@@ -98,7 +98,7 @@ def judge(case, folder):
 
 
 def judge_refusal(case, process, folder, row):
-    """There must be one error with reason, place and what to change, and no files."""
+    """Checks that the run reports one error with its reason, location and remedy, and writes no files."""
     reason = re.match(r"^error: (.*)\n  where:  .*\n  change: .*\n$", process.stderr.lstrip("\n"))
     if not reason:
         raise Wrong(f"no clear error: {process.stderr[-400:]!r}")

@@ -56,7 +56,7 @@ class Runs:
 
 
 def value_of(cell):
-    """A number, a text, or None for an empty cell."""
+    """Value of a cell: a number, a string, or None if it is empty."""
     try:
         return float(cell)
     except (TypeError, ValueError):

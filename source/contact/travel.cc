@@ -16,8 +16,8 @@ namespace Squeal
     /// rounding.
     constexpr double along_axis = 0.7;
 
-    /// Smallest cosine of the angle between the normal of a contact node and the travel of its body: below, the travel does not close a
-    /// gap.
+    /// Smallest cosine of the angle between the normal of a contact node and the travel of its body; below it, the travel does not close
+    /// a gap.
     constexpr double facing = 0.01;
 
     std::vector<Travel> mean_directions(const Model &model, const ContactInterface &interface)

@@ -124,7 +124,7 @@ namespace Squeal
         DenseMatrix H, R;
       };
 
-      /// Makes W = V H + Q R the new active block Q; overwrites W.
+      /// Orthonormalises W = V H + Q R and appends Q as the active block; overwrites W.
       Coefficients append(MultiVector &W)
       {
         const MultiVector V = view(*basis, 0, m);

@@ -20,7 +20,7 @@ namespace Squeal
     /// Principal axes of the residuals below this fraction of the largest are postponed to the next step [-].
     constexpr double compression_tolerance = 0.02;
 
-    /// Large principal axes in the M-norm of the components of X outside the basis.
+    /// Dominant principal axes, in the M-norm, of the components of X outside the basis.
     MultiVector compress(const SparseMatrix &M, const ReducedModel &model, MultiVector X)
     {
       remove_basis(M, model, X);

@@ -234,7 +234,7 @@ namespace Squeal
         const std::size_t named = number(contact_name);
         if (named == mesh.surface_names.size())
           mesh.surface_names.push_back(contact_name);
-        std::set<std::array<unsigned int, 4>> known; // in the mesh of an earlier run
+        std::set<std::array<unsigned int, 4>> known; // faces that an earlier run has added
         for (const Mesh::Face &face : mesh.faces)
           if (face.surface == named)
             known.insert(face_key(face));

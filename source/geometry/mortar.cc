@@ -124,7 +124,7 @@ namespace Squeal
         }
     }
 
-    /// Slave nodes of each row, by the node of the row: nodes with little overlap are merged with the neighbour of largest area.
+    /// Slave nodes of each row of multipliers, by the node of the row: nodes with little overlap join the neighbour of largest area.
     std::map<unsigned int, std::vector<unsigned int>> grouped(const std::vector<SlaveNode> &nodes)
     {
       std::map<unsigned int, std::vector<unsigned int>> groups;

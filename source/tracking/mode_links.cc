@@ -24,7 +24,7 @@ namespace Squeal
     constexpr double negligible_part = 0.25;
     /// |φ_iᴴφ_j|² at one point above which two modes are about to coalesce [-].
     constexpr double parallel = 0.7;
-    /// Remainder of a unit vector after Gram-Schmidt so close to a coalescence that it is determined by rounding [-].
+    /// Remainder of a unit vector after Gram-Schmidt below which it is a rounding error, as close to a coalescence [-].
     constexpr double defective = 1e-7;
     /// |Im δ²| / |δ²| of the difference δ of two λ below which δ² is real, as for modes that may coalesce [-].
     constexpr double real_discriminant = 1e-6;

@@ -28,7 +28,7 @@ namespace Squeal
     /// results there, which used the smaller basis.
     void sharpen(SweepModel &model, const int line, const StabilityChart &chart, const std::vector<double> &grid)
     {
-      // Grid values next to them: closer to a coalescence the vectors of both modes are nearly equal
+      // Use grid values next to the thresholds: closer to a coalescence the vectors of both modes are nearly parallel
       std::map<int, std::set<int>> modes_at; // by point of the chart
       for (const Threshold &threshold : chart.thresholds)
         {

@@ -24,7 +24,7 @@ namespace Squeal
   {
     std::vector<UncertainNumber> numbers;
     DenseMatrix                  values;        ///< one row for each sample
-    int                          n_independent; ///< the first ones are independent, for probabilities
+    int                          n_independent; ///< number of independent samples, the first ones, for probabilities
     bool                         has_indices;   ///< all samples together are saltelli_samples()
     int n_followed = 0; ///< number of independent samples, the first ones, with modes followed over the friction coefficient
 

@@ -39,7 +39,7 @@ namespace Squeal
   /// `mode 3`.
   ModeLabel numbered_label(int number);
 
-  /// Modes of a system without a definite part by LU factors of Q(s), with a count, as steps of the run; labelled by numbers.
+  /// Solves for the modes of a system without a definite part with LU factors of Q(s) and counts them, as steps of the run; modes are numbered.
   FrictionModes direct_solution(const GivenSystem &given, Run &run);
 
   /// Number of modes in the rectangle of the band by the argument principle.

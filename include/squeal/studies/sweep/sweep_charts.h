@@ -180,7 +180,7 @@ namespace Squeal
   /// `Output/Write system`: writes the system of a contact set, or its reduced model with the basis, to the folder `system` of the results.
   void write_system_of(SweepModel &model);
 
-  /// Modes over the friction coefficient at one load and speed, for one contact set.
+  /// Modes as functions of the friction coefficient at one load and speed, for one contact set.
   struct SweepChart
   {
     StabilityChart         chart;
