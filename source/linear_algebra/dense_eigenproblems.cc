@@ -79,7 +79,8 @@ namespace Squeal
     std::vector<double> scale(n), tau(std::max(n - 1, 1)), real(n), imaginary(n);
     lapack_int          low = 0, high = 0;
     check_lapack(LAPACKE_dgebal(LAPACK_COL_MAJOR, 'B', n, A.data(), n, &low, &high, scale.data()), "dgebal");
-    check_lapack(LAPACKE_dgehrd(LAPACK_COL_MAJOR, n, low, high, A.data(), n, tau.data()), "dgehrd");
+    if (high > low) // a single row is in Hessenberg form; LAPACK 3.12 asks for too small a workspace then
+      check_lapack(LAPACKE_dgehrd(LAPACK_COL_MAJOR, n, low, high, A.data(), n, tau.data()), "dgehrd");
     DenseMatrix Q = A;
     check_lapack(LAPACKE_dorghr(LAPACK_COL_MAJOR, n, low, high, Q.data(), n, tau.data()), "dorghr");
     check_lapack(LAPACKE_dhseqr(LAPACK_COL_MAJOR, 'S', 'V', n, low, high, A.data(), n, real.data(), imaginary.data(), Q.data(), n),
