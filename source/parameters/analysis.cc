@@ -111,7 +111,8 @@ namespace Squeal
       "form, and the node coordinates.");
     declarations.add(
       "Write system", write_system,
-      "Writes the coupled system to the folder system of the results, which System reads. full: all terms. reduced: the reduced model of "
-      "a sweep, accurate to Sweep/Tolerance between the first and the last value.");
+      "Writes the coupled system to the folder system of the results, which System reads. full: all terms. reduced: the reduced model, of "
+      "a sweep with Sweep/Tolerance from the first to the last value, of Study = robustness with Robustness/Tolerance in the box of its "
+      "samples, or of each basis of Study = reduction at the given values.");
   }
 } // namespace Squeal

@@ -338,9 +338,12 @@ namespace Squeal
 
   void Parameters::check() const
   {
-    if (output.write_system == SystemOutput::reduced && !study->has("Sweep/Second parameter"))
+    if (output.write_system != SystemOutput::none && !study->has("Output/Write system"))
+      throw ParameterError(text("Study = ", study->name, " solves several systems and writes none"), "parameter Output/Write system",
+                           "set it to none, and to full in a run of one of the models with Study = stability");
+    if (output.write_system == SystemOutput::reduced && !study->has_reduced_model)
       throw ParameterError(text("Study = ", study->name, " has no reduced model to write"), "parameter Output/Write system",
-                           "set it to full, or set Study = sweep");
+                           "set it to full, or set Study = sweep, robustness or reduction");
     if (system)
       {
         if (study->run_of_system == nullptr)

@@ -90,6 +90,15 @@ namespace Squeal
         return result;
       }
 
+      Monomial operator*(const Monomial &other) const
+      {
+        std::map<std::string, int> sums = powers;
+        for (const auto &[parameter, power] : other.powers)
+          if ((sums[parameter] += power) == 0)
+            sums.erase(parameter);
+        return {factor * other.factor, sums};
+      }
+
     private:
       const double                     factor;
       const std::map<std::string, int> powers;
@@ -170,6 +179,9 @@ namespace Squeal
 
   Coefficient operator*(const Coefficient &a, const Coefficient &b)
   {
+    const auto *first = dynamic_cast<const Monomial *>(a.function.get()), *second = dynamic_cast<const Monomial *>(b.function.get());
+    if (first != nullptr && second != nullptr)
+      return Coefficient(std::make_shared<Monomial>(*first * *second));
     return Coefficient(std::make_shared<Product>(a.function, b.function));
   }
 

@@ -11,6 +11,7 @@ from program import ProgramTest, read_table, settings
 from squeal.plotting import draw
 from squeal.reporting import content
 from squeal.results import Results
+import squeal
 import test_systems  # as a module, so that its tests are not run again
 from test_systems import FLUTTER, flutter_terms
 
@@ -283,6 +284,28 @@ class OfScene(ProgramTest):
                                         float(other["growth rate [1/s]"]) - float(one["growth rate [1/s]"]))
                 self.assertLessEqual(difference / size, 2. * float(other["estimated error of lambda [-]"]) + 1e-8)
 
+    @unittest.skipUnless(test_systems.HAS_NUMPY, "needs NumPy")
+    def test_reduced_model_of_the_box(self):
+        """NumPy on the written model finds the modes of the samples, and the ranges contain all samples of the table."""
+        results = self.run_scene("written", "Study=robustness", f"Robustness/Distributions={BOX}", "Robustness/Number of samples=24",
+                                 "Robustness/Sobol indices=false", "Output/Write system=reduced")
+        system = squeal.System.read(results / "system")
+        names = {"mu": "Operation/Friction coefficient", "disc_young_modulus": "Disc material/Young modulus",
+                 "tangential_stiffness_disc_bore": "Mounts/Elastic mounts[2]",
+                 **{f"{pin}_young_modulus": f"Pin material/Young modulus of {pin}" for pin in ("pin_top_1", "pin_top_2", "pin_bottom_1", "pin_bottom_2")}}
+        self.assertEqual(set(system.parameters), set(names))
+        samples, modes = read_table(results / "samples.csv"), read_table(results / "sample_modes.csv")
+        for row, point in zip(samples, system.reduction["points"]):
+            system.values({name: float(row[column]) for name, column in names.items()})
+            self.assertEqual(point["largest estimated error of lambda [-]"], float(row["largest estimated error of lambda [-]"]))
+        # Exact values of the first sample: those in the table are rounded, which changes frequencies of doublets
+        eigenvalues = system.solve().eigenvalues
+        first = [row for row in modes if row["sample [-]"] == "1"]
+        self.assertGreater(len(first), 30)
+        for row in first:
+            value = complex(float(row["growth rate [1/s]"]), 2. * math.pi * float(row["frequency [Hz]"]))
+            self.assertLess(min(abs(eigenvalues - value)), 1e-10 * abs(value))
+
     def test_refusals(self):
         for distributions, words in (("Pin material/Poisson ratio = uniform 0.2 to 0.3", "Poisson ratio"),
                                      ("Geometry/Pin height = uniform 0.03 to 0.031", "Pin height"),
@@ -292,6 +315,8 @@ class OfScene(ProgramTest):
                                      ("Mounts/Elastic mounts = uniform 1 to 2", "Elastic mounts"),
                                      ("Pin material/Stiffness = uniform 1 to 2", "Stiffness")):
             self.assert_refused([words], "Study=robustness", f"Robustness/Distributions={distributions}")
+        self.assert_refused(["Radial dissipation"], "Study=robustness", "Robustness/Distributions=Operation/Friction coefficient = uniform 0.1 to 0.6",
+                            "Output/Write system=reduced", "Operation/Radial dissipation=consistent")
 
 
 if __name__ == "__main__":

@@ -550,6 +550,29 @@ class RoundTrip(SystemTest):
             self.assertEqual((row["event"], row["mechanism"]), (other["event"], other["mechanism"]))
             self.assertLess(abs(row["mu [-]"] - other["mu [-]"]), row["uncertainty [-]"] + other["uncertainty [-]"])
 
+    def test_other_studies(self):
+        expected = self.lambdas(self.run_scene("mesh"))
+        for study in (["reduction", "Reduction/Bases=free"], ["sensitivity", "Sensitivity/Thresholds=false", "Sensitivity/Geometry=none"],
+                      ["robustness", "Robustness/Distributions=Pin material/Density = uniform 90 % to 110 %", "Robustness/Number of samples=10"]):
+            self.run_scene("written", f"Study={study[0]}", *study[1:], "Output/Write system=full")
+            again = self.lambdas(self.system_of("written"))
+            self.assertEqual(len(again), len(expected))
+            for value, other in zip(again, expected):
+                self.assertLess(abs(value - other), SAME * abs(other))
+
+    def test_reduced_bases(self):
+        """The reduced model of each basis has the modes in the table of the study."""
+        results = self.run_scene("bases", "Study=reduction", "Reduction/Bases=free, real, residual-grown", "Output/Write system=reduced")
+        modes = self.rows(results, "reduction_modes")
+        for number, basis in enumerate(self.rows(results, "reduction_bases"), 1):
+            self.write("again.prm", STUDY.format(study="stability", band=5000).replace("= system\n", f"= bases/system_{number}\n"))
+            again = self.rows(self.run_scene("again", file="again.prm"), "complex_modes")
+            for row in modes:
+                if row["basis"] == basis["basis"] and row["frequency [Hz]"] < 4900.:
+                    differences = [max(abs(other["frequency [Hz]"] / row["frequency [Hz]"] - 1.), 0.01 * abs(other["divergence rate [%]"] - row["divergence rate [%]"]))
+                                   for other in again]
+                    self.assertLess(min(differences), 1e-10)
+
     @unittest.skipUnless(importlib.util.find_spec("scipy"), "needs SciPy")
     def test_independent_solver(self):
         """SciPy on the system of a mesh, read by the Python module."""

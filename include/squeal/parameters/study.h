@@ -55,6 +55,8 @@ namespace Squeal
     /// Runs the study for a system file instead of a mesh; null: not available.
     void (*run_of_system)(Run &) = nullptr;
 
+    bool has_reduced_model = false; ///< for `Output/Write system = reduced`
+
     bool has(const std::string &parameter) const
     {
       return std::any_of(own_parameters.begin(), own_parameters.end(), [&](const char *own) { return concerns(own, parameter); });

@@ -112,11 +112,9 @@ namespace Squeal
     const auto   factor      = factorize_general(*pencil_at(sparse_matrices(system.terms, modes.values), shift), "Q(s) at a real shift");
     result.errors            = reduction_errors(*system.mass, model, modes, reference,
                                                 [&](const ReducedModes &chosen) { return estimate(system, model, *factor, chosen); });
-    double largest           = 0.;
-    for (const ModeError &e : result.errors)
-      largest = std::max(largest, e.eigenvalue);
     run.progress.finish(text(result.basis.n_r0, " vectors from ", reduction.snapshots.size(), " values of ", system.varied, ", ",
-                             result.n_r, " after truncation, largest error of lambda ", largest));
+                             result.n_r, " after truncation, largest error of lambda ", largest_error(result)));
+    write_reduced_system(model, plan, result, 1, run);
     return result;
   }
 } // namespace Squeal

@@ -79,12 +79,14 @@ namespace Squeal
       return modes;
     }
 
-    /// Builds a basis and compares its modes with the reference, as a step of the run called @p name.
+    /// Builds a basis and compares its modes with the reference, as a step of the run called @p name. @p number of the basis is counted
+    /// from one.
     MeasuredBasis measured(const ReductionSets     &sets,
                            const ReferenceSolution &reference,
                            const BasisRecipe       &recipe,
                            const std::string       &name,
-                           const std::string       &truncation = "")
+                           const std::string       &truncation,
+                           const int                number)
     {
       Progress                  &progress  = sets.run.progress;
       const ReductionParameters &reduction = sets.run.parameters.reduction;
@@ -99,11 +101,9 @@ namespace Squeal
       candidate.build_seconds  = sets.cost(recipe) + watch.cost().cpu_seconds;
       const ReducedModes modes = timed_modes(sets.plan, model, candidate.solve_seconds);
       candidate.errors         = reduction_errors(sets.system, *sets.frictionless.inverse, model, modes, reference.modes);
-      double largest           = 0.;
-      for (const ModeError &e : candidate.errors)
-        largest = std::max(largest, e.eigenvalue);
-      progress.finish(
-        text(candidate.basis.n_r0, " vectors, ", candidate.basis.size(), " after connection and rank, largest error of lambda ", largest));
+      progress.finish(text(candidate.basis.n_r0, " vectors, ", candidate.basis.size(),
+                           " after connection and rank, largest error of lambda ", largest_error(candidate)));
+      write_reduced_system(model, sets.plan, candidate, number, sets.run);
       // Free hundreds of vectors that are no longer needed
       candidate.n_r = candidate.basis.size();
       candidate.basis.vectors.reset();
@@ -119,7 +119,8 @@ namespace Squeal
       const ReductionParameters &reduction = sets.run.parameters.reduction;
       std::vector<MeasuredBasis> result;
       const auto                 measure = [&](const BasisRecipe *recipe, const std::string &variant, const std::string &truncation = "") {
-        result.push_back(measured(sets, reference, *recipe, recipe->name + variant, truncation));
+        const int number = static_cast<int>(result.size()) + 1;
+        result.push_back(measured(sets, reference, *recipe, recipe->name + variant, truncation, number));
       };
       const auto those = [&](bool (BasisRecipe::*property)() const) {
         std::vector<const BasisRecipe *> list;
@@ -191,6 +192,8 @@ namespace Squeal
     const ReductionPlan     plan         = reduction_plan(run.parameters);
     const FrictionlessModes frictionless = damped_modes(scene, run);
     const CoupledSystem    &coupled      = frictionless.linearisation.coupled;
+    if (run.parameters.output.write_system == SystemOutput::full)
+      write_scene_system(frictionless.linearisation, friction_parameter(run.parameters), "system/", run);
     measure_bases(plan, frictionless, plan.has_friction ? coupled : undamped(coupled),
                   plan.has_friction ? complex_reference(plan, frictionless, run) : real_reference(frictionless),
                   scene.model->free_map().n(), run);
@@ -201,6 +204,8 @@ namespace Squeal
   {
     const GivenSystem   given = given_system(run);
     const ReductionPlan plan  = reduction_plan(run.parameters, given.file, given.coupled, given.value);
+    if (run.parameters.output.write_system == SystemOutput::full)
+      write_system_again(given.file, "system/", run);
     if (!given.coupled.stiffness)
       {
         const ReferenceSolution reference = reference_of_system(direct_solution(given, run));
@@ -213,13 +218,15 @@ namespace Squeal
   }
 
   extern const Study reduction_study = [] {
-    Study study{"reduction", run_reduction_study, {"Reduction/"}, reduction_usage()};
+    Study study{"reduction", run_reduction_study, {"Reduction/", "Output/Write system"}, reduction_usage()};
+    study.rules.push_back({"Output/Write system", [](const Parameters &) -> Reason { return nullptr; }});
     study.rules.push_back({"Output/", [](const Parameters &) { return "the study writes no mode shapes"; }});
-    study.check = [](const Parameters &p) {
+    study.has_reduced_model = true;
+    study.check             = [](const Parameters &p) {
       const auto &pairs = p.contact.pairs;
       if (std::any_of(pairs.begin(), pairs.end(), [](const ContactPair &pair) { return pair.normal_stiffness > 0.; }))
         throw ParameterError("the bases of section Reduction require rigid contact", "parameter Contact/Pairs",
-                             "remove the normal stiffness, or choose Study = stability or sweep");
+                                         "remove the normal stiffness, or choose Study = stability or sweep");
       reduction_plan(p);
     };
     study.run_of_system = run_reduction_of_system;

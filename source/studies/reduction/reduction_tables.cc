@@ -23,6 +23,32 @@ namespace Squeal
     }
   } // namespace
 
+  double largest_error(const MeasuredBasis &candidate)
+  {
+    double result = 0.;
+    for (const ModeError &e : candidate.errors)
+      result = std::max(result, e.eigenvalue);
+    return result;
+  }
+
+  void write_reduced_system(const ReducedModel  &model,
+                            const ReductionPlan &plan,
+                            const MeasuredBasis &candidate,
+                            const int            number,
+                            Run                 &run)
+  {
+    if (run.parameters.output.write_system != SystemOutput::reduced)
+      return;
+    Columns<double> columns;
+    for (const FileParameter &parameter : plan.parameters)
+      columns.push_back({parameter.name, parameter.unit, [value = parameter.value](double) { return value; }});
+    columns.push_back({"largest error of lambda", "-", [](const double error) { return error; }, 1, true});
+    const double      largest = largest_error(candidate);
+    const std::string name    = candidate.truncation.empty() ? candidate.name : candidate.name + ", " + candidate.truncation;
+    write_reduced_system(model, {plan.parameters, "reduced model with the basis " + name, largest, Table(columns, std::vector{largest})},
+                         nullptr, text("system_", number, "/"), run);
+  }
+
   Table reduction_error_table(const std::vector<MeasuredBasis> &candidates, const ReferenceSolution &reference)
   {
     struct Row : GroupError

@@ -5,6 +5,7 @@
 #include <squeal/base/tasks.h>
 #include <squeal/studies/robustness/robustness.h>
 #include <squeal/studies/steps/parameter_usage.h>
+#include <squeal/studies/steps/written_system.h>
 
 #include <boost/serialization/utility.hpp>
 #include <boost/serialization/vector.hpp>
@@ -61,18 +62,19 @@ namespace Squeal
         run.progress.note(text("  continuing an interrupted study: ", known.size(), " of ", samples.size(), " samples are finished"));
     }
 
-    /// Solves the samples among the first @p n points of a contact set that are not known.
-    void solve_contact_set(SweepModel                         &model,
-                           const std::size_t                   n,
-                           const double                        tolerance,
-                           const Checkpoint                   *checkpoint,
-                           std::vector<std::optional<Sample>> &samples)
+    /// Solves the samples among the first @p n points of a contact set that are not known; returns the number of extensions of the basis.
+    int solve_contact_set(SweepModel                         &model,
+                          const std::size_t                   n,
+                          const int                           n_training,
+                          const double                        tolerance,
+                          const Checkpoint                   *checkpoint,
+                          std::vector<std::optional<Sample>> &samples)
     {
       std::vector<OperatingPoint> points;
       std::copy_if(model.regime.points.begin(), model.regime.points.begin() + static_cast<std::ptrdiff_t>(n), std::back_inserter(points),
                    [&](const OperatingPoint &point) { return !samples[point.line]; });
       if (points.empty())
-        return;
+        return 0;
       // Labels are found in parallel, for several points at a time
       constexpr std::size_t                   n_at_once = 128;
       std::vector<std::pair<int, ChartPoint>> kept;
@@ -93,11 +95,12 @@ namespace Squeal
         if (kept.size() == n_at_once)
           label();
       };
-      const ErrorControlledSweep result = solve_points(model, points, n_training_samples, tolerance, keep, "Samples");
+      const ErrorControlledSweep result = solve_points(model, points, n_training, tolerance, keep, "Samples");
       label();
       if (result.n_left > 0)
         model.run.warn(text(result.n_left, " samples miss the tolerance of ", tolerance, ": ", result.why_stopped,
                             "; they count as undecided. Raise the tolerance"));
+      return result.n_growths;
     }
 
     /// Writes the samples with the largest divergence rates as parameter files of stability runs.
@@ -150,7 +153,17 @@ namespace Squeal
     void run_samples(const SamplePlan &plan, const SampledSystems &systems, const std::string &model, Run &run)
     {
       const Checkpoint checkpoint(checkpoint_folder(run.folder().name()), study_key(run, model), run.communicator);
-      const auto [samples, followed] = solve_samples(systems, plan.n(), run.parameters.robustness.tolerance, run, &checkpoint);
+      const bool       writes_model = run.parameters.output.write_system == SystemOutput::reduced;
+      KeepModel        keep;
+      if (writes_model)
+        {
+          check_reduced_system(systems);
+          keep = [&](const std::size_t contact_set, const SweepModel &of_set, const auto &samples) {
+            write_reduced_system(systems, contact_set, plan, samples, of_set);
+          };
+        }
+      const auto [samples, followed] =
+        solve_samples(systems, plan.n(), run.parameters.robustness.tolerance, run, writes_model ? nullptr : &checkpoint, keep);
       write_samples(plan, samples, run);
       write_worst_samples(plan, samples, run);
       if (!followed.empty())
@@ -236,7 +249,8 @@ namespace Squeal
                               const int             n_samples,
                               const double          tolerance,
                               Run                  &run,
-                              const Checkpoint     *checkpoint)
+                              const Checkpoint     *checkpoint,
+                              const KeepModel      &keep)
   {
     SolvedSamples result{std::vector<std::optional<Sample>>(n_samples), std::vector<FollowedSample>(systems.plan.lines.size())};
     if (checkpoint)
@@ -244,16 +258,26 @@ namespace Squeal
     int n_vectors = 0;
     for (std::size_t i = 0; i < systems.plan.regimes.size(); ++i)
       {
-        const auto model = sample_model(systems, i, run);
-        solve_contact_set(*model, systems.n_samples[i], tolerance, checkpoint, result.samples);
+        const auto model     = sample_model(systems, i, run);
+        int        n_growths = solve_contact_set(*model, systems.n_samples[i], n_training_samples, tolerance, checkpoint, result.samples);
+        if (keep)
+          {
+            // All samples with the final basis, which the estimates of the written model refer to
+            while (model->reduced && n_growths > 0)
+              {
+                for (std::size_t k = 0; k < systems.n_samples[i]; ++k)
+                  result.samples[systems.plan.regimes[i].points[k].line].reset();
+                n_growths = solve_contact_set(*model, systems.n_samples[i], 0, tolerance, nullptr, result.samples);
+              }
+            keep(i, *model, result.samples);
+          }
         follow_samples(*model, systems.n_samples[i], result.followed);
         n_vectors = std::max(n_vectors, model->reduced ? model->reduced->size() : 0);
       }
     double worst = 0.;
     for (const std::optional<Sample> &sample : result.samples)
       if (sample)
-        for (const SampledMode &mode : *sample)
-          worst = std::max(worst, mode.error);
+        worst = std::max(worst, largest_error(*sample));
     run.count("basis vectors", n_vectors);
     run.measure("largest estimated error of lambda [-]", worst);
     return result;
@@ -266,7 +290,9 @@ namespace Squeal
     check_bands(run.parameters);
     const auto       nominal = [&run](const std::string &name) { return nominal_value(run.parameters, name); };
     const SamplePlan plan    = sample_plan(run.parameters.robustness, nominal, alike_pins(scene, run.parameters));
-    const BodyTerms  bodies  = assemble_scene(scene, run);
+    if (run.parameters.output.write_system == SystemOutput::full)
+      write_scene_system(damped_modes(scene, run).linearisation, friction_parameter(run.parameters), "system/", run);
+    const BodyTerms bodies = assemble_scene(scene, run);
     run_samples(plan, sampled_scene(scene, bodies, plan, run), model_key(scene), run);
   }
 
@@ -276,13 +302,16 @@ namespace Squeal
     SystemFile       file = read_system(run);
     const SamplePlan plan =
       sample_plan(run.parameters.robustness, [&](const std::string &name) { return value_in(file, name, run.parameters); }, {});
+    if (run.parameters.output.write_system == SystemOutput::full)
+      write_system_again(file, "system/", run);
     run_samples(plan, sampled_file(std::move(file), plan, run), system_key(run.parameters.system.path()), run);
   }
 
   extern const Study robustness_study = [] {
     const auto of_onsets = [](const Parameters &p) { return unless(p.robustness.n_onsets > 0, "Robustness/Samples with onsets = 0"); };
-    Study      study{"robustness", run_robustness_study, {"Robustness/"}};
+    Study      study{"robustness", run_robustness_study, {"Robustness/", "Output/Write system"}};
     study.rules = {
+      {"Output/Write system", [](const Parameters &) -> Reason { return nullptr; }},
       {"Operation/Rotation speed", no_sliding_speed},
       {"Complex modes/", [](const Parameters &) { return "samples are solved by a reduced model"; }},
       {"Output/", [](const Parameters &) { return "the study writes no mode shapes; parameter files of its worst samples do"; }}};
@@ -292,8 +321,9 @@ namespace Squeal
         study.own_parameters.push_back(path);
         study.rules.push_back({path, of_onsets});
       }
-    study.check         = [](const Parameters &p) { p.robustness.parsed_correlations(); };
-    study.run_of_system = run_robustness_of_system;
+    study.check             = [](const Parameters &p) { p.robustness.parsed_correlations(); };
+    study.run_of_system     = run_robustness_of_system;
+    study.has_reduced_model = true;
     return study;
   }();
 } // namespace Squeal

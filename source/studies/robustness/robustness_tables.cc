@@ -234,6 +234,14 @@ namespace Squeal
     }
   } // namespace
 
+  double largest_error(const Sample &sample)
+  {
+    double result = 0.;
+    for (const SampledMode &mode : sample)
+      result = std::max(result, mode.error);
+    return result;
+  }
+
   Table sample_table(const SamplePlan &plan, const Samples &samples)
   {
     using Row = int;
@@ -260,15 +268,7 @@ namespace Squeal
     columns.push_back({"growth rate", "1/s", leading([](const SampledMode &mode) { return mode.lambda.real(); })});
     columns.push_back({"divergence rate", "%", leading([](const SampledMode &mode) { return 100. * divergence_rate(mode); })});
     columns.push_back({"largest estimated error of lambda", "-",
-                       [&samples](const int s) -> Entry {
-                         if (!samples[s])
-                           return {};
-                         double result = 0.;
-                         for (const SampledMode &mode : *samples[s])
-                           result = std::max(result, mode.error);
-                         return result;
-                       },
-                       1, true});
+                       [&samples](const int s) -> Entry { return samples[s] ? Entry(largest_error(*samples[s])) : Entry(); }, 1, true});
     std::vector<int> all(plan.n());
     std::iota(all.begin(), all.end(), 0);
     return Table(columns, all);

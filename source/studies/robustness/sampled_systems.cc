@@ -199,7 +199,7 @@ namespace Squeal
     check_coefficients(parameters, samples);
 
     run.progress.begin("Samples");
-    SampledSystems                   result{sweep_plan(scene, std::vector<SweepLine>(), run), {}, {}, {}};
+    SampledSystems                   result{sweep_plan(scene, std::vector<SweepLine>(), run), {}, {}, {}, {}};
     std::vector<ParameterValues>     members(samples.n());
     std::vector<OperationParameters> operations(samples.n());
     run_tasks(samples.n(), [&](const int s) {
@@ -253,6 +253,7 @@ namespace Squeal
               result.plan.lines[s].values = values;
           }
         result.middles.push_back(std::move(family.middle));
+        result.scales.push_back(family.scales);
         if (!result.point)
           result.point = [&scene, &parameters, closed = regime.closed, family](const SamplePlan &further, const int s) {
             const Parameters     sample = with_sample(parameters, further, s);

@@ -230,6 +230,7 @@ namespace Squeal
                              plan.regimes.size(), " over the range"));
     SweepModel sweep(plan, *regime, run);
     evaluate_points(sweep);
+    write_system_of(sweep);
     std::optional<SweepChart> chart;
     if (p.sensitivity.thresholds)
       {
@@ -262,8 +263,10 @@ namespace Squeal
     Study      study{"sensitivity",
                 run_sensitivity_study,
                 {"Sensitivity/", "Sweep/First friction coefficient", "Sweep/Last friction coefficient",
-                      "Sweep/Number of friction coefficients", "Sweep/Tolerance", "Sweep/Maximum basis", "Sweep/Threshold tolerance"}};
-    study.rules         = {{"Output/", [](const Parameters &) { return "the study writes no mode shapes"; }},
+                      "Sweep/Number of friction coefficients", "Sweep/Tolerance", "Sweep/Maximum basis", "Sweep/Threshold tolerance",
+                      "Output/Write system"}};
+    study.rules         = {{"Output/Write system", [](const Parameters &) -> Reason { return nullptr; }},
+                           {"Output/", [](const Parameters &) { return "the study writes no mode shapes"; }},
                            {"Complex modes/", [](const Parameters &) { return "the study solves reduced models"; }},
                            {"Sweep/First friction coefficient", no_thresholds},
                            {"Sweep/Last friction coefficient", no_thresholds},

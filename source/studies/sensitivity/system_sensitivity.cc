@@ -5,6 +5,7 @@
 #include <squeal/sensitivity/eigenvalue_derivatives.h>
 #include <squeal/studies/sensitivity/sensitivity_results.h>
 #include <squeal/studies/steps/imported_modes.h>
+#include <squeal/studies/steps/written_system.h>
 
 #include <boost/range/irange.hpp>
 
@@ -83,6 +84,8 @@ namespace Squeal
                          {"growth rate per unit", "1/s", [](const Row &row) { return row.derivative.real(); }},
                          {"frequency per unit", "Hz", [](const Row &row) { return hertz(row.derivative.imag()); }}},
             rows));
+    if (run.parameters.output.write_system == SystemOutput::full)
+      write_system_again(file, "system/", run);
     run.finish();
   }
 } // namespace Squeal

@@ -112,7 +112,12 @@ namespace Squeal
 
   ReductionPlan reduction_plan(const Parameters &parameters)
   {
-    return plan_for(Problem(parameters), parameters, parameters.has_friction() ? parameters.operation.friction_coefficient : 0.);
+    ReductionPlan result =
+      plan_for(Problem(parameters), parameters, parameters.has_friction() ? parameters.operation.friction_coefficient : 0.);
+    FileParameter mu  = friction_parameter(parameters);
+    mu.value          = result.friction_coefficient;
+    result.parameters = fixed({mu});
+    return result;
   }
 
   ReductionPlan reduction_plan(const Parameters &parameters, const SystemFile &file, const CoupledSystem &system, const double value)
@@ -125,7 +130,12 @@ namespace Squeal
     problem.has_snapshots     = varied != nullptr && std::all_of(snapshots.begin(), snapshots.end(), [&](const double snapshot) {
                               return varied->lower <= snapshot && snapshot <= varied->upper;
                             });
-    const ReductionPlan plan  = plan_for(problem, parameters, value);
+    ReductionPlan plan        = plan_for(problem, parameters, value);
+    const auto    values      = system.at(value);
+    plan.parameters           = file.parameters;
+    for (FileParameter &parameter : plan.parameters)
+      parameter.value = values.at(parameter.name).front();
+    plan.parameters = fixed(plan.parameters);
     if (!problem.has_snapshots && (plan.rests_on(BasisSource::snapshots) || !problem.has_definite_part))
       throw ParameterError(varied == nullptr ? "the basis POD needs a parameter, and the system has none" :
                                                text("snapshots are outside the range of ", varied->name, " from ",

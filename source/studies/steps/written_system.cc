@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+#include <squeal/linear_algebra/multivector.h>
 #include <squeal/studies/steps/material_numbers.h>
 #include <squeal/studies/steps/written_system.h>
 #include <squeal/system/expression.h>
@@ -9,6 +10,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <ostream>
 
 namespace Squeal
 {
@@ -18,31 +20,6 @@ namespace Squeal
 
     /// Ranges extend by this factor below and above the value.
     constexpr double range_factor = 100.;
-
-    /// Parameters of a file, and the map from names in the terms to names in the file.
-    struct NamedParameters
-    {
-      std::vector<FileParameter>         parameters;
-      std::map<std::string, std::string> names;
-
-      /// Adds a parameter of the terms under a unique name; parameters with the same description are merged.
-      void name(const std::string &of_terms, FileParameter parameter)
-      {
-        const auto find = [&](std::string FileParameter::*text, const std::string &wanted) {
-          return std::find_if(parameters.begin(), parameters.end(), [&](const FileParameter &known) { return known.*text == wanted; });
-        };
-        if (const auto known = find(&FileParameter::description, parameter.description); known != parameters.end())
-          {
-            names[of_terms] = known->name;
-            return;
-          }
-        const std::string name = parameter.name;
-        for (int n = 2; find(&FileParameter::name, parameter.name) != parameters.end(); ++n)
-          parameter.name = Squeal::text(name, "_", n);
-        names[of_terms] = parameter.name;
-        parameters.push_back(parameter);
-      }
-    };
 
     /// Converts to lower case and replaces each run of non-alphanumeric characters by _.
     std::string identifier(const std::string &text)
@@ -76,42 +53,6 @@ namespace Squeal
                          scaled_parameter(owner + " " + number.name, value, number.unit,
                                           materials.section_of(volume) + (has_own ? ": " + volume + ", " : "/") + number.name));
         }
-    }
-
-    NamedParameters named_parameters(const Linearisation &linearisation, const FileParameter &friction, const Parameters &parameters)
-    {
-      NamedParameters result;
-      result.name(SystemParameter::friction, friction);
-      if (parameters.needs_steady_sliding() || !parameters.damping.modal_ratios.empty())
-        return result;
-      name_materials(result, linearisation.scene->model->volume_names(), parameters.materials);
-      for (const MountParameter &mount : mount_parameters(parameters.materials))
-        result.name(mount.name, scaled_parameter(mount.name, mount.value, mount.unit, mount.path));
-      for (const ContactSpring &spring : linearisation.contact.springs)
-        result.name(spring.name, scaled_parameter(spring.name, spring.stiffness, "N/m^3", "Contact/Pairs: " + spring.name));
-      if (parameters.operation.rotating_disc)
-        {
-          FileParameter speed = scaled_parameter(BodyParameter::angular_velocity, parameters.operation.angular_velocity(), "rad/s",
-                                                 "Operation/Rotation speed, positive about z");
-          if (parameters.has_contact_damping()) // depends on the speed as well
-            speed.lower = speed.upper = speed.value;
-          result.name(BodyParameter::angular_velocity, speed);
-        }
-      return result;
-    }
-
-    /// Renames the parameters of a monomial. With all p = 1 it equals its factor, and its derivatives are the factor times the exponents.
-    Coefficient in_names(const Coefficient &monomial, const std::map<std::string, std::string> &names)
-    {
-      ParameterValues ones;
-      for (const auto &[of_terms, of_file] : names)
-        ones[of_terms] = {1.};
-      const double               factor = monomial.at(ones);
-      std::map<std::string, int> powers;
-      for (const auto &[of_terms, of_file] : names)
-        if (monomial.contains(of_terms))
-          powers[of_file] += static_cast<int>(std::lround(monomial.derivative(of_terms, ones) / factor));
-      return {factor, powers};
     }
 
     /// Terms of the bodies in the parameters of the file; terms with the same coefficient are summed.
@@ -191,6 +132,66 @@ namespace Squeal
     }
   } // namespace
 
+  void NamedParameters::name(const std::string &of_terms, FileParameter parameter)
+  {
+    const auto find = [&](std::string FileParameter::*text, const std::string &wanted) {
+      return std::find_if(parameters.begin(), parameters.end(), [&](const FileParameter &known) { return known.*text == wanted; });
+    };
+    if (const auto known = find(&FileParameter::description, parameter.description); known != parameters.end())
+      {
+        names[of_terms] = known->name;
+        return;
+      }
+    const std::string name = parameter.name;
+    for (int n = 2; find(&FileParameter::name, parameter.name) != parameters.end(); ++n)
+      parameter.name = Squeal::text(name, "_", n);
+    names[of_terms] = parameter.name;
+    parameters.push_back(parameter);
+  }
+
+  NamedParameters named_parameters(const Linearisation &linearisation, const FileParameter &friction, const Parameters &parameters)
+  {
+    NamedParameters result;
+    result.name(SystemParameter::friction, friction);
+    if (parameters.needs_steady_sliding() || !parameters.damping.modal_ratios.empty())
+      return result;
+    name_materials(result, linearisation.scene->model->volume_names(), parameters.materials);
+    for (const MountParameter &mount : mount_parameters(parameters.materials))
+      result.name(mount.name, scaled_parameter(mount.name, mount.value, mount.unit, mount.path));
+    for (const ContactSpring &spring : linearisation.contact.springs)
+      result.name(spring.name, scaled_parameter(spring.name, spring.stiffness, "N/m^3", "Contact/Pairs: " + spring.name));
+    if (parameters.operation.rotating_disc)
+      {
+        FileParameter speed = scaled_parameter(BodyParameter::angular_velocity, parameters.operation.angular_velocity(), "rad/s",
+                                               "Operation/Rotation speed, positive about z");
+        if (parameters.has_contact_damping()) // depends on the speed as well
+          speed.lower = speed.upper = speed.value;
+        result.name(BodyParameter::angular_velocity, speed);
+      }
+    return result;
+  }
+
+  Coefficient in_names(const Coefficient &monomial, const std::map<std::string, std::string> &names)
+  {
+    ParameterValues ones;
+    for (const auto &[of_terms, of_file] : names)
+      ones[of_terms] = {1.};
+    // With all p = 1, a monomial equals its factor, and its derivatives are the factor times the exponents
+    const double               factor = monomial.at(ones);
+    std::map<std::string, int> powers;
+    for (const auto &[of_terms, of_file] : names)
+      if (!of_file.empty() && monomial.contains(of_terms))
+        powers[of_file] += static_cast<int>(std::lround(monomial.derivative(of_terms, ones) / factor));
+    return {factor, powers};
+  }
+
+  std::vector<FileParameter> fixed(std::vector<FileParameter> parameters)
+  {
+    for (FileParameter &parameter : parameters)
+      parameter.lower = parameter.upper = parameter.value;
+    return parameters;
+  }
+
   ShapePoints displacements_of_nodes(const Model &model)
   {
     std::vector<Node>   own;
@@ -224,11 +225,12 @@ namespace Squeal
     return result;
   }
 
-  void write_system(const std::vector<Term> &terms,
-                    const ParameterValues   &weights,
-                    const SystemNotes       &notes,
-                    const std::string       &folder,
-                    Run                     &run)
+  /// Writes a system file to a folder of the results, as a step of the run.
+  static void write_system(const std::vector<Term> &terms,
+                           const ParameterValues   &weights,
+                           const SystemNotes       &notes,
+                           const std::string       &folder,
+                           Run                     &run)
   {
     run.progress.begin("System file");
     write_system(terms, weights, notes, [&](const std::string &name, const std::function<void(std::ostream &)> &content) {
@@ -251,6 +253,29 @@ namespace Squeal
                  {named.parameters, "coupled system, displacements in m, forces in N; groups exclude the dofs eliminated by the contact",
                   groups_of_bodies(model, kernel), points},
                  folder, run);
+  }
+
+  void write_reduced_system(const ReducedModel                                    &model,
+                            const ReductionNotes                                  &notes,
+                            const std::function<Coefficient(const Coefficient &)> &rename,
+                            const std::string                                     &folder,
+                            Run                                                   &run)
+  {
+    std::vector<Term> terms = model.system().terms;
+    if (rename)
+      for (Term &term : terms)
+        term.coefficient = rename(term.coefficient);
+    write_system(terms, model.full_order().values,
+                 {notes.parameters, notes.description, {}, {}, Reduction{"basis.mtx", "points.csv", notes.tolerance}}, folder, run);
+    run.folder().write(folder + "basis.mtx", [&](std::ostream &stream) {
+      const MultiVector  &T      = model.basis();
+      const SparseMatrix &kernel = *model.full_order().kernel;
+      stream << "%%MatrixMarket matrix array real general\n" << kernel.n_rows() << ' ' << T.n_columns() << '\n';
+      stream.precision(17);
+      for (int j = 0; j < T.n_columns(); ++j)
+        stream << replicate(kernel * view(T, j, 1)) << '\n';
+    });
+    run.folder().write(folder + "points.csv", [&](std::ostream &stream) { notes.points.write_csv(stream); });
   }
 
   void write_system_again(const SystemFile &file, const std::string &folder, Run &run)

@@ -361,8 +361,9 @@ namespace Squeal
       {"Sweep/Last map value", map_axis},
       {"Sweep/Number of map values", map_axis},
       {"Sweep/Map friction coefficients", map_axis}};
-    study.check         = check_map;
-    study.run_of_system = run_sweep_of_system;
+    study.check             = check_map;
+    study.run_of_system     = run_sweep_of_system;
+    study.has_reduced_model = true;
     return study;
   }();
 } // namespace Squeal

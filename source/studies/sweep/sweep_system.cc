@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#include <squeal/linear_algebra/multivector.h>
 #include <squeal/studies/steps/written_system.h>
 #include <squeal/studies/sweep/sweep_charts.h>
-
-#include <ostream>
 
 namespace Squeal
 {
@@ -38,17 +35,6 @@ namespace Squeal
               }
         }
       return result;
-    }
-
-    /// T on the dofs of the bodies or of the file, as a dense Matrix Market file. Collective.
-    void write_basis(const ReducedModel &model, std::ostream &stream)
-    {
-      const MultiVector  &T      = model.basis();
-      const SparseMatrix &kernel = *model.full_order().kernel;
-      stream << "%%MatrixMarket matrix array real general\n" << kernel.n_rows() << ' ' << T.n_columns() << '\n';
-      stream.precision(17);
-      for (int j = 0; j < T.n_columns(); ++j)
-        stream << replicate(kernel * view(T, j, 1)) << '\n';
     }
 
     /// Largest error of λ at every point.
@@ -91,14 +77,10 @@ namespace Squeal
           else
             for (const auto &[place, point] : model.known)
               errors[place] = model.largest_error(point);
-          const ReducedModel &reduced = of_snapshots ? *of_snapshots : model.reduced->reduced();
-          write_system(reduced.system().terms, linearisation.coupled.values,
-                       {parameters, "reduced model", {}, {}, Reduction{"basis.mtx", "points.csv", run.parameters.sweep.tolerance}}, folder,
-                       run);
-          run.folder().write(folder + "basis.mtx", [&](std::ostream &stream) { write_basis(reduced, stream); });
-          run.folder().write(folder + "points.csv", [&](std::ostream &stream) {
-            point_table(model, errors, of_snapshots ? "largest error of lambda" : "largest estimated error of lambda").write_csv(stream);
-          });
+          write_reduced_system(of_snapshots ? *of_snapshots : model.reduced->reduced(),
+                               {parameters, "reduced model", run.parameters.sweep.tolerance,
+                                point_table(model, errors, of_snapshots ? "largest error of lambda" : "largest estimated error of lambda")},
+                               nullptr, folder, run);
       }
   }
 } // namespace Squeal

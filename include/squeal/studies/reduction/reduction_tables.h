@@ -22,6 +22,14 @@ namespace Squeal
     std::vector<ModeError> errors = {};
   };
 
+  /// Largest error of λ of the modes of a basis relative to the reference.
+  double largest_error(const MeasuredBasis &candidate);
+
+  /// `Output/Write system = reduced`: writes the reduced model of a basis, as a step of the run.
+  ///
+  /// @param number of the basis, counted from one
+  void write_reduced_system(const ReducedModel &model, const ReductionPlan &plan, const MeasuredBasis &candidate, int number, Run &run);
+
   /// Full-order modes as reference for the bases.
   struct ReferenceSolution
   {

@@ -4,6 +4,7 @@
 
 #include <squeal/studies/designs/design_work.h>
 #include <squeal/studies/robustness/uncertainty.h>
+#include <squeal/studies/steps/system_family.h>
 #include <squeal/studies/sweep/sweep_charts.h>
 
 namespace Squeal
@@ -64,6 +65,7 @@ namespace Squeal
     SweepPlan                      plan;      ///< one line for each sample that is followed over the friction coefficient
     std::vector<FrictionlessModes> middles;   ///< modes at the mean sample of each contact set in the plan
     std::vector<std::size_t>       n_samples; ///< number of samples in each contact set, the first points; the others belong to lines
+    std::vector<FamilyScales>      scales;    ///< of each contact set of a meshed model
 
     /// Converts an additional sample to a point of the first contact set; its `line` is the index of the sample.
     std::function<OperatingPoint(const SamplePlan &, int sample)> point;
@@ -95,6 +97,9 @@ namespace Squeal
 
   /// Modes of a sample in ascending order of frequency.
   using Sample = std::vector<SampledMode>;
+
+  /// Largest estimated error of λ of the modes [-].
+  double largest_error(const Sample &sample);
 
   /// Onsets of the modes of a sample over the friction coefficient.
   struct FollowedSample
@@ -130,13 +135,27 @@ namespace Squeal
                                     const KeepPoint                   &keep,
                                     const std::string                 &name);
 
+  /// Receives a contact set with its model and the samples known so far, when all samples of the set are solved.
+  using KeepModel = std::function<void(std::size_t contact_set, const SweepModel &, const std::vector<std::optional<Sample>> &)>;
+
   /// Solves all samples with one reduced model for each contact set, as steps of the run. Samples known from an interrupted run are taken
   /// from the @p checkpoint, if there is one, and others stored there.
   SolvedSamples solve_samples(const SampledSystems &systems,
                               int                   n_samples,
                               double                tolerance,
                               Run                  &run,
-                              const Checkpoint     *checkpoint = nullptr);
+                              const Checkpoint     *checkpoint = nullptr,
+                              const KeepModel      &keep       = nullptr);
+
+  /// Throws ParameterError if the reduced models of the samples cannot be written as system files.
+  void check_reduced_system(const SampledSystems &systems);
+
+  /// `Output/Write system = reduced`: writes the reduced model of a contact set, valid in the box that its samples cover.
+  void write_reduced_system(const SampledSystems                     &systems,
+                            std::size_t                               contact_set,
+                            const SamplePlan                         &plan,
+                            const std::vector<std::optional<Sample>> &samples,
+                            const SweepModel                         &model);
 
   /// Follows the modes of lines over the friction coefficient with the basis of the samples, which is extended if a point misses
   /// Sweep/Tolerance, as a step of the run.

@@ -3,8 +3,8 @@
 #pragma once
 
 #include <squeal/bases/basis_recipes.h>
-#include <squeal/system/system_file.h>
 #include <squeal/studies/steps/friction_modes.h>
+#include <squeal/studies/steps/written_system.h>
 
 namespace Squeal
 {
@@ -15,6 +15,7 @@ namespace Squeal
     bool                             has_friction;               ///< complex modes; else real ones
     double                           friction_coefficient;       ///< 0 without friction
     double                           largest_circular_frequency; ///< end of the band [rad/s]
+    std::vector<FileParameter>       parameters;                 ///< of the system, at their given values
 
     /// True if one of the bases needs this source.
     bool rests_on(BasisSource source) const;

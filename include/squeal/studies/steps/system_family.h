@@ -10,14 +10,15 @@ namespace Squeal
   /// its matrices.
   std::string text_without_coefficients(Parameters parameters);
 
+  /// For each scale of a family, the factor and the coefficient of a term whose product is the scale.
+  using FamilyScales = std::map<std::string, std::pair<double, Coefficient>>;
+
   /// Systems on one mesh that differ in the coefficients of their terms, with the modes of the one in the middle.
   struct SystemFamily
   {
     TermFamily        terms;
     FrictionlessModes middle; ///< with the system of the family, including damping; real modes and factor are undamped
-
-    /// For each scale, the coefficient of a term of which it is a multiple.
-    std::map<std::string, std::pair<double, Coefficient>> scales;
+    FamilyScales      scales;
 
     /// Scales of a member at other parameter values of the bodies. Valid if the members that define the family cover all variations
     /// independently: terms with a fixed ratio there must keep it.

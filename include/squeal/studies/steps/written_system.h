@@ -2,6 +2,8 @@
 
 #pragma once
 
+#include <squeal/output/table.h>
+#include <squeal/reduction/reduced_model.h>
 #include <squeal/studies/steps/scene.h>
 #include <squeal/system/system_file.h>
 
@@ -11,27 +13,51 @@ namespace Squeal
   /// it.
   FileParameter friction_parameter(const Parameters &parameters);
 
+  /// Parameters of a system file for a meshed model, and their names there by names in the terms.
+  struct NamedParameters
+  {
+    std::vector<FileParameter>         parameters;
+    std::map<std::string, std::string> names;
+
+    /// Adds a parameter of the terms under a unique name; parameters with the same description are merged.
+    void name(const std::string &of_terms, FileParameter parameter);
+  };
+
+  /// μ and, if the contact state and modal damping do not depend on them, the nonzero constants of materials, mounts, contact springs and
+  /// rotation that are factors of terms, with a range of 0.01 to 100 times their values.
+  NamedParameters named_parameters(const Linearisation &linearisation, const FileParameter &friction, const Parameters &parameters);
+
+  /// Parameters with ranges that contain only their values.
+  std::vector<FileParameter> fixed(std::vector<FileParameter> parameters);
+
+  /// A monomial with renamed parameters; parameters with an empty new name are replaced by one.
+  Coefficient in_names(const Coefficient &monomial, const std::map<std::string, std::string> &names);
+
   /// Positions of the nodes that are not clamped, and their displacements by the free dofs of the bodies. Collective.
   ShapePoints displacements_of_nodes(const Model &model);
 
-  /**
-   * Writes the coupled system of a mesh as a system file in a folder of the results, as a step of the run: its terms, the bodies as groups
-   * of dofs, and the free nodes as points.
-   *
-   * Parameters are μ and, if the contact state and modal damping do not depend on them, the nonzero constants of materials, mounts, contact
-   * springs and rotation that are factors of terms, with a range of 0.01 to 100 times their values.
-   *
-   * @param friction μ
-   */
+  /// Writes the coupled system of a mesh as a system file in a folder of the results, as a step of the run: its terms with
+  /// named_parameters(), the bodies as groups of dofs, and the free nodes as points.
   void write_scene_system(const Linearisation &linearisation, const FileParameter &friction, const std::string &folder, Run &run);
 
   /// Writes a system file unchanged.
   void write_system_again(const SystemFile &file, const std::string &folder, Run &run);
 
-  /// Writes other terms, such as those of a reduced model, as a step of the run.
-  void write_system(const std::vector<Term> &terms,
-                    const ParameterValues   &weights,
-                    const SystemNotes       &notes,
-                    const std::string       &folder,
-                    Run                     &run);
+  /// Data of a reduced model in a system file.
+  struct ReductionNotes
+  {
+    std::vector<FileParameter> parameters; ///< with the range of the model
+    std::string                description;
+    double                     tolerance; ///< of the errors of λ
+    Table                      points;    ///< points at which the model was evaluated, with the largest errors of λ
+  };
+
+  /// Writes a reduced model with its basis on the dofs of the bodies or of the file, as a step of the run. Collective.
+  ///
+  /// @param rename replaces the coefficients of the terms; null: keeps them
+  void write_reduced_system(const ReducedModel                                    &model,
+                            const ReductionNotes                                  &notes,
+                            const std::function<Coefficient(const Coefficient &)> &rename,
+                            const std::string                                     &folder,
+                            Run                                                   &run);
 } // namespace Squeal
