@@ -208,16 +208,18 @@ namespace Squeal
     declarations.enter("Accuracy study");
     declarations.add(
       "Mesh factors", factors, "none",
-      "Mesh refinements relative to the section Geometry, in every direction, separated by commas: they scale element size, layers and "
-      "nodes per pin face. Two or more; three give an order of convergence.",
+      "Mesh refinement factors relative to the section Geometry, in every direction, separated by commas. They scale element size, layers "
+      "and nodes per pin face. At least two factors are required; three factors also yield an order of convergence.",
       {0.1, 10.}, 20);
     add_list(declarations, "Elements", elements, "Elements to be compared.");
-    add_list(declarations, "Outlines", outlines, "Outlines of meshes with straight edges; quadratic elements follow the circles.");
+    add_list(declarations, "Outlines", outlines,
+             "Outlines to be compared, for meshes with straight edges; quadratic elements follow the circles.");
     declarations.add_text(
       "Bases", "Names of reduced bases to be compared with full order, separated by commas, as in the section Reduction; empty: none.",
       [this] { return boost::algorithm::join(bases, ", "); }, [this](const std::string &text) { bases = split(text); });
     declarations.add("Grown tolerance", grown_tolerance, "none",
-                     "Estimated relative error of lambda at which `residual-grown` bases are complete.", {1e-11, 1e-1});
+                     "A `residual-grown` basis is complete when the estimated relative error of every lambda is below this tolerance.",
+                     {1e-11, 1e-1});
     declarations.add("Largest number of dofs", largest_dofs, "none", "Meshes with more dofs are skipped.", {1.});
     declarations.add(
       "Band margin", margin, "none",

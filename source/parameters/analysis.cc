@@ -18,26 +18,27 @@ namespace Squeal
     declarations.enter("Discretization");
     declarations.add(
       "Element", element,
-      "Hexahedra. trilinear: 8 nodes, too stiff in bending. incompatible modes: 8 nodes and additional quadratic displacements inside "
-      "each element (Wilson, Taylor), accurate in bending with the same number of unknowns. quadratic: 27 nodes, follows curved "
-      "boundaries.");
+      "Element type, described here for hexahedra. trilinear: 8 nodes, too stiff in bending. incompatible modes: 8 nodes and additional "
+      "quadratic displacements inside each element (Wilson, Taylor), accurate in bending with the same number of unknowns. quadratic: 27 "
+      "nodes; the elements follow curved boundaries.");
     declarations.add(
       "Coarser mesh", coarser_mesh,
-      "A second mesh for estimates of the discretisation error of each mode, from the difference between both meshes: parameters of the "
-      "section Geometry with values of the coarser mesh, such as disc_size = 0.019, pad_size = 0.012; or a file (.geo, .msh). The "
-      "difference covers the error if elements are about twice as large. Accuracy chooses its own coarser mesh. Empty: no error estimate.");
+      "Second mesh, used to estimate the discretisation error of each mode from the difference between both meshes: parameters of the "
+      "section Geometry with their values for the coarser mesh, for example disc_size = 0.019, pad_size = 0.012; or a file (.geo, .msh). "
+      "The difference is at least as large as the error if the elements of the coarser mesh are about twice as large. If Accuracy is set, "
+      "the program chooses the coarser mesh. Empty: no error estimate.");
 
     declarations.enter("Band");
     declarations.add(
       "Maximum frequency", maximum_frequency, "Hz",
-      "Upper end of the band in which all modes are computed. Coulomb friction is ill-posed in the limit of fine meshes: results hold in "
-      "a stated band.",
+      "Upper end of the frequency band in which all modes are computed. Results are valid only in a finite band, because the problem with "
+      "Coulomb friction is ill-posed in the limit of fine meshes.",
       {0.});
     declarations.add(
       "Maximum rate", maximum_rate, "1/s",
-      "Largest |Re lambda| of the modes in the band. Modes that decay faster are not listed; modes that grow faster are. The argument "
-      "principle (Sweep/Count modes at; stability run on a system file, on one process) counts the modes up to this rate; the stability "
-      "run fails if the count differs from the number of modes found. 0: all modes with |lambda| up to 1.005 times the circular "
+      "Largest |Re lambda| of the modes in the band. Modes that decay faster are not listed; modes that grow faster are listed. The "
+      "argument principle (Sweep/Count modes at; stability run on a system file, on one process) counts the modes up to this rate; the "
+      "stability run fails if the count differs from the number of modes found. 0: all modes with |lambda| up to 1.005 times the circular "
       "frequency of the band end are listed, and counts use 0.1 times that frequency.",
       {0.});
   }
@@ -57,25 +58,25 @@ namespace Squeal
   {
     declarations.enter("Real modes");
     declarations.add("Solver", real_solver,
-                     "Shift-invert eigensolver of the symmetric problem: block Lanczos; block Krylov-Schur (Anasazi) and implicitly "
-                     "restarted Lanczos (ARPACK) as independent checks.");
-    declarations.add("Tolerance", real_tolerance, "none", "Largest relative residual of a real mode.", {1e-14, 1e-4});
+                     "Shift-invert eigensolver for the symmetric problem. block Lanczos: the recommended method. Anasazi (block "
+                     "Krylov-Schur) and ARPACK (implicitly restarted Lanczos): for independent checks.");
+    declarations.add("Tolerance", real_tolerance, "none", "Maximum relative residual of a real mode.", {1e-14, 1e-4});
     declarations.add(
       "Maximum number of modes", maximum_modes, "none",
-      "Largest number of coupled modes in the band; the run stops before computing more. 500 modes take minutes and gigabytes, twice as "
-      "many up to eight times as long.",
+      "Maximum number of coupled modes in the band; if the band contains more modes, the run stops before they are computed. 500 modes "
+      "require minutes and gigabytes; twice as many modes take up to eight times as long.",
       {1});
 
     declarations.enter("Complex modes");
     declarations.add(
       "Solver", complex_solver,
-      "Krylov: shift-invert block Krylov on the quadratic pencil at full order (the reference). residual iteration: a basis of real "
-      "modes enriched by right and left residuals, with one Cholesky factor for every friction coefficient.");
+      "Krylov: shift-invert block Krylov method for the quadratic pencil at full order (the reference). residual iteration: a basis of "
+      "real modes enriched by right and left residuals, with one Cholesky factor for every friction coefficient.");
     declarations.add(
       "Shift inverse", shift_inverse,
-      "Inverse of the nonsymmetric stiffness in the Krylov solver: Cholesky factor of the frictionless system with a correction of rank "
-      "n_c, or LU factors of the nonsymmetric sparse matrix.");
-    declarations.add("Tolerance", complex_tolerance, "none", "Largest relative residual of a complex mode of the Krylov solver.",
+      "Inverse of the nonsymmetric stiffness in the Krylov solver. updated Cholesky: Cholesky factor of the frictionless system with a "
+      "correction of rank n_c. sparse LU: LU factors of the nonsymmetric sparse matrix.");
+    declarations.add("Tolerance", complex_tolerance, "none", "Maximum relative residual of a complex mode of the Krylov solver.",
                      {1e-13, 1e-4});
     declarations.add("Iteration tolerance", iteration_tolerance, "none",
                      "Estimated relative error of lambda at which the residual iteration ends.", {1e-12, 1e-2});
@@ -83,36 +84,37 @@ namespace Squeal
 
     declarations.enter("Linear algebra");
     declarations.add("Factorization", library,
-                     "Sparse direct solver for symmetric matrices; automatic: CHOLMOD on one process, MUMPS on several.");
+                     "Sparse direct solver for symmetric matrices. automatic: CHOLMOD on one process, MUMPS on several.");
     declarations.add(
       "Threads", n_threads, "none",
-      "Threads per process, for concurrent friction coefficients, matrix products, solves and large factorisations. 0: OMP_NUM_THREADS, "
-      "or the number of cores of the process. Results do not depend on it.",
+      "Number of threads per process, used for concurrent friction coefficients, matrix products, solves and large factorisations. 0: "
+      "OMP_NUM_THREADS, or the number of cores of the process. Results do not depend on the number of threads.",
       {0, 1024});
     declarations.add("BLAS threads", blas_threads, "none",
-                     "Threads of dense kernels per process; more than one pays off only on idle cores.", {1, 256});
+                     "Number of threads of dense kernels per process; more than one thread is useful only on idle cores.", {1, 256});
   }
 
   void OutputParameters::declare(Declarations &declarations)
   {
     declarations.enter("Output");
-    declarations.add("Mode shapes", fields, "Complex modes written as fields.");
+    declarations.add("Mode shapes", fields, "Selects the complex modes that are written as fields.");
     declarations.add("Component mode shapes", component_fields,
-                     "Also writes the mode shapes of the disc alone and of the pins alone, free and sliding.");
+                     "Also writes the mode shapes of the separate components, disc and pins, free and sliding.");
     declarations.add("Real mode shapes", real_fields, "Also writes the shapes of coupled modes without friction.");
-    declarations.add("Animation frames", animation_frames, "none", "Frames per period in the animation of an unstable mode; 0: none.",
-                     {0, 1000});
+    declarations.add("Animation frames", animation_frames, "none",
+                     "Number of frames per period in the animation of an unstable mode; 0: no animation.", {0, 1000});
     declarations.add("Animation periods", animation_periods, "none", "Number of periods in an animation.", {1, 1000});
     declarations.add("Animation growth", animation_growth,
-                     "Scales the mode by its growth e^(R t): by a factor of e in 1 / (2 pi divergence rate) periods, 16 of them at 1 %.");
+                     "Scales the mode by its growth e^(R t), a factor of e in 1 / (2 pi divergence rate) periods: 16 periods at a "
+                     "divergence rate of 1 %.");
     declarations.add(
       "Write matrices", write_matrices,
       "Writes M, C (material damping), K, C_b (contact damping), P_n, P_t, P_b, K_n, T_c of the closed contact nodes in Matrix Market "
-      "form, and the node coordinates.");
+      "format, and the node coordinates.");
     declarations.add(
       "Write system", write_system,
-      "Writes the coupled system to the folder system of the results, which System reads. full: all terms. reduced: the reduced model, of "
-      "a sweep with Sweep/Tolerance from the first to the last value, of Study = robustness with Robustness/Tolerance in the box of its "
-      "samples, or of each basis of Study = reduction at the given values.");
+      "Writes the coupled system to the folder system in the results, which the parameter System can read. full: all terms. reduced: the "
+      "reduced model of a sweep, accurate to Sweep/Tolerance between the first and the last value; of Study = robustness, accurate to "
+      "Robustness/Tolerance within the ranges of its samples; or of each basis of Study = reduction, at the given values.");
   }
 } // namespace Squeal

@@ -100,13 +100,14 @@ namespace Squeal
     declarations.add_text(
       "Pairs",
       "Pairs of sliding surfaces, as a list `surface of the disc / surface of another body: friction factor, normal stiffness; ...`. The "
-      "factor, by default 1, multiplies Operation/Friction coefficient; the stiffness is that of springs between the faces, without "
-      "which contact is rigid. The meshes need not match: faces with different nodes are coupled by mortar elements. Units: none, N/m^3.",
+      "factor (default: 1) multiplies Operation/Friction coefficient. The stiffness is that of springs between the faces; if it is "
+      "omitted, the contact is rigid. The meshes need not match: faces with different nodes are coupled by mortar elements. Units: none, "
+      "N/m^3.",
       [this] { return print(pairs); }, [this](const std::string &text) { pairs = parse(text); });
     declarations.add_text(
       "Tied",
-      "Bonded surfaces, as a list `surface / other surface; ...`: nodes of the first one follow the second one, and the volumes become "
-      "one body. The meshes need not match; the first should be the smaller, finer or softer one. Units: none.",
+      "Bonded surfaces, as a list `surface / other surface; ...`: the nodes of the first surface follow the second surface, and the "
+      "volumes become one body. The meshes need not match; the first surface should be the smaller, finer or softer one. Units: none.",
       [this] { return print_tied(tied); }, [this](const std::string &text) { tied = parse_tied(text); });
   }
 

@@ -11,8 +11,8 @@ namespace Squeal
     declarations.enter("Designs");
     declarations.add(
       "Plan", choice,
-      "Choice of the designs. one at a time: the given model, then every level of each variable. Latin hypercube and Sobol sequence: "
-      "samples of the ranges. file: rows of a CSV file.");
+      "Method of choosing the designs. full grid: all combinations of the levels. one at a time: the given model, then every level of each "
+      "variable. Latin hypercube and Sobol sequence: samples of the ranges. file: rows of a CSV file.");
     declarations.add(
       "Variables", variables,
       "Varied parameters and their values, as `Section/Name = values; ...`. Values are a list `a, b, c` (`a | b` if values contain "
@@ -25,7 +25,8 @@ namespace Squeal
     declarations.add("Number of designs", n_samples, "none", "Number of samples of a Latin hypercube or a Sobol sequence.", {1., 1e5});
     declarations.add("Seed", seed, "none", "Seed of the random numbers: equal seeds give equal designs.", {0., 2147483647.});
     declarations.add("Processes", n_processes, "none",
-                     "Concurrent solutions of designs on this machine, or per MPI process; 0: one for each core.", {0., 1024.});
+                     "Number of designs that are solved concurrently on this machine, or per MPI process; 0: one for each core.",
+                     {0., 1024.});
   }
 
   void SearchParameters::declare(Declarations &declarations)
@@ -34,13 +35,14 @@ namespace Squeal
     declarations.add(
       "Goal", goal,
       "Objective of the search within the ranges of Designs/Variables. onset: maximise the smallest friction coefficient at which a "
-      "divergence rate exceeds 0.01 %. divergence rate: minimise the largest one between the first and the last friction coefficient of "
-      "the section Sweep. probability: minimise the probability of squeal with the uncertain parameters of Robustness/Distributions. "
-      "quantile: minimise a quantile of the largest divergence rate of the samples.");
-    declarations.add("Quantile", quantile, "none", "Probability level of the quantile for the goal quantile.", {0.01, 0.999});
+      "divergence rate exceeds 0.01 %. divergence rate: minimise the largest divergence rate between the first and the last friction "
+      "coefficient of the section Sweep. probability: minimise the probability of squeal with the uncertain parameters of "
+      "Robustness/Distributions. quantile: minimise a quantile of the largest divergence rate of the samples.");
+    declarations.add("Quantile", quantile, "none", "Probability level of the quantile if Goal = quantile.", {0.01, 0.999});
     declarations.add("Method", method, "Derivative-free method of NLopt.");
     declarations.add("Samples", n_samples, "none",
-                     "Number of points of a Sobol sequence evaluated first; the method starts from the best ones.", {1., 1e5});
+                     "Number of points of a Sobol sequence that are evaluated first; the method starts from the best of these points.",
+                     {1., 1e5});
     declarations.add("Evaluations", n_evaluations, "none", "Maximum number of solved designs, including samples.", {1., 1e5});
     declarations.add("First step", first_step, "none", "First step of the method, as a fraction of each range.", {1e-6, 0.5});
     declarations.add("Smallest step", smallest_step, "none", "The method ends when its steps are smaller than this fraction of each range.",

@@ -191,56 +191,56 @@ namespace Squeal
     declarations.enter("Geometry");
     declarations.add(
       "File", file,
-      "Plan or mesh of disc and pins: a Gmsh geometry (.geo) or mesh (.msh). The program looks in the folder of the parameter file, in "
-      "the current directory, then among the supplied geometries. A file with physical volumes is a solid model and used unchanged; one "
-      "with physical surfaces and curves only is a plan to be extruded. A .geo can use every parameter below, and its own variables "
-      "(DefineConstant, DefineNumber) become parameters of this section.");
+      "Geometry or mesh of disc and pins: a Gmsh script (.geo) or a Gmsh mesh (.msh). The program looks in the folder of the parameter "
+      "file, in the current directory, then among the supplied geometries. A file with physical volumes is a solid model and is used "
+      "unchanged. A file with only physical surfaces and curves is a plan: a planar geometry that is meshed and extruded. A .geo can use "
+      "every parameter below as a variable, and its own variables (DefineConstant, DefineNumber) become parameters of this section.");
     declarations.add("Disc inner radius", disc_inner_radius, "m", "Radius of the bore of the disc.", {0.});
     declarations.add("Disc outer radius", disc_outer_radius, "m", "Radius of the rim of the disc.", {0.});
-    declarations.add("Disc thickness", disc_thickness, "m", "Thickness of the disc, half of it on each side of z = 0.", {0.});
+    declarations.add("Disc thickness", disc_thickness, "m", "Thickness of the disc, which is symmetric about z = 0.", {0.});
     declarations.add("Pin diameter", pin_diameter, "m", "Diameter of every pin.", {0.});
     declarations.add("Pin height", pin_height, "m", "Height of every pin above the disc's face.", {0.});
     declarations.add("Top pin radii", top.radii, "m",
-                     "Distances of the axes of the pins on the upper face (z > 0) from the axis of the disc, separated by commas; "
-                     "empty for none.",
+                     "Distances between the axis of the disc and the axes of the pins on the upper face (z > 0), separated by commas; "
+                     "empty: no pins on this face.",
                      {0.});
-    declarations.add("Top pin angles", top.angles, "degree", "Angles of the axes of the pins on the upper face, as many as radii.");
+    declarations.add("Top pin angles", top.angles, "degree", "Angular positions of the pins on the upper face, one for each radius.");
     declarations.add("Bottom pin radii", bottom.radii, "m",
-                     "Distances of the axes of the pins on the lower face (z < 0) from the axis of the disc, separated by commas; "
-                     "empty for none.",
+                     "Distances between the axis of the disc and the axes of the pins on the lower face (z < 0), separated by commas; "
+                     "empty: no pins on this face.",
                      {0.});
-    declarations.add("Bottom pin angles", bottom.angles, "degree", "Angles of the axes of the pins on the lower face, as many as radii.");
+    declarations.add("Bottom pin angles", bottom.angles, "degree", "Angular positions of the pins on the lower face, one for each radius.");
     declarations.add("Nodes per pin face", nodes_per_pin_face, "none",
-                     "Nodes on each contact face of a pin, 3 k (k + 1) + 1: 7, 19, 37, 61, ...", {1});
-    declarations.add("Pin layers", pin_layers, "none", "Layers of elements over the height of a pin.", {1});
-    declarations.add("Disc layers", disc_layers, "none", "Layers of elements through the disc.", {1});
+                     "Number of nodes on the contact face of a pin, 3 k (k + 1) + 1: 7, 19, 37, 61, ...", {1});
+    declarations.add("Pin layers", pin_layers, "none", "Number of element layers over the height of a pin.", {1});
+    declarations.add("Disc layers", disc_layers, "none", "Number of element layers through the thickness of the disc.", {1});
     declarations.add(
       "Element size", element_size, "m",
-      "Edge length of disc elements, in the plane of the disc and away from the pins; disc_pins.geo uses smaller ones if these do not "
-      "fit between the pins.",
+      "Edge length of disc elements, in the plane of the disc and away from the pins; disc_pins.geo uses smaller elements where this size "
+      "does not fit between the pins.",
       {0.});
     declarations.add(
       "Outlines", outlines,
-      "Approximation of round pins, bore and rim of a plan by straight edges. inscribed: nodes on the circle, so that polygons are "
-      "smaller. true area: nodes moved outwards so that area and moments of area are those of the circle. Quadratic elements follow the "
+      "Approximation of round pins, bore and rim of a plan by straight edges. inscribed: nodes on the circle, so that the area is too "
+      "small. true area: nodes moved outwards, so that area and moments of area equal those of the circle. Quadratic elements follow the "
       "circle.");
     declarations.add(
       "Pin rings", pin_rings, "none",
-      "Number of rings of elements along the outline of every pin of a plan, around its blocks; each ring adds 6 k nodes to the face, "
-      "with k from Nodes per pin face = 3 k (k + 1) + 1.",
+      "Number of rings of elements along the outline of every pin of a plan, around the inner blocks of elements; each ring adds 6 k nodes "
+      "to the face, with k from Nodes per pin face = 3 k (k + 1) + 1.",
       {0, 20});
     declarations.add(
       "Pin grading", pin_grading, "none",
       "Size ratio of successive layers and rings of a pin towards the edge of its clamped end, where stresses are singular; 1: uniform.",
       {1., 4.});
     declarations.add("Pairing tolerance", pairing_tolerance, "m",
-                     "Largest distance between a node of the disc and a node of a pin that form a contact pair.", {0.});
+                     "Maximum distance between a node of the disc and a node of a pin that form a contact pair.", {0.});
     declarations.add(
       "Allow shell commands", allow_shell_commands,
-      "Lets a .geo run programs, create, write and remove files and use the network, as Gmsh permits. If the system cannot forbid these, "
-      "a note is printed. Only for files in which you trust every line.");
-    declarations.add("Meshing time limit", meshing_time_limit, "s", "Time limit of Gmsh.", {0.});
-    declarations.add("Meshing memory limit", meshing_memory_limit, "GB", "Memory limit of Gmsh.", {0.});
+      "Allows a .geo to start programs, to create, write and remove files, and to use the network. If the operating system cannot forbid "
+      "these actions, a note is printed. Set to true only for files in which you trust every line.");
+    declarations.add("Meshing time limit", meshing_time_limit, "s", "Time limit for Gmsh.", {0.});
+    declarations.add("Meshing memory limit", meshing_memory_limit, "GB", "Memory limit for Gmsh.", {0.});
     for (Variable &variable : variables)
       declare_variable(declarations, variable);
   }

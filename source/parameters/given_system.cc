@@ -32,11 +32,11 @@ namespace Squeal
   {
     declarations.add(
       "System", file,
-      "Folder with a system.json and its matrices, or that file: the run uses this system instead of a mesh. Available for stability, "
-      "reduction, sweep, sensitivity, geometry (designs), search (with uncertain parameters), robustness and updating. Empty: the system "
-      "comes from the geometry.");
+      "Folder with a system.json and its matrices, or path of the system.json: the run uses this system instead of a mesh. Available for "
+      "stability, reduction, sweep, sensitivity, geometry (designs), search (with uncertain parameters), robustness and updating. Empty: "
+      "the system is computed from the geometry.");
     declarations.add_text(
-      "System values", "Parameter values that replace those in the system file, such as mu = 0.3, omega = 12.6.",
+      "System values", "Parameter values that replace the values in the system file, for example mu = 0.3, omega = 12.6.",
       [this] {
         std::string result;
         for (const auto &[name, value] : values)

@@ -63,12 +63,14 @@ namespace Squeal
       declarations.add("Poisson ratio", material.poisson_ratio, "none", "Poisson's ratio.", {-1., 0.5});
       declarations.add("Density", material.density, "kg/m^3", "Mass density.", {0.});
       declarations.add("Rayleigh alpha", material.rayleigh_alpha, "1/s",
-                       "Mass-proportional damping, C = alpha M + beta K: the damping ratio of a mode at omega is alpha / (2 "
-                       "omega).",
+                       "Coefficient alpha of mass-proportional damping, C = alpha M + beta K: the damping ratio of a mode with circular "
+                       "frequency omega is alpha / (2 omega).",
                        {0.});
       declarations.add(
         "Rayleigh beta", material.rayleigh_beta, "s",
-        "Stiffness-proportional damping of the material, without mounts: the damping ratio of a mode at omega is beta omega / 2.", {0.});
+        "Coefficient beta of stiffness-proportional damping of the material, without mounts: the damping ratio of a mode with circular "
+        "frequency omega is beta omega / 2.",
+        {0.});
     }
 
     /// Checks that the compliance of an orthotropic material is positive definite.
@@ -177,17 +179,19 @@ namespace Squeal
     declarations.enter("Materials");
     declare_list(
       declarations, "Volumes", volumes,
-      "Volumes of other materials, such as a single pin or the backplate of a pad, as a list `volume: Young modulus, Poisson ratio, "
-      "density, Rayleigh alpha, Rayleigh beta; ...`; undamped without the last two. Units: Pa, none, kg/m^3, 1/s, s.",
+      "Materials of individual volumes, for example of a single pin or of the backplate of a pad, as a list `volume: Young modulus, "
+      "Poisson ratio, density, Rayleigh alpha, Rayleigh beta; ...`. The last two numbers may be omitted; the volume is then undamped. "
+      "Units: Pa, none, kg/m^3, 1/s, s.",
       volume_list,
       {&VolumeMaterial::young_modulus, &VolumeMaterial::poisson_ratio, &VolumeMaterial::density, &VolumeMaterial::rayleigh_alpha,
        &VolumeMaterial::rayleigh_beta},
       &VolumeMaterial::volume);
     declare_list(
       declarations, "Orthotropic", orthotropic,
-      "Volumes of orthotropic materials, such as brake linings, as a list `volume: E1, E2, E3, nu12, nu13, nu23, G12, G13, G23, density, "
-      "Rayleigh alpha, Rayleigh beta; ...`; undamped without the last two. Axes: 1 radial, 2 tangential, 3 axial about the z axis, or "
-      "those of Axes. nu12 = -eps2/eps1 under stress along axis 1, and so on: nu_ij/E_i = nu_ji/E_j. Units: Pa, none, Pa, kg/m^3, 1/s, s.",
+      "Orthotropic materials of individual volumes, for example of brake linings, as a list `volume: E1, E2, E3, nu12, nu13, nu23, G12, "
+      "G13, G23, density, Rayleigh alpha, Rayleigh beta; ...`. The last two numbers may be omitted; the volume is then undamped. The "
+      "material axes are 1 radial, 2 tangential, 3 axial about the z axis, unless Axes defines other axes. Under stress along axis i, "
+      "nu_ij = -eps_j/eps_i, so that nu_ij/E_i = nu_ji/E_j. Units: Pa, none, Pa, kg/m^3, 1/s, s.",
       orthotropic_list,
       {&VolumeMaterial::young_modulus, orthotropic_number(&Orthotropy::E2), orthotropic_number(&Orthotropy::E3),
        &VolumeMaterial::poisson_ratio, orthotropic_number(&Orthotropy::nu13), orthotropic_number(&Orthotropy::nu23),
@@ -199,23 +203,23 @@ namespace Squeal
       components.emplace_back([i](MaterialAxes &entry) -> double & { return entry.vectors[i]; });
     declare_list(
       declarations, "Axes", axes,
-      "Fixed axes of orthotropic volumes as a list `volume: x, y, z, x, y, z; ...`: a vector along axis 1 and a second one in the plane "
-      "of axes 1 and 2, of any length. Units: none.",
+      "Fixed material axes of orthotropic volumes as a list `volume: x, y, z, x, y, z; ...`: a vector along axis 1 and a second vector in "
+      "the plane of axes 1 and 2, both of any length. Units: none.",
       axes_list, components, &MaterialAxes::volume);
 
     declarations.enter("Mounts");
     declare_list(declarations, "Elastic mounts", mounts,
-                 "Elastic foundations as a list `surface: radial, tangential, axial; ...`: named surface and its stiffness per area in the "
-                 "directions of the disc axis. Empty: the disc turns freely. Units: N/m^3.",
+                 "Elastic foundations as a list `surface: radial, tangential, axial; ...`: name of the surface and stiffness per area in "
+                 "cylindrical directions about the disc axis. Empty: the disc has no mount. Units: N/m^3.",
                  mount_list, {&Mount::radial, &Mount::tangential, &Mount::axial}, &Mount::surface);
     declare_list(
       declarations, "Dashpots", dashpots,
-      "Viscous dampers between surfaces and the ground as a list `surface: radial, tangential, axial; ...`: named surface and its "
-      "damping coefficient per area in the directions of the disc axis. They carry no static load. Units: N s/m^3.",
+      "Viscous dampers between surfaces and the ground as a list `surface: radial, tangential, axial; ...`: name of the surface and "
+      "damping coefficient per area in cylindrical directions about the disc axis. Dashpots carry no static load. Units: N s/m^3.",
       dashpot_list, {&Mount::radial, &Mount::tangential, &Mount::axial}, &Mount::surface);
     declare_list(
       declarations, "Added masses", masses,
-      "Masses that move with surfaces, such as shims, clips or a piston, as a list `surface: mass; ...`: named surface and mass per "
+      "Masses attached to surfaces, for example shims, clips or a piston, as a list `surface: mass; ...`: name of the surface and mass per "
       "area. Units: kg/m^2.",
       mass_list, {&SurfaceMass::mass}, &SurfaceMass::surface);
   }
@@ -366,8 +370,8 @@ namespace Squeal
     declarations.enter("Damping");
     declare_list(
       declarations, "Modal damping ratio", modal_ratios,
-      "Damping ratios of the real coupled modes as a list `frequency: ratio, ...` over ascending frequencies, interpolated linearly and "
-      "constant beyond the ends. Empty: none. Units: Hz and none.",
+      "Damping ratios of the real coupled modes as a list `frequency: ratio, ...` with ascending frequencies. The ratios are interpolated "
+      "linearly, and are constant below the first and above the last frequency. Empty: no modal damping. Units: Hz and none.",
       ratio_list, {&ModalDampingRatio::frequency, &ModalDampingRatio::ratio});
   }
 

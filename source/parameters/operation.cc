@@ -12,32 +12,33 @@ namespace Squeal
     declarations.add("Friction coefficient", friction_coefficient, "none", "Coulomb friction coefficient mu.", {0., 10.});
     declarations.add(
       "Rotation", rotation,
-      "Sense of rotation: the disc moves with the velocity v of Sliding direction times the rotation speed, or in the opposite direction.");
+      "Sense of rotation. positive: the disc moves with the velocity v of Sliding direction times the rotation speed. negative: the disc "
+      "moves in the opposite direction.");
     declarations.add("Rotation speed", rotation_speed, "rad/s",
                      "Angular speed Omega of the disc, which multiplies the velocity v of Sliding direction.", {0.});
     declarations.add(
       "Sliding direction", sliding_direction,
-      "Velocity v of the disc relative to the other bodies for a rotation speed of 1 rad/s, three expressions in x, y, z [m] separated "
-      "by commas, with pi and functions of muParser: -y, x, 0 is rotation about the z axis, 1, 0, 0 a rail along x. t is the direction "
-      "of its tangential part, the sliding speed w_0 is Omega |v|. Units: m.");
+      "Velocity v of the disc relative to the other bodies for a rotation speed of 1 rad/s: three expressions in x, y, z [m], separated by "
+      "commas, which may contain pi and functions of muParser. -y, x, 0 is a rotation about the z axis; 1, 0, 0 is the motion of a rail "
+      "along x. The sliding direction t is that of the tangential part of v, and the sliding speed w_0 is Omega |v|. Units: m.");
     declarations.add(
       "Gyroscopic forces", rotating_disc,
-      "Includes the rotation of the disc, in the fixed frame, in the equations of motion: gyroscopic forces and convective stiffness, "
-      "without centrifugal prestress.");
+      "Includes the effects of the rotation of the disc in the equations of motion in the fixed frame: gyroscopic forces and convective "
+      "stiffness, without centrifugal prestress.");
     declarations.add(
       "Load per side", load_per_side, "N",
-      "Force of a backplate that presses its pins towards the disc. The pins above and those below the disc have one backplate each, "
-      "along the axis; a body whose mean contact normal is more than 45 degrees from the axis, such as a shoe on a rim, has its own, "
-      "along that normal.",
+      "Force with which a backplate presses its pins against the disc. The pins above the disc share one backplate, and the pins below the "
+      "disc share another one; both move along the axis. A body whose mean contact normal deviates by more than 45 degrees from the axis, "
+      "for example a shoe on a rim, has a separate backplate that moves along this normal.",
       {0.});
     declarations.add(
       "Radial dissipation", radial_dissipation,
-      "Contact damping along b per node: none; consistent, c_b = mu R_n0 / w_0 (linearised Coulomb friction); "
-      "published, c_b = R_n0 / w_0 (as printed in the paper). R_n0 follows from Steady sliding/Contact state. c_b in N s/m.");
+      "Contact damping c_b [N s/m] of each node along b. none: no damping. consistent: c_b = mu R_n0 / w_0 (linearised Coulomb friction). "
+      "published: c_b = R_n0 / w_0 (as printed in the paper). The reaction R_n0 is determined by Steady sliding/Contact state.");
     declarations.add(
       "Friction slope", friction_slope, "s/m",
-      "Slope dmu/dw of the friction coefficient at the sliding speed w_0; adds damping c_t = slope R_n0 per node along the sliding "
-      "direction, so that a negative slope destabilises.",
+      "Slope dmu/dw of the friction coefficient at the sliding speed w_0. The slope adds the damping c_t = slope R_n0 of each node along "
+      "the sliding direction; a negative slope destabilises.",
       {-10., 10.});
   }
 

@@ -44,10 +44,10 @@ namespace Squeal
     declarations.enter("Reduction");
     declarations.add(
       "Problem", problem,
-      "Eigenproblem of the comparison: frictionless, real coupled modes (section 5 of the paper); friction, complex modes at "
+      "Eigenproblem of the comparison. frictionless: real coupled modes (section 5 of the paper). friction: complex modes at "
       "Operation/Friction coefficient (section 6).");
     declarations.add_text(
-      "Bases", "Names of reduced bases, separated by commas; empty: all bases for the problem.",
+      "Bases", "Names of reduced bases, separated by commas; empty: all bases that apply to the problem.",
       [this] { return boost::algorithm::join(bases, ", "); },
       [this](const std::string &text) {
         bases.clear();
@@ -57,8 +57,8 @@ namespace Squeal
       });
     declarations.add_text(
       "Component modes",
-      "Truncations of the component modes, separated by semicolons: a frequency (all modes below it) or three numbers of modes `disc, "
-      "pins free, pins sliding`, for all pins together. Units: Hz.",
+      "Truncations of the component modes, separated by semicolons. Each truncation is a frequency (all modes below it) or three numbers "
+      "of modes `disc, pins free, pins sliding`, where the numbers for the pins count all pins together. Units: Hz.",
       [this] {
         std::vector<std::string> texts;
         for (const ModeTruncation &t : truncations)
@@ -72,17 +72,20 @@ namespace Squeal
           truncations.push_back(parse_truncation(entry));
       });
     declarations.add("Coupled frequency", coupled_frequencies, "Hz",
-                     "Upper frequencies of the real coupled modes in the bases `real ...`, one basis for each; 0: end of the band.", {0.});
+                     "Upper frequencies of the real coupled modes in the bases `real ...`, with one basis for each frequency; 0: end of "
+                     "the band.",
+                     {0.});
     declarations.add("Rank tolerance", rank_tolerance, "none",
-                     "Directions of a basis with an M-norm below this fraction of the largest are dropped.", {1e-14, 1e-2});
+                     "Directions of a basis with an M-norm below this fraction of the largest M-norm are dropped.", {1e-14, 1e-2});
     declarations.add("Grown tolerances", grown_tolerances, "none",
-                     "Estimated relative errors of every lambda at which `residual-grown` bases are complete, one basis for each.");
+                     "Tolerances of the `residual-grown` bases, one basis for each tolerance: a basis is complete when the estimated "
+                     "relative error of every lambda is below the tolerance.");
     declarations.add(
       "Snapshots", snapshots, "none",
-      "Friction coefficients of the complex modes in the basis `POD`; for a system file, values of the parameter mu, or else of its "
-      "first parameter.");
+      "Friction coefficients at which the complex modes of the basis `POD` are computed; for a system file, values of the parameter mu or, "
+      "if there is no mu, of the first parameter.");
     declarations.add("POD tolerance", pod_tolerance, "none",
-                     "Principal axes of the snapshots below this fraction of the largest are dropped.", {1e-13, 1.});
+                     "Principal axes of the snapshots with an M-norm below this fraction of the largest M-norm are dropped.", {1e-13, 1.});
   }
 
   void ReductionParameters::check() const

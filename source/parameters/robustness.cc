@@ -107,24 +107,27 @@ namespace Squeal
     declarations.enter("Robustness");
     declarations.add(
       "Distributions", distributions,
-      "Uncertain parameters, as `Section/Name = distribution; ...`: uniform A to B; normal MEAN, DEVIATION, truncated at "
-      "three standard deviations or, with `in A to B`, at A and B; lognormal MEAN, DEVIATION (of the number, not of its "
-      "logarithm); table A, B, C with equally probable values. % means percent of the nominal value. `for each pin` at the end "
-      "draws an independent value for each pin. Names as in Designs/Variables, or the parameters of the system file.");
+      "Uncertain parameters, as `Section/Name = distribution; ...`: uniform A to B; normal MEAN, DEVIATION, truncated at three standard "
+      "deviations or, with `in A to B`, at A and B; lognormal MEAN, DEVIATION (of the parameter, not of its logarithm); table A, B, C with "
+      "equally probable values. % means percent of the nominal value. `for each pin` at the end draws an independent value for each pin. "
+      "Names are the same as in Designs/Variables, or are those of the parameters in the system file.");
     declarations.add("Correlations", correlations,
                      "Correlation coefficients of the normal scores of two parameters (normal copula), as `name, name = value; ...`.");
-    declarations.add("Number of samples", n_samples, "none", "Independent samples, from which probabilities follow.", {10., 1e6});
+    declarations.add("Number of samples", n_samples, "none", "Number of independent samples, from which the probabilities are computed.",
+                     {10., 1e6});
     declarations.add("Seed", seed, "none", "Seed of the random numbers: equal seeds give equal samples.", {0., 2147483647.});
-    declarations.add("Tolerance", tolerance, "none", "Largest estimated relative error of lambda at any sample.", {1e-12, 0.1});
+    declarations.add("Tolerance", tolerance, "none", "Maximum estimated relative error of lambda at every sample.", {1e-12, 0.1});
     declarations.add("Sobol indices", has_indices,
-                     "Whether first-order and total Sobol' indices are computed. Each uncertain number adds Number of samples / 2 solved "
-                     "samples. Not computed if parameters are correlated.");
+                     "Computes first-order and total Sobol' indices. Each uncertain number requires Number of samples / 2 additional "
+                     "samples. Indices are not computed if parameters are correlated.");
     declarations.add("Frequency bands", frequency_bands, "Hz",
-                     "Band limits in ascending order: the probability of squeal is also reported for each band between two limits.", {0.});
+                     "Band limits in ascending order: the probability of squeal is also reported for each band between two successive "
+                     "limits.",
+                     {0.});
     declarations.add(
       "Samples with onsets", n_onsets, "none",
-      "Number of samples, counted from the first, whose modes are followed over the friction coefficients of the section Sweep, to its "
-      "tolerance, to find their onsets of growth.",
+      "Number of samples, starting with the first, whose modes are tracked over the friction coefficients of the section Sweep to find "
+      "their onsets of growth. The tolerance is Sweep/Tolerance.",
       {0., 1e5});
     declarations.add("Worst samples", n_worst, "none",
                      "Number of samples with the largest divergence rates that are written as parameter files of full-order runs.",

@@ -13,17 +13,18 @@ namespace Squeal
     declarations.enter("Sensitivity");
     declarations.add(
       "Largest number of modes", modes, "none",
-      "Number of modes with derivatives at Operation/Friction coefficient: growing modes by descending divergence rate; if none grows, "
-      "the least damped ones.",
+      "Maximum number of modes whose derivatives are computed at Operation/Friction coefficient: growing modes by descending divergence "
+      "rate; if no mode grows, the least damped modes.",
       {1, 1000});
     declarations.add("Thresholds", thresholds,
                      "Computes the thresholds between Sweep/First and Sweep/Last friction coefficient, and their derivatives.");
     declarations.add(
       "Geometry", geometry,
-      "Derivatives with respect to lengths of the built-in geometry, disc_pins.geo, and to the position of each pin; each takes two "
-      "assemblies.");
+      "Derivatives with respect to dimensions of the built-in geometry, disc_pins.geo. sizes: lengths. sizes and places: also the position "
+      "of each pin. Each derivative requires two assemblies.");
     declarations.add("Tolerance", tolerance, "none",
-                     "The basis is extended until the derivatives of a mode change by less than this, relative to the largest of them.",
+                     "The basis is enriched until the derivatives of a mode change by less than this value, relative to the largest "
+                     "derivative of the mode.",
                      {1e-10, 1e-1});
   }
 
@@ -35,11 +36,9 @@ namespace Squeal
     declarations.add("Divergence tolerance", divergence_tolerance, "percentage points",
                      "Largest acceptable change of a divergence rate in the cheapest model, relative to the given model.", {0., 100.});
     declarations.add("Trial friction slope", trial_slope, "s/m",
-                     "Trial slope of the friction coefficient if the model has Operation/Friction slope = 0; 0: not "
-                     "tried.",
-                     {-1e3, 1e3});
+                     "Trial slope of the friction coefficient if the model has Operation/Friction slope = 0; 0: no trial.", {-1e3, 1e3});
     declarations.add("Trial damping ratio", trial_damping_ratio, "none",
-                     "Trial damping ratio of all modes if the model has no Damping/Modal damping ratio; 0: not tried.", {0., 0.99});
+                     "Trial damping ratio of all modes if the model has no Damping/Modal damping ratio; 0: no trial.", {0., 0.99});
   }
 
   void IngredientsParameters::check() const

@@ -28,37 +28,37 @@ namespace Squeal
     declarations.enter("Steady sliding");
     declarations.add(
       "Contact state", state,
-      "Contact state for the linearisation: equal load, all contact nodes are closed and carry equal shares of the load of their side; "
-      "steady sliding, the quasi-static solution with unilateral contact and friction, in which nodes may lift off. All other parameters "
-      "of this section apply to steady sliding only.");
+      "Contact state about which the system is linearised. equal load: all contact nodes are closed and carry equal shares of the load of "
+      "their side. steady sliding: the quasi-static solution with unilateral contact and friction, in which nodes may lift off. All other "
+      "parameters of this section apply to steady sliding only.");
     declarations.add(
       "Control", control,
-      "Prescribed quantity: load per side, the force Operation/Load per side on the rigid backplate of each side; displacement, the "
-      "travel of every backplate; load per pin, a force on each pin; pressure, on Pressed faces: bodies are held by their mounts alone, "
-      "and may tilt and bend.");
+      "Prescribed quantity. load per side: the force Operation/Load per side on the rigid backplate of each side. displacement: the travel "
+      "of every backplate. load per pin: a force on each pin. pressure: a uniform pressure on Pressed faces; the bodies are held only by "
+      "their mounts and may tilt and bend.");
     declarations.add(
       "Displacement", displacement, "m",
-      "Travel of each backplate towards the disc for Control = displacement, along the axis (a shoe on a rim: along its mean contact "
-      "normal), from the position where a pin without gap touches the disc.",
+      "For Control = displacement: travel of each backplate towards the disc along the axis (for a shoe on a rim, along its mean contact "
+      "normal), from the position in which a pin without gap touches the disc.",
       {0.});
     declare_list(
       declarations, "Loads", pin_loads,
-      "Forces on the pins for Control = load per pin, as a list `pin: load; ...`; each pin not in the list gets an equal share of "
-      "Operation/Load per side, a shoe on a rim the whole load. Units: N.",
+      "For Control = load per pin: forces on the pins, as a list `pin: load; ...`. A pin that is not in the list carries an equal share of "
+      "Operation/Load per side; a shoe on a rim carries the whole load. Units: N.",
       load_list, {&PinLoad::load}, &PinLoad::pin);
     declarations.add_text(
       "Pressed faces",
-      "Surfaces with a uniform pressure for Control = pressure, separated by commas, such as pad_outer_back, pad_inner_back. The "
-      "resultant on each is Operation/Load per side: on a flat face the pressure is load / area, on a curved one load / |area integral "
-      "of the normal|.",
+      "For Control = pressure: surfaces with a uniform pressure, separated by commas, for example pad_outer_back, pad_inner_back. The "
+      "resultant force on each surface is Operation/Load per side: the pressure is load / area on a flat face and load / |area integral of "
+      "the normal| on a curved face.",
       [this] { return boost::algorithm::join(pressed_faces, ", "); },
       [this](const std::string &text) { pressed_faces = dealii::Utilities::split_string_list(text, ','); });
     declare_list(
       declarations, "Gaps", gaps,
-      "Initial gaps of pins (height tolerance, wear), as a list `pin: gap; pin: gap, sliding taper, radial taper; ...`, along the travel "
-      "of the backplate, positive if the pin does not touch. The tapers increase the gap per distance from the centre of the face along "
-      "the sliding direction and outwards (a shoe on a rim: along the axis; if the disc does not turn about z: along b). Units: m, none, "
-      "none.",
+      "Initial gaps of pins (height tolerance, wear), as a list `pin: gap; pin: gap, sliding taper, radial taper; ...`. A gap is measured "
+      "along the travel of the backplate and is positive if the pin does not touch. The tapers are the increase of the gap per distance "
+      "from the centre of the face, along the sliding direction and radially outwards (for a shoe on a rim, along the axis; if the disc "
+      "does not rotate about z, along b). Units: m, none, none.",
       gap_list, {&PinGap::gap, &PinGap::sliding_taper, &PinGap::radial_taper}, &PinGap::pin);
   }
 

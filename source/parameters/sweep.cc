@@ -64,44 +64,45 @@ namespace Squeal
     declarations.add("First friction coefficient", friction_coefficients.first, "none", "Start of the sweep.", coefficients);
     declarations.add("Last friction coefficient", friction_coefficients.last, "none", "End of the sweep.", coefficients);
     declarations.add("Number of friction coefficients", friction_coefficients.number, "none",
-                     "Values of the sweep, equally spaced; steps in which modes coalesce are refined.", {1, 100000});
+                     "Number of values of the sweep, which are equally spaced; steps in which modes coalesce are refined.", {1, 100000});
     declarations.add("Tolerance", tolerance, "none",
-                     "Largest estimated relative error of lambda, for every mode at every value of the sweep.", {1e-10, 1e-2});
+                     "Maximum estimated relative error of lambda, for every mode at every value of the sweep.", {1e-10, 1e-2});
     declarations.add(
       "Maximum basis", maximum_basis, "vectors",
-      "Maximum size of the reduced basis, at least the number of real modes; if a sweep needs more, only values within the tolerance are "
-      "kept.",
+      "Maximum size of the reduced basis, which must be at least the number of real modes. If a sweep requires a larger basis, only the "
+      "values that meet the tolerance are written.",
       {1});
     declarations.add("Threshold tolerance", threshold_tolerance, "none",
-                     "Largest interval of the friction coefficient in which a threshold is located.", {1e-13, 1e-2});
-    declarations.add("Compare dissipation", compare_dissipation, "With radial dissipation, repeats the sweep without it and shows both.");
+                     "Maximum width of the interval of friction coefficients that encloses a threshold.", {1e-13, 1e-2});
+    declarations.add("Compare dissipation", compare_dissipation,
+                     "With radial dissipation, repeats the sweep without radial dissipation and shows both results.");
     declarations.add("Mode shapes at", mode_shapes, "none",
-                     "Friction coefficients at which the leading mode is written as a field, separated by commas.", coefficients,
+                     "Friction coefficients, separated by commas, at which the leading mode is written as a field.", coefficients,
                      most_coefficients);
     declarations.add(
       "Complex plane at", planes, "none",
-      "Friction coefficients at which all modes of the band are written, as in a run at one friction coefficient, and drawn in the "
-      "complex plane, separated by commas; empty: those of Mode shapes at.",
+      "Friction coefficients, separated by commas, at which all modes of the band are written, as in a run at one friction coefficient, "
+      "and drawn in the complex plane; empty: the values of Mode shapes at.",
       {}, most_coefficients);
     declarations.add(
       "Count modes at", counts, "none",
-      "Friction coefficients at which the modes of the band are counted by the argument principle, independently of the eigensolvers, "
-      "separated by commas.",
+      "Friction coefficients, separated by commas, at which the modes of the band are counted by the argument principle, independently of "
+      "the eigensolvers.",
       {}, most_coefficients);
     declarations.add(
       "Map parameter", map_parameter,
       "Second parameter of a stability map, in addition to the friction coefficient: the load per side or the rotation speed.");
     declarations.add("First map value", map_values.first, "N or rad/s", "Smallest load or speed of the map.", {0.});
     declarations.add("Last map value", map_values.last, "N or rad/s", "Largest load or speed of the map.", {0.});
-    declarations.add("Number of map values", map_values.number, "none", "Number of loads or speeds in the map, with a constant ratio.",
-                     {1, 10000});
+    declarations.add("Number of map values", map_values.number, "none",
+                     "Number of loads or speeds in the map; the ratio of successive values is constant.", {1, 10000});
     declarations.add("Map friction coefficients", map_friction_coefficients, "none",
                      "Number of friction coefficients in the map, equally spaced over the sweep.", {1, 10000});
     declarations.add("Parameter", parameter,
-                     "With System: the varied parameter, its first and last value and the number of values, such as omega, 6.28, 25.1, 31. "
-                     "Empty: mu, from First to Last friction coefficient.");
+                     "With System: name, first value, last value and number of values of the varied parameter, for example omega, 6.28, "
+                     "25.1, 31. Empty: the parameter mu, from First to Last friction coefficient.");
     declarations.add("Second parameter", second_parameter,
-                     "With System: the second parameter of a stability map, in the same form. Empty: no map.");
+                     "With System: the second parameter of a stability map, in the same format as Parameter. Empty: no map.");
   }
 
   NamedRange SweepParameters::varied_parameter() const

@@ -15,14 +15,15 @@ namespace Squeal
       "in the folder of the parameter file, then in the current directory. Empty: the measured modes of the system file.");
     declarations.add(
       "Sensors", sensors,
-      "CSV file of sensors and measured shapes, by which modes are paired instead of labels. Columns `x [m]`, `y [m]`, `z [m]`, "
-      "`direction x`, `direction y`, `direction z`, and a column for each shape, with the label that the mode has in the "
-      "measured modes (for an imaginary part, the label followed by ` imaginary`). Found in the same folders as the measured modes.");
+      "CSV file of sensors and measured shapes; modes are then paired by shapes instead of labels. Columns `x [m]`, `y [m]`, `z [m]`, "
+      "`direction x`, `direction y`, `direction z`, and a column for each shape, whose name is the label of the mode in the file of "
+      "measured modes (for an imaginary part, the label followed by ` imaginary`). The program looks in the same folders as for the "
+      "measured modes.");
     declarations.add("Least MAC", least_overlap, "-",
-                     "A measured shape whose modal assurance criterion with all computed modes is smaller has no counterpart, which is an "
-                     "error.",
+                     "Minimum modal assurance criterion (MAC) of a measured shape and its computed counterpart. If the MAC with every "
+                     "computed mode is smaller, the shape has no counterpart, which is an error.",
                      {0., 1.});
-    declarations.add("Tolerance", tolerance, "none", "The fit ends when steps are smaller than this fraction of the ranges.",
+    declarations.add("Tolerance", tolerance, "none", "The fit ends when its steps are smaller than this fraction of the ranges.",
                      {1e-12, 1e-3});
     declarations.add("Iterations", n_iterations, "none",
                      "Maximum number of iterations. The run fails if the fit has not converged by then.", {1., 1e4});
