@@ -18,9 +18,9 @@ namespace Squeal
     declarations.enter("Discretization");
     declarations.add(
       "Element", element,
-      "Element type, described here for hexahedra. trilinear: 8 nodes, too stiff in bending. incompatible modes: 8 nodes and additional "
-      "quadratic displacements inside each element (Wilson, Taylor), accurate in bending with the same number of unknowns. quadratic: 27 "
-      "nodes; the elements follow curved boundaries.");
+      "Element type, described here for hexahedra. `trilinear`: 8 nodes, too stiff in bending. `incompatible modes`: 8 nodes and "
+      "additional quadratic displacements inside each element (Wilson, Taylor), accurate in bending with the same number of unknowns. "
+      "`quadratic`: 27 nodes; the elements follow curved boundaries.");
     declarations.add(
       "Coarser mesh", coarser_mesh,
       "Second mesh, used to estimate the discretisation error of each mode from the difference between both meshes: parameters of the "
@@ -58,8 +58,8 @@ namespace Squeal
   {
     declarations.enter("Real modes");
     declarations.add("Solver", real_solver,
-                     "Shift-invert eigensolver for the symmetric problem. block Lanczos: the recommended method. Anasazi (block "
-                     "Krylov-Schur) and ARPACK (implicitly restarted Lanczos): for independent checks.");
+                     "Shift-invert eigensolver for the symmetric problem. `block Lanczos`: the recommended method. `Anasazi` (block "
+                     "Krylov-Schur) and `ARPACK` (implicitly restarted Lanczos): for independent checks.");
     declarations.add("Tolerance", real_tolerance, "none", "Maximum relative residual of a real mode.", {1e-14, 1e-4});
     declarations.add(
       "Maximum number of modes", maximum_modes, "none",
@@ -70,12 +70,13 @@ namespace Squeal
     declarations.enter("Complex modes");
     declarations.add(
       "Solver", complex_solver,
-      "Krylov: shift-invert block Krylov method for the quadratic pencil at full order (the reference). residual iteration: a basis of "
-      "real modes enriched by right and left residuals, with one Cholesky factor for every friction coefficient.");
+      "Eigensolver for the quadratic problem. `Krylov`: shift-invert block Krylov method for the quadratic pencil at full order (the "
+      "reference). `residual iteration`: a basis of real modes enriched by right and left residuals, with one Cholesky factor for every "
+      "friction coefficient.");
     declarations.add(
       "Shift inverse", shift_inverse,
-      "Inverse of the nonsymmetric stiffness in the Krylov solver. updated Cholesky: Cholesky factor of the frictionless system with a "
-      "correction of rank n_c. sparse LU: LU factors of the nonsymmetric sparse matrix.");
+      "Inverse of the nonsymmetric stiffness in the Krylov solver. `updated Cholesky`: Cholesky factor of the frictionless system with a "
+      "correction of rank n_c. `sparse LU`: LU factors of the nonsymmetric sparse matrix.");
     declarations.add("Tolerance", complex_tolerance, "none", "Maximum relative residual of a complex mode of the Krylov solver.",
                      {1e-13, 1e-4});
     declarations.add("Iteration tolerance", iteration_tolerance, "none",
@@ -84,11 +85,11 @@ namespace Squeal
 
     declarations.enter("Linear algebra");
     declarations.add("Factorization", library,
-                     "Sparse direct solver for symmetric matrices. automatic: CHOLMOD on one process, MUMPS on several.");
+                     "Sparse direct solver for symmetric matrices. `automatic`: CHOLMOD on one process, MUMPS on several.");
     declarations.add(
       "Threads", n_threads, "none",
       "Number of threads per process, used for concurrent friction coefficients, matrix products, solves and large factorisations. 0: "
-      "OMP_NUM_THREADS, or the number of cores of the process. Results do not depend on the number of threads.",
+      "OMP_NUM_THREADS, or the number of cores of the process. The number of threads changes results only by rounding errors.",
       {0, 1024});
     declarations.add("BLAS threads", blas_threads, "none",
                      "Number of threads of dense kernels per process; more than one thread is useful only on idle cores.", {1, 256});
@@ -113,7 +114,7 @@ namespace Squeal
       "format, and the node coordinates.");
     declarations.add(
       "Write system", write_system,
-      "Writes the coupled system to the folder system in the results, which the parameter System can read. full: all terms. reduced: the "
+      "Writes the coupled system to the folder system in the results, which the parameter System can read. `full`: all terms. `reduced`: the "
       "reduced model of a sweep, accurate to Sweep/Tolerance between the first and the last value; of Study = robustness, accurate to "
       "Robustness/Tolerance within the ranges of its samples; or of each basis of Study = reduction, at the given values.");
   }

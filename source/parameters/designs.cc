@@ -11,8 +11,8 @@ namespace Squeal
     declarations.enter("Designs");
     declarations.add(
       "Plan", choice,
-      "Method of choosing the designs. full grid: all combinations of the levels. one at a time: the given model, then every level of each "
-      "variable. Latin hypercube and Sobol sequence: samples of the ranges. file: rows of a CSV file.");
+      "Method of choosing the designs. `full grid`: all combinations of the levels. `one at a time`: the given model, then every level of "
+      "each variable. `Latin hypercube` and `Sobol sequence`: samples of the ranges. `file`: rows of a CSV file.");
     declarations.add(
       "Variables", variables,
       "Varied parameters and their values, as `Section/Name = values; ...`. Values are a list `a, b, c` (`a | b` if values contain "
@@ -34,10 +34,10 @@ namespace Squeal
     declarations.enter("Search");
     declarations.add(
       "Goal", goal,
-      "Objective of the search within the ranges of Designs/Variables. onset: maximise the smallest friction coefficient at which a "
-      "divergence rate exceeds 0.01 %. divergence rate: minimise the largest divergence rate between the first and the last friction "
-      "coefficient of the section Sweep. probability: minimise the probability of squeal with the uncertain parameters of "
-      "Robustness/Distributions. quantile: minimise a quantile of the largest divergence rate of the samples.");
+      "Objective of the search within the ranges of Designs/Variables. `onset`: maximise the smallest friction coefficient at which a "
+      "divergence rate exceeds 0.01 %. `divergence rate`: minimise the largest divergence rate between the first and the last friction "
+      "coefficient of the section Sweep. `probability`: minimise the probability of squeal with the uncertain parameters of "
+      "Robustness/Distributions. `quantile`: minimise a quantile of the largest divergence rate of the samples.");
     declarations.add("Quantile", quantile, "none", "Probability level of the quantile if Goal = quantile.", {0.01, 0.999});
     declarations.add("Method", method, "Derivative-free method of NLopt.");
     declarations.add("Samples", n_samples, "none",

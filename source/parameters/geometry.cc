@@ -221,8 +221,8 @@ namespace Squeal
       {0.});
     declarations.add(
       "Outlines", outlines,
-      "Approximation of round pins, bore and rim of a plan by straight edges. inscribed: nodes on the circle, so that the area is too "
-      "small. true area: nodes moved outwards, so that area and moments of area equal those of the circle. Quadratic elements follow the "
+      "Approximation of round pins, bore and rim of a plan by straight edges. `inscribed`: nodes on the circle, so that the area is too "
+      "small. `true area`: nodes moved outwards, so that area and moments of area equal those of the circle. Quadratic elements follow the "
       "circle.");
     declarations.add(
       "Pin rings", pin_rings, "none",

@@ -12,15 +12,16 @@ namespace Squeal
     declarations.add("Friction coefficient", friction_coefficient, "none", "Coulomb friction coefficient mu.", {0., 10.});
     declarations.add(
       "Rotation", rotation,
-      "Sense of rotation. positive: the disc moves with the velocity v of Sliding direction times the rotation speed. negative: the disc "
-      "moves in the opposite direction.");
+      "Sense of rotation. `positive`: the disc moves with the velocity v of Sliding direction times the rotation speed. `negative`: the "
+      "disc moves in the opposite direction.");
     declarations.add("Rotation speed", rotation_speed, "rad/s",
                      "Angular speed Omega of the disc, which multiplies the velocity v of Sliding direction.", {0.});
     declarations.add(
       "Sliding direction", sliding_direction,
       "Velocity v of the disc relative to the other bodies for a rotation speed of 1 rad/s: three expressions in x, y, z [m], separated by "
-      "commas, which may contain pi and functions of muParser. -y, x, 0 is a rotation about the z axis; 1, 0, 0 is the motion of a rail "
-      "along x. The sliding direction t is that of the tangential part of v, and the sliding speed w_0 is Omega |v|. Units: m.");
+      "commas, which may contain pi and functions of muParser. For example, -y, x, 0 is a rotation about the z axis, and 1, 0, 0 is the "
+      "motion of a rail along x. The sliding direction t is that of the tangential part of v, and the sliding speed w_0 is Omega |v|. "
+      "Units: m.");
     declarations.add(
       "Gyroscopic forces", rotating_disc,
       "Includes the effects of the rotation of the disc in the equations of motion in the fixed frame: gyroscopic forces and convective "
@@ -33,8 +34,9 @@ namespace Squeal
       {0.});
     declarations.add(
       "Radial dissipation", radial_dissipation,
-      "Contact damping c_b [N s/m] of each node along b. none: no damping. consistent: c_b = mu R_n0 / w_0 (linearised Coulomb friction). "
-      "published: c_b = R_n0 / w_0 (as printed in the paper). The reaction R_n0 is determined by Steady sliding/Contact state.");
+      "Contact damping c_b [N s/m] of each node along b. `none`: no damping. `consistent`: c_b = mu R_n0 / w_0 (linearised Coulomb "
+      "friction). `published`: c_b = R_n0 / w_0 (as printed in the paper). The reaction R_n0 is determined by Steady sliding/Contact "
+      "state.");
     declarations.add(
       "Friction slope", friction_slope, "s/m",
       "Slope dmu/dw of the friction coefficient at the sliding speed w_0. The slope adds the damping c_t = slope R_n0 of each node along "

@@ -174,7 +174,7 @@ namespace Squeal
       "Accuracy", goal,
       "Required accuracy of frequencies; the required accuracy of divergence rates is a tenth of this number, in percentage points. The "
       "program chooses elements, mesh, solver and tolerances, and ignores the corresponding parameters below. Study = stability estimates "
-      "the achieved accuracy of each mode with a second, coarser mesh. as given: the parameters below are used, and the discretisation "
+      "the achieved accuracy of each mode with a second, coarser mesh. `as given`: the parameters below are used, and the discretisation "
       "error is estimated only with Discretization/Coarser mesh.");
     system.declare(declarations);
     geometry.declare(declarations);

@@ -44,7 +44,7 @@ namespace Squeal
     declarations.enter("Reduction");
     declarations.add(
       "Problem", problem,
-      "Eigenproblem of the comparison. frictionless: real coupled modes (section 5 of the paper). friction: complex modes at "
+      "Eigenproblem of the comparison. `frictionless`: real coupled modes (section 5 of the paper). `friction`: complex modes at "
       "Operation/Friction coefficient (section 6).");
     declarations.add_text(
       "Bases", "Names of reduced bases, separated by commas; empty: all bases that apply to the problem.",

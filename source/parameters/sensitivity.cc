@@ -20,8 +20,8 @@ namespace Squeal
                      "Computes the thresholds between Sweep/First and Sweep/Last friction coefficient, and their derivatives.");
     declarations.add(
       "Geometry", geometry,
-      "Derivatives with respect to dimensions of the built-in geometry, disc_pins.geo. sizes: lengths. sizes and places: also the position "
-      "of each pin. Each derivative requires two assemblies.");
+      "Derivatives with respect to dimensions of the built-in geometry, disc_pins.geo. `sizes`: lengths. `sizes and places`: also the "
+      "position of each pin. Each derivative requires two assemblies.");
     declarations.add("Tolerance", tolerance, "none",
                      "The basis is enriched until the derivatives of a mode change by less than this value, relative to the largest "
                      "derivative of the mode.",

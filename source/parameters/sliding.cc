@@ -28,14 +28,14 @@ namespace Squeal
     declarations.enter("Steady sliding");
     declarations.add(
       "Contact state", state,
-      "Contact state about which the system is linearised. equal load: all contact nodes are closed and carry equal shares of the load of "
-      "their side. steady sliding: the quasi-static solution with unilateral contact and friction, in which nodes may lift off. All other "
-      "parameters of this section apply to steady sliding only.");
+      "Contact state about which the system is linearised. `equal load`: all contact nodes are closed and carry equal shares of the load "
+      "of their side. `steady sliding`: the quasi-static solution with unilateral contact and friction, in which nodes may lift off. All "
+      "other parameters of this section apply to steady sliding only.");
     declarations.add(
       "Control", control,
-      "Prescribed quantity. load per side: the force Operation/Load per side on the rigid backplate of each side. displacement: the travel "
-      "of every backplate. load per pin: a force on each pin. pressure: a uniform pressure on Pressed faces; the bodies are held only by "
-      "their mounts and may tilt and bend.");
+      "Prescribed quantity. `load per side`: the force Operation/Load per side on the rigid backplate of each side. `displacement`: the "
+      "travel of every backplate. `load per pin`: a force on each pin. `pressure`: a uniform pressure on Pressed faces; the bodies are "
+      "held only by their mounts and may tilt and bend.");
     declarations.add(
       "Displacement", displacement, "m",
       "For Control = displacement: travel of each backplate towards the disc along the axis (for a shoe on a rim, along its mean contact "

@@ -64,7 +64,7 @@ namespace Squeal
     declarations.add("First friction coefficient", friction_coefficients.first, "none", "Start of the sweep.", coefficients);
     declarations.add("Last friction coefficient", friction_coefficients.last, "none", "End of the sweep.", coefficients);
     declarations.add("Number of friction coefficients", friction_coefficients.number, "none",
-                     "Number of values of the sweep, which are equally spaced; steps in which modes coalesce are refined.", {1, 100000});
+                     "Number of equally spaced values in the sweep; steps in which modes coalesce are refined.", {1, 100000});
     declarations.add("Tolerance", tolerance, "none",
                      "Maximum estimated relative error of lambda, for every mode at every value of the sweep.", {1e-10, 1e-2});
     declarations.add(
