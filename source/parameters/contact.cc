@@ -100,9 +100,9 @@ namespace Squeal
     declarations.add_text(
       "Pairs",
       "Pairs of sliding surfaces, as a list `surface of the disc / surface of another body: friction factor, normal stiffness; ...`. The "
-      "factor (default: 1) multiplies Operation/Friction coefficient. The stiffness is that of springs between the faces; if it is "
-      "omitted, the contact is rigid. The meshes need not match: faces with different nodes are coupled by mortar elements. Units: none, "
-      "N/m^3.",
+      "factor (default: 1) multiplies Operation/Friction coefficient. The stiffness is the stiffness per area of springs between the "
+      "faces; without this number, the contact is rigid. The meshes need not match: faces with different nodes are coupled by mortar "
+      "elements. Units: none, N/m^3.",
       [this] { return print(pairs); }, [this](const std::string &text) { pairs = parse(text); });
     declarations.add_text(
       "Tied",

@@ -222,8 +222,8 @@ namespace Squeal
     declarations.add(
       "Outlines", outlines,
       "Approximation of round pins, bore and rim of a plan by straight edges. `inscribed`: nodes on the circle, so that the area is too "
-      "small. `true area`: nodes moved outwards, so that area and moments of area equal those of the circle. Quadratic elements follow the "
-      "circle.");
+      "small. `true area`: nodes moved outwards, so that area and moments of area are the same as for the circle. Quadratic elements "
+      "follow the circle.");
     declarations.add(
       "Pin rings", pin_rings, "none",
       "Number of rings of elements along the outline of every pin of a plan, around the inner blocks of elements; each ring adds 6 k nodes "

@@ -20,8 +20,8 @@ namespace Squeal
       "Sliding direction", sliding_direction,
       "Velocity v of the disc relative to the other bodies for a rotation speed of 1 rad/s: three expressions in x, y, z [m], separated by "
       "commas, which may contain pi and functions of muParser. For example, -y, x, 0 is a rotation about the z axis, and 1, 0, 0 is the "
-      "motion of a rail along x. The sliding direction t is that of the tangential part of v, and the sliding speed w_0 is Omega |v|. "
-      "Units: m.");
+      "motion of a rail along x. The sliding direction t is the direction of the tangential part of v, and the sliding speed w_0 is Omega "
+      "|v|. Units: m.");
     declarations.add(
       "Gyroscopic forces", rotating_disc,
       "Includes the effects of the rotation of the disc in the equations of motion in the fixed frame: gyroscopic forces and convective "
@@ -29,8 +29,8 @@ namespace Squeal
     declarations.add(
       "Load per side", load_per_side, "N",
       "Force with which a backplate presses its pins against the disc. The pins above the disc share one backplate, and the pins below the "
-      "disc share another one; both move along the axis. A body whose mean contact normal deviates by more than 45 degrees from the axis, "
-      "for example a shoe on a rim, has a separate backplate that moves along this normal.",
+      "disc share another backplate; both backplates move along the axis. A body whose mean contact normal deviates by more than 45 "
+      "degrees from the axis, for example a shoe on a rim, has a separate backplate that moves along this normal.",
       {0.});
     declarations.add(
       "Radial dissipation", radial_dissipation,
@@ -39,8 +39,8 @@ namespace Squeal
       "state.");
     declarations.add(
       "Friction slope", friction_slope, "s/m",
-      "Slope dmu/dw of the friction coefficient at the sliding speed w_0. The slope adds the damping c_t = slope R_n0 of each node along "
-      "the sliding direction; a negative slope destabilises.",
+      "Slope dmu/dw of the friction coefficient at the sliding speed w_0. At each node, the slope adds damping along the sliding direction "
+      "with the coefficient c_t = slope R_n0; a negative slope destabilises.",
       {-10., 10.});
   }
 

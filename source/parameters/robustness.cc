@@ -110,7 +110,7 @@ namespace Squeal
       "Uncertain parameters, as `Section/Name = distribution; ...`: uniform A to B; normal MEAN, DEVIATION, truncated at three standard "
       "deviations or, with `in A to B`, at A and B; lognormal MEAN, DEVIATION (of the parameter, not of its logarithm); table A, B, C with "
       "equally probable values. % means percent of the nominal value. `for each pin` at the end draws an independent value for each pin. "
-      "Names are the same as in Designs/Variables, or are those of the parameters in the system file.");
+      "Names are the same as in Designs/Variables, or names of parameters of the system file.");
     declarations.add("Correlations", correlations,
                      "Correlation coefficients of the normal scores of two parameters (normal copula), as `name, name = value; ...`.");
     declarations.add("Number of samples", n_samples, "none", "Number of independent samples, from which the probabilities are computed.",
