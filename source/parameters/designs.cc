@@ -16,8 +16,8 @@ namespace Squeal
     declarations.add(
       "Variables", variables,
       "Varied parameters and their values, as `Section/Name = values; ...`. Values are a list `a, b, c` (`a | b` if values contain "
-      "commas), or a range `a to b`, with `in n` for n levels, and with `by ratio` for levels with a constant ratio. `Section/Name[k]` "
-      "is the k-th number of a value; names joined by `+` take the same value.");
+      "commas), or a range `a to b`, with `in n` for n levels, and with `by ratio` for levels with a constant ratio. `Section/Name[k]` is "
+      "the k-th number of a parameter that is a list; names joined by `+` take the same value.");
     declarations.add(
       "File", file,
       "CSV file of designs: names as in Variables in the first line, then one design per line. The program looks in the folder of the "
