@@ -100,7 +100,7 @@ namespace Squeal
     declarations.add_text(
       "Pairs",
       "Pairs of sliding surfaces, as a list `surface of the disc / surface of another body: friction factor, normal stiffness; ...`. The "
-      "factor (default: 1) multiplies Operation/Friction coefficient. The stiffness is the stiffness per area of springs between the "
+      "factor (default: 1) multiplies Operation/Friction coefficient. The second number is the stiffness per area of springs normal to the "
       "faces; without this number, the contact is rigid. The meshes need not match: faces with different nodes are coupled by mortar "
       "elements. Units: none, N/m^3.",
       [this] { return print(pairs); }, [this](const std::string &text) { pairs = parse(text); });
