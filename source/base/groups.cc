@@ -8,7 +8,7 @@ namespace Squeal
 {
   std::vector<int> best_assignment(const int n_rows, const int n_columns, const std::function<double(int, int)> &gain)
   {
-    // Rows and columns count from 1; column 0 is the root of each search
+    // Rows and columns are numbered from 1; column 0 is the root of each search
     constexpr double    infinity = std::numeric_limits<double>::infinity();
     std::vector<double> row_potential(n_rows + 1, 0.), column_potential(n_columns + 1, 0.);
     std::vector<int>    row_of(n_columns + 1, 0);

@@ -34,7 +34,7 @@ namespace Squeal
       return numbers;
     }
 
-    /// Memory left in one control group [byte]. Its limit may be `max`; in a container inner folders may be missing.
+    /// Remaining memory of a control group [byte]. Its limit may be `max`; in a container, folders of nested groups may be missing.
     double left_by_group(const fs::path &folder)
     {
       double limit, usage;

@@ -7,7 +7,7 @@
 
 #include <cstdlib>
 
-/// Replaces that of the library, since Ipopt, which OpenTURNS may load, starts MPI before main(); deal.II calls MPI_Init_thread().
+/// Overrides MPI_Init() of the library: Ipopt, which OpenTURNS may load, would start MPI before main(). deal.II calls MPI_Init_thread().
 extern "C" int MPI_Init(int * /*argc*/, char *** /*argv*/)
 {
   return MPI_SUCCESS;
@@ -22,7 +22,7 @@ namespace Squeal
     if (n_processes == nullptr)
       {
         setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
-        // Isolated processes would all create the same folder, and remove it when they end
+        // Processes without a daemon would all create the same folder and remove it when they end
         setenv("OMPI_MCA_orte_create_session_dirs", "0", 0);
         // Avoids a shared-memory file, which Open MPI 5 creates but does not use
         setenv("OMPI_MCA_btl", "self", 0);

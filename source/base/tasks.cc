@@ -23,11 +23,11 @@ namespace Squeal
   {
     if (wanted > 0)
       return wanted;
-    // First number of a list, which is meant for nested loops
+    // OMP_NUM_THREADS may be a list for nested loops: read its first number
     if (const char *text = std::getenv("OMP_NUM_THREADS"); text != nullptr)
       if (const long number = std::strtol(text, nullptr, 10); number > 0)
         return static_cast<unsigned int>(std::min(number, 1024l));
-    // Processes bound to their own cores share none
+    // A process bound to fewer cores than its share uses those only
     const unsigned int share = std::thread::hardware_concurrency() / std::max(1u, n_processes);
     return std::max(1u, std::min(n_usable_cores(), share));
   }
@@ -35,7 +35,7 @@ namespace Squeal
   void set_task_threads(const unsigned int n)
   {
     n_threads = std::max(1u, n);
-    // TBB does not start more threads than deal.II allows
+    // The limit of deal.II also applies to TBB, which runs the tasks
     dealii::MultithreadInfo::set_thread_limit(n_threads);
   }
 

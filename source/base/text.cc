@@ -14,10 +14,10 @@ namespace Squeal
 {
   namespace
   {
-    /// Maximum number of characters of a text that are shown.
+    /// Maximum length of a text in a message [characters].
     constexpr std::size_t largest_length = 80;
 
-    /// Characters without special meaning in any shell, as in Python's shlex.quote; other bytes are quoted.
+    /// Characters without special meaning in any shell, as in Python's shlex.quote(). Words with other characters are quoted.
     constexpr const char *plain_characters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789@%+=:,./_-";
   } // namespace
 

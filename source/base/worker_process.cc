@@ -53,7 +53,7 @@ namespace Squeal
   {
     const auto end_with_parent = [parent = ::getpid()](auto &) {
       ::prctl(PR_SET_PDEATHSIG, SIGTERM);
-      if (::getppid() != parent) // the parent ended before prctl()
+      if (::getppid() != parent) // the parent ended before the call of prctl()
         ::_exit(1);
     };
     try

@@ -24,7 +24,7 @@ namespace Squeal
       return friction_response(*in.coupled, *in.inverse, *in.set(Source::real), side);
     }
 
-    // ----------------------------------------------------------- given sets
+    // ------------------------------------------------------- sets of the input
 
     const BasisPart disc_free    = {"Phi_f^D", {Source::disc_free}, Source::disc_free, true};
     const BasisPart disc_sliding = {"Phi_s^D", {Source::disc_sliding}, Source::disc_sliding, true};
@@ -39,7 +39,7 @@ namespace Squeal
                                  {Source::real, Source::residuals, Source::coupled_factor},
                                  Source::residuals};
 
-    // ------------------------------------- one for each contact node, uncoupled
+    // ------------------------- uncoupled vectors, one for each contact node
 
     const std::vector<Source> normal     = {Source::uncoupled_factor, Source::normal_attachment};
     const std::vector<Source> tangential = {Source::uncoupled_factor, Source::tangential_attachment};

@@ -13,7 +13,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Smallest participation that gives a label to a mode [-].
+    /// Smallest participation for which a mode gets the label of a component mode [-].
     constexpr double smallest_participation = 0.1;
 
     /// Entry in a local row of this process.
@@ -28,7 +28,7 @@ namespace Squeal
 
   std::vector<double> nodal_masses(const Model &model, const SparseMatrix &mass)
   {
-    // From the x displacements: M e_x, and the diagonal
+    // Use the x displacements: row sums M e_x with e_x = 1 at every node, and the diagonal of M
     MultiVector     e_x(model.free_map(), 1);
     Eigen::VectorXd diagonal = Eigen::VectorXd::Zero(e_x.n_local_rows());
     for (const Node &node : model.nodes())
@@ -124,7 +124,7 @@ namespace Squeal
   {
     const int n_modes = static_cast<int>(shares.size());
 
-    // A label is given to at most as many modes as there are component modes with it
+    // No label is given to more modes than there are component modes with this label
     std::vector<ModeLabel> names;
     for (const ComponentModes *reference : references)
       names.insert(names.end(), reference->labels.begin(), reference->labels.end());

@@ -13,11 +13,11 @@
 
 namespace Squeal
 {
-  /// Relative norm of the component of r^k e^{inθ} outside the span of the others, below which it is dropped: well above rounding errors
-  /// [-].
+  /// A function r^k e^{inθ} is dropped if its component orthogonal to the other functions has a relative norm below this limit, which is
+  /// well above rounding errors [-].
   constexpr double smallest_rest = 1e-8;
 
-  /// Sums over all processes, identical on all of them to the last bit.
+  /// Sum over all processes, bitwise identical on all of them.
   inline DenseMatrix summed(const MPI_Comm communicator, DenseMatrix parts)
   {
     sum_over_processes(communicator, parts.data(), parts.size());
@@ -45,7 +45,7 @@ namespace Squeal
           const double before = norm(j);
           for (int pass = 0; pass < 2 && j > 0; ++pass)
             {
-              // A one-column matrix: for a vector Eigen calls gemv with a leading dimension of zero on processes without rows
+              // Use a one-column matrix: for a vector, Eigen would call gemv with a leading dimension of zero on processes without rows
               const DenseMatrix c = summed(communicator, Q.leftCols(j).transpose() * Q.middleCols(j, 1));
               R.col(j).head(j) += c.col(0);
               Q.middleCols(j, 1).noalias() -= Q.leftCols(j) * c;
@@ -80,7 +80,7 @@ namespace Squeal
     }
 
     MPI_Comm        communicator;
-    Eigen::VectorXd roots; ///< of the weights
+    Eigen::VectorXd roots; ///< square roots of the weights
     DenseMatrix     Q, R;  ///< functions times roots = Q R; dropped functions are zero in Q and have ones on the diagonal of R
   };
 

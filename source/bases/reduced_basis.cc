@@ -14,9 +14,9 @@ namespace Squeal
 {
   namespace
   {
-    /// Largest max |T_rᵀ M_c T_r − I|.
+    /// Upper limit of max |T_rᵀ M_c T_r − I| [-].
     constexpr double largest_orthonormality_defect = 1e-10;
-    /// M-norm of the component of a rigid-body motion outside given modes, below which they contain it.
+    /// Modes contain a rigid-body motion if its component M-orthogonal to the modes has an M-norm below this limit [-].
     constexpr double contained = 1e-6;
 
     std::string where(const BasisRecipe &recipe)
@@ -24,7 +24,7 @@ namespace Squeal
       return std::string("reduced basis `") + recipe.name + "`";
     }
 
-    /// @p pointer, or an error that names the missing object.
+    /// Dereferences @p pointer; throws a SolverError that names the missing object if it is null.
     template <typename Type>
     const Type &required(const Type *pointer, const BasisRecipe &recipe, const std::string &what)
     {
@@ -35,7 +35,7 @@ namespace Squeal
       return *pointer;
     }
 
-    /// T_r0: the parts joined.
+    /// T_r0: the columns of all parts.
     MultiVector join_parts(const BasisRecipe &recipe, const BasisIngredients &in, BasisCounts &counts)
     {
       std::vector<MultiVector> sets;

@@ -17,10 +17,10 @@ namespace Squeal
 {
   namespace
   {
-    /// Normal motion of contact nodes relative to the motion of the disc, below which it is a rounding error of sliding [-].
+    /// Normal displacements of contact nodes below this fraction of the largest displacement are rounding errors [-].
     constexpr double no_normal_motion = 1e-8;
 
-    /// ω_max / s: the shift is far below the elastic modes, so that each refinement gains several digits.
+    /// ω_max / s: s is so far below the elastic frequencies that each refinement step gains several digits [-].
     constexpr double band_per_shift = 5000.;
 
     /// Refinement ends if it no longer halves the largest ‖K u − f‖ / ‖f‖, which must then be below this limit [-].
@@ -36,8 +36,8 @@ namespace Squeal
       return {Y * ritz.vectors, ritz.values};
     }
 
-    /// Shift for K + s² M if the lowest ω_1 < s: K⁻¹ amplifies a motion at ω_1, and its rounding errors, by (ω/ω_1)² relative to a mode at
-    /// ω.
+    /// Shift s for K + s² M if the lowest frequency ω_1 < s, else 0: without it, K⁻¹ would amplify a motion at ω_1, and its rounding
+    /// errors, by (ω/ω_1)² relative to a mode at ω.
     double shift_for(const std::vector<double> &eigenvalues, const double largest_circular_frequency)
     {
       const double s = largest_circular_frequency / band_per_stabilizing_shift;
@@ -63,8 +63,8 @@ namespace Squeal
 
   MultiVector rigid_disc_motions(const Model &model, const CoupledSystem &system)
   {
-    // In coupled coordinates, rows of T_c with a single one select dofs. The transpose therefore picks the disc's displacements, because
-    // only dofs of pins are eliminated, and the eliminated ones are at rest here
+    // T_c eliminates dofs of pins only, which are zero here, and selects all other dofs. Its transpose therefore extracts the displacements
+    // of the disc
     return transpose_times(*system.kernel, rigid_motions(model, 0));
   }
 

@@ -81,13 +81,13 @@ namespace Squeal
     const bool disc = component == Component::disc;
     const auto T    = component_kernel(model, interface, component, ContactBoundary::sliding);
 
-    // Motions without resistance by mounts or rigid faces
+    // Rigid-body motions that neither mounts nor rigid faces resist
     std::optional<MultiVector> motions;
     if (const MultiVector *N = response.rigid_body_modes(); disc && N != nullptr)
       if (const auto sliding = contact_motions(*contact.normal, *N).sliding)
         motions = coordinates(*T, *sliding);
 
-    // u = u_0 + T q, u_0 = n at one node; TᵀK (u_0 + T q) = 0
+    // u = u_0 + T q with u_0 = n at one node and TᵀK (u_0 + T q) = 0
     MultiVector u = restricted(model, component, transpose_times(*contact.normal, unit_vectors(contact.normal->rows())), disc ? 1. : -1.);
     const InertiaRelief sliding(congruence(*system.stiffness, *T), congruence(*system.mass, *T), motions, largest_circular_frequency,
                                 library,

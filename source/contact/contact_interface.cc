@@ -21,10 +21,10 @@ namespace Squeal
 
   namespace
   {
-    /// Direction cosine of a normal below which it is a rounding error of the coordinates [-].
+    /// Components of a unit normal below this limit are rounding errors of the coordinates [-].
     constexpr double not_inclined = 1e-12;
 
-    /// Sliding velocity relative to the largest one, below which its direction is undefined by rounding errors [-].
+    /// Sliding velocities below this fraction of the largest one have no reliable direction because of rounding errors [-].
     constexpr double smallest_lever = 1e-8;
 
     /// A face with its nodes, for communication.
@@ -197,7 +197,7 @@ namespace Squeal
       return result;
     }
 
-    /// Smallest part of the contact face of a body that must be opposite the disc [-].
+    /// Smallest admissible fraction of a body's contact face that is opposite the disc [-].
     constexpr double least_of_body = 0.2;
 
     void check_overlap(const Model &model, const ContactSurface &pins, const ContactInterface &found)

@@ -14,7 +14,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Direction in which a node is eliminated: the coordinate axis closest to the normal.
+    /// Displacement component that is eliminated at a node: the coordinate axis closest to the normal.
     unsigned int eliminated_direction(const ContactNode &node)
     {
       unsigned int k;
@@ -22,7 +22,7 @@ namespace Squeal
       return k;
     }
 
-    /// Eliminates one dof of a node of @p own from n·(Σ w u of @p own − Σ w u of @p partners) = 0 in terms of the other dofs of both.
+    /// Solves n·(Σ w u of @p own − Σ w u of @p partners) = 0 for one dof of @p node, which is in @p own, in terms of the other dofs.
     void eliminate(SlaveRows &rows, const ContactNode &contact, const Node &node, const WeightedNodes &own, const WeightedNodes &partners)
     {
       const unsigned int k    = eliminated_direction(contact);
@@ -37,12 +37,12 @@ namespace Squeal
 
     void resolve_contact(SlaveRows &rows)
     {
-      if (!resolve(rows)) // edge and corner nodes of quadratic faces depend on each other
+      if (!resolve(rows)) // slaves may depend on slaves: edge and corner nodes of quadratic faces
         throw MeshError("contact nodes depend on each other circularly", "surfaces disc_contact and pin_contact",
                         "make the contact faces overlap by whole elements");
     }
 
-    /// Column numbers of the masters of all slaves, from their owners; the columns of this process begin with number @p first.
+    /// Column numbers of the masters of all slaves, obtained from their owners; the columns of this process start at @p first.
     std::map<int, int> master_columns(const RowMap &rows, const std::vector<int> &column, const int first, const SlaveRows &slaves)
     {
       std::map<int, int> result;
@@ -65,7 +65,7 @@ namespace Squeal
     /// Selects the @p kept local dofs that are not slaves, and adds the rows of the slaves.
     std::shared_ptr<SparseMatrix> kernel_matrix(const RowMap &rows, const std::vector<bool> &kept, const SlaveRows &slaves)
     {
-      // Columns have the order and owner of their dofs
+      // Columns have the order and owners of their dofs
       std::vector<int> column(kept.size(), -1);
       int              n_own = 0;
       for (unsigned int i = 0; i < kept.size(); ++i)
@@ -85,7 +85,7 @@ namespace Squeal
       });
     }
 
-    /// One row for each contact node: @p fill(node, row).
+    /// Matrix with one row for each contact node, set by @p fill(node, row).
     template <typename Fill>
     std::shared_ptr<SparseMatrix> contact_rows(const Model &model, const ContactInterface &interface, const Fill &fill)
     {
@@ -94,7 +94,7 @@ namespace Squeal
                                             [&](const int i, SparseMatrix::Row &row) { fill(interface[rows.number(i)], row); });
     }
 
-    /// Adds v·Σ weight u of nodes, times a factor.
+    /// Adds @p factor times v·Σ weight u of the nodes to a row.
     void add_along(const Eigen::Vector3d &v, const WeightedNodes &nodes, const double factor, SparseMatrix::Row &row)
     {
       for (unsigned int k = 0; k < 3; ++k)
@@ -205,7 +205,7 @@ namespace Squeal
 
   MultiVector coordinates(const SparseMatrix &T, const MultiVector &u)
   {
-    // Columns have the order and owner of the selected dofs, also if a slave equals the dof selected next
+    // The columns of T have the order and owners of the selected dofs, even if a slave equals the dof that is selected next
     const RowMap     &columns = T.columns();
     MultiVector       q(columns, u.n_columns());
     SparseMatrix::Row row;

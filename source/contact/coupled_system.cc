@@ -14,7 +14,7 @@ namespace Squeal
   {
     using Matrix = std::shared_ptr<const SparseMatrix>;
 
-    /// Contact damping along b and t with the factors P_bᵀ and P_tᵀ, on coupled dofs or others.
+    /// Contact damping along b and t with the factors P_bᵀ and P_tᵀ, on coupled or uncoupled dofs.
     std::vector<Term> contact_damping_terms(const std::shared_ptr<const LowRankFactor> &radial,
                                             const std::shared_ptr<const LowRankFactor> &tangential)
     {
@@ -44,7 +44,7 @@ namespace Squeal
   ParameterValues CoupledSystem::at(const double value, const ParameterValues &others) const
   {
     ParameterValues result = others;
-    result.insert(values.begin(), values.end()); // remaining free parameters
+    result.insert(values.begin(), values.end()); // keeps the values of @p others
     result[varied] = {value};
     return result;
   }

@@ -12,7 +12,7 @@ namespace Squeal
 {
   namespace
   {
-    /// True for friction terms by which UpdatedInverse updates its factor.
+    /// True for friction terms that UpdatedInverse can include by a low-rank update of its factor.
     bool is_low_rank_friction(const Term &term, const std::string &varied, const ParameterValues &values)
     {
       if (term.kind != TermKind::friction || term.matrix || !term.weights.empty() || varied != SystemParameter::friction)
@@ -61,7 +61,7 @@ namespace Squeal
       return result;
     }
 
-    /// Sets mass and stiffness from the symmetric frictionless terms; none if either has no such term.
+    /// Sets mass and stiffness from the symmetric frictionless terms; both stay null if either has no such term.
     void set_symmetric_parts(CoupledSystem &system)
     {
       const auto has_part = [&](const int power) {
@@ -155,7 +155,8 @@ namespace Squeal
     if (is_definite(0.))
       return 0.;
     const double shift = part_of_band * largest_circular_frequency;
-    // Eigenvalues of rigid-body motions are rounding errors; more negative ones would grow
+    // Negative eigenvalues within the rounding errors belong to rigid-body motions; larger ones are growing motions, for which no shift is
+    // used
     return is_definite(std::min(shift * shift, system.hidden_square)) && is_definite(shift * shift) ? std::optional(shift) : std::nullopt;
   }
 } // namespace Squeal

@@ -27,7 +27,7 @@ namespace Squeal
         result[node.pin].direction -= node.area * node.normal;
       for (Travel &travel : result)
         {
-          // Where normals cancel exactly the direction is zero, which no node faces
+          // If the normals cancel exactly, the direction stays zero, and facing_away() reports the body
           if (const double size = travel.direction.norm(); size > 0.)
             travel.direction /= size;
           if (std::abs(travel.direction[2]) > along_axis)
@@ -107,10 +107,10 @@ namespace Squeal
   {
     const std::vector<Travel> directions = travels(model, interface);
     const std::vector<int>    plates     = backplate_numbers(directions, false);
-    // Areas of mortar nodes vary
+    // The areas of mortar nodes vary: distribute the load by area
     const bool are_pairs = std::all_of(interface.begin(), interface.end(), [](const ContactNode &node) { return node.is_pair(); });
     const auto unit      = [are_pairs](const ContactNode &node) { return are_pairs ? 1. : node.area; };
-    std::map<int, double> forces; // along the travel, for unit reactions
+    std::map<int, double> forces; // load per backplate along its travel, for unit reactions
     for (const ContactNode &node : interface)
       forces[plates[node.pin]] += unit(node) * directions[node.pin].force(node, operation.friction_coefficient);
     std::vector<double> reactions;

@@ -111,7 +111,7 @@ namespace Squeal
   MultiVector UpdatedInverse::solve_frictionless(const MultiVector &B) const
   {
     MultiVector            Y(B.map(), B.n_columns());
-    const std::vector<int> columns = nonzero_columns(B); // imaginary parts of neutral modes are zero
+    const std::vector<int> columns = nonzero_columns(B); // skips zero columns: the imaginary parts of neutral modes
     if (static_cast<int>(columns.size()) == B.n_columns())
       frictionless().apply(B, Y);
     else if (!columns.empty())

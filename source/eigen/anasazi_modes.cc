@@ -13,7 +13,7 @@
 
 namespace Anasazi
 {
-  /// Anasazi's vector operations for MultiVector, with Anasazi's names.
+  /// Vector operations that Anasazi requires for MultiVector; the names are Anasazi's.
   template <>
   class MultiVecTraits<double, Squeal::MultiVector>
   {
@@ -27,7 +27,7 @@ namespace Anasazi
       return {B.values(), B.numRows(), B.numCols(), Eigen::OuterStride<>(B.stride())};
     }
 
-    /// A heap-allocated view.
+    /// View of columns of X, allocated on the heap as Anasazi requires.
     static RCP<MV> view(const MV &X, const int first, const int n)
     {
       return Teuchos::rcp(new MV(Squeal::view(X, first, n)));
@@ -82,7 +82,7 @@ namespace Anasazi
     }
     static void MvAddMv(const double alpha, const MV &X, const double beta, const MV &Y, MV &Z)
     {
-      // A factor of zero must remove NaN
+      // A factor of zero must also clear NaN
       if (beta == 0.)
         Z.local() = alpha * X.local();
       else if (alpha == 0.)
@@ -165,7 +165,7 @@ namespace Squeal
     if (!problem->setProblem())
       throw SolverError("Anasazi rejected the eigenvalue problem", request.what, "try ARPACK as solver of the real modes");
 
-    // Enough memory for convergence without a restart, which would cost more time than the memory is worth
+    // Large enough for convergence without restarts, which would cost too much time
     const int n_blocks =
       std::min(std::max(3, (5 * request.n_wanted / 2 + block_size - 1) / block_size + 10 * (1 + request.attempt)), n / block_size - 1);
 
@@ -174,11 +174,11 @@ namespace Squeal
     parameters.set("Which", "LM");
     parameters.set("Block Size", block_size);
     parameters.set("Num Blocks", n_blocks);
-    // No restarts: Anasazi 13.2 writes beyond its workspace when it restarts a Hermitian problem whose projected matrix, symmetric up to
-    // rounding, has a complex pair at the boundary, as caused by multiple eigenvalues. Modes that have not converged are found by another
-    // start, deflated by those found
+    // No restarts: Anasazi 13.2 writes beyond its workspace if it restarts a Hermitian problem and rounding errors turn a multiple
+    // eigenvalue of the projected matrix into a complex pair at the boundary. Missing modes are found by another start, in which converged
+    // modes are deflated
     parameters.set("Maximum Restarts", 0);
-    // Number of blocks between two convergence checks, each a dense Schur form of all blocks so far
+    // Number of blocks between two convergence checks; each check computes a dense Schur form of all previous blocks
     parameters.set("Step Size", std::max(4, n_blocks / 16));
     parameters.set("Convergence Tolerance", request.tolerance);
     parameters.set("Relative Convergence Tolerance", true);
@@ -186,7 +186,7 @@ namespace Squeal
     try
       {
         Anasazi::BlockKrylovSchurSolMgr<double, MultiVector, LinearOperator> solver(problem, parameters);
-        // The number of converged modes is checked below
+        // Ignore the return value: the number of converged modes is checked below
         solver.solve();
       }
     catch (const std::exception &error)

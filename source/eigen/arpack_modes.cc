@@ -37,7 +37,7 @@ namespace Squeal
     std::vector<double> workl(lworkl);
     int                 iparam[11] = {}, ipntr[14] = {};
     iparam[0] = 1;    // exact shifts
-    iparam[2] = 1000; // restarts
+    iparam[2] = 1000; // maximum number of restarts
     iparam[6] = 3;    // shift-invert
 
     MultiVector start = random_vectors(map, 1, request.seed);
@@ -70,7 +70,7 @@ namespace Squeal
               throw_arpack("pdsaupd (unknown request)", ido, request.what);
           }
       }
-    // 1: not all have converged within the restarts; those that have are returned
+    // 1: some values have not converged within the allowed restarts; the converged ones are returned
     if (info < 0 || info > 1)
       throw_arpack("pdsaupd", info, request.what);
     if (iparam[4] == 0)

@@ -14,26 +14,26 @@ namespace Squeal
 {
   namespace
   {
-    /// Fraction of modes in the band above which separating them does not pay off [-].
+    /// Largest fraction of modes in the band for which their separation saves time [-].
     constexpr double largest_part = 0.6;
-    /// Ratio of the squared frequencies on either side of the gap above which convergence is fast [-].
+    /// Smallest ratio of the squared frequencies on both sides of the gap for fast convergence [-].
     constexpr double narrowest_gap = 1.2;
-    /// Target for the residual after the last step, in the norm of unit modes, and limit accepted if rounding errors prevent more. Friction
-    /// transfers residuals of high modes to low ones.
+    /// Target for the residual after the last step, for modes of unit norm, and limit that is accepted if rounding errors prevent a smaller
+    /// residual. Both are strict because friction transfers residuals of high modes to low modes.
     constexpr double error_wanted = 1e-13, error_allowed = 1e-12;
     constexpr int    most_steps = 80;
-    /// A step that is longer than this fraction of the previous one may consist of rounding errors [-].
+    /// A step whose length exceeds this fraction of the previous one may consist of rounding errors [-].
     constexpr double contraction = 0.7;
-    /// Length relative to the first step at which the iteration is abandoned [-].
+    /// Length of a step, relative to the first one, at which the iteration is abandoned [-].
     constexpr double hopeless_growth = 1000.;
     /// Number of previous steps that are combined.
     constexpr std::size_t most_remembered = 8;
-    /// Smallest eigenvalue of a matrix with unit diagonal that is positive beyond rounding errors [-].
+    /// Eigenvalues of a matrix with unit diagonal above this limit are positive in spite of rounding errors [-].
     constexpr double least_definite = 1e-6;
-    /// Bound on ‖Z^m‖, with a margin for rounding errors, and number of squarings.
+    /// ‖Z^m‖ below this limit counts as a proof: 1 with a margin for rounding errors [-].
     constexpr double proof          = 0.9;
     constexpr int    most_squarings = 8;
-    /// Fraction of the band's end by which modes of lower frequencies, including rigid-body motions, are scaled [-].
+    /// Lower limit of the scale σ of a mode relative to the end of the band, for rigid-body and other slow modes [-].
     constexpr double smallest_part = 1e-2;
 
     /// Number of reference modes before the widest gap at or above the end of the band; 0 if there is none.
@@ -52,8 +52,8 @@ namespace Squeal
       return result;
     }
 
-    /// Solves residual(X) = 0 for X by steps X −= divided(residual(X)), from X = 0; returns convergence. Each step is combined with the
-    /// last few to minimise the residual (D. G. Anderson, Journal of the ACM 12 (1965) 547–560).
+    /// Solves residual(X) = 0 by steps X −= divided(residual(X)), starting with X = 0; returns true on convergence. Each step is combined
+    /// with the last few to minimise the residual (D. G. Anderson, Journal of the ACM 12 (1965) 547–560).
     template <typename Residual, typename Divided>
     bool solve_step_by_step(DenseMatrix &X, const Residual &residual, const Divided &divided)
     {
@@ -72,7 +72,7 @@ namespace Squeal
             return true;
           if (!(norm <= hopeless_growth * first))
             return false;
-          // Extrapolated: the next step is below the target
+          // By extrapolation, the next step is below the target
           if (norm <= error_wanted || (i > 0 && norm < before && norm * norm <= error_wanted * (before - norm)))
             {
               X -= step;
@@ -126,14 +126,14 @@ namespace Squeal
       const Eigen::VectorXd d = T.diagonal();
       if (!(d.minCoeff() > limit))
         return false;
-      // ½ P⁻¹ (...) P⁻¹, because friction couples a mode in proportion to the square of its frequency
+      // Scale to ½ P⁻¹ (...) P⁻¹, because friction couples a mode in proportion to the square of its frequency
       const DenseMatrix scaled = T * d.cwiseInverse().asDiagonal();
       DenseMatrix       S      = 0.5 * (scaled + scaled.transpose());
       S.diagonal() -= Eigen::VectorXd(limit * d.cwiseInverse().array() + least_definite);
       return S.llt().info() == Eigen::Success;
     }
 
-    /// True if Re κ > limit is proved for all eigenvalues κ of T, by the norm or by powers of the Cayley transform.
+    /// True if all_beyond_in_norm() or powers of the Cayley transform prove that Re κ > limit for all eigenvalues κ of T.
     bool all_beyond(const DenseMatrix &T, const double limit, const double scale)
     {
       if (all_beyond_in_norm(T, limit))
@@ -153,8 +153,8 @@ namespace Squeal
       return false;
     }
 
-    /// A block [0, Σ; −Σ_i⁻¹ B, −Σ_i⁻¹ D Σ_j] of the companion form in coordinates (x, λ x / σ); without Σ between different modes.
-    /// Products cost half as much as with a dense block.
+    /// A block [0, Σ; −Σ_i⁻¹ B, −Σ_i⁻¹ D Σ_j] of the companion form in coordinates (x, λ x / σ); Σ is zero in off-diagonal blocks. Products
+    /// cost half as much as with a dense block.
     class CompanionBlock
     {
     public:
@@ -209,7 +209,7 @@ namespace Squeal
       return A;
     }
 
-    /// Blocks of a matrix in modal coordinates, modes of the band first.
+    /// Blocks of a matrix in modal coordinates; the modes of the band come first.
     template <typename Block>
     struct Blocks
     {
@@ -226,8 +226,8 @@ namespace Squeal
     };
 
     /**
-     * @param divided_right, divided_left inverse operators of the reference for residuals of X and Y
-     * @param is_beyond true if T has no eigenvalue in the band
+     * @param divided_right, divided_left inverse operators of the symmetric pencil, applied to residuals of X and Y
+     * @param is_beyond returns true if T has no eigenvalue in the band
      */
     template <typename Block, typename Right, typename Left, typename Proof>
     std::optional<Separation> separated(const Blocks<Block> &B,

@@ -13,15 +13,15 @@ namespace Squeal
 {
   namespace
   {
-    /// Components of a vector below this fraction of it are rounding errors.
+    /// Components below this fraction of the norm of a vector are rounding errors [-].
     constexpr double negligible = 1e-15;
-    /// A unit vector whose norm falls below this in a second projection consists of rounding errors.
+    /// A unit vector whose norm is smaller than this after a second projection consists of rounding errors [-].
     constexpr double meaningless = 1e-3;
 
-    /// Columns are clearly independent if more than this fraction of them remains after projection.
+    /// A column is clearly independent if more than this fraction of its norm remains after projection [-].
     constexpr double independent = 1e-2;
 
-    /// Parts of stacked coordinates, r rows each, side by side.
+    /// The parts of stacked coordinates, r rows each, as adjacent column blocks.
     DenseMatrix parts_of(const DenseMatrix &states, const int degree)
     {
       const Eigen::Index r = states.rows() / degree, k = states.cols();
@@ -31,7 +31,7 @@ namespace Squeal
       return parts;
     }
 
-    /// Stacks parts, each with zero rows appended up to @p r_new.
+    /// Inverse of parts_of(): stacks the parts, each extended by zero rows to @p r_new rows.
     DenseMatrix stacked(const DenseMatrix &parts, const int degree, const int r_new)
     {
       const Eigen::Index k      = parts.cols() / degree;
@@ -41,8 +41,8 @@ namespace Squeal
       return states;
     }
 
-    /// X Π = Q R by modified Gram–Schmidt with column pivoting; columns with a remainder of at most @p smallest, one value for each, are
-    /// dropped. Q replaces the first columns of X; returns R Πᵀ, k × b.
+    /// X Π = Q R by modified Gram–Schmidt with column pivoting; a column is dropped if the norm of its remainder is at most its value in @p
+    /// smallest. Q replaces the first columns of X; returns R Πᵀ, k × b.
     DenseMatrix pivoted_qr(MultiVector &X, std::vector<double> smallest)
     {
       const int        b = X.n_columns();
@@ -61,7 +61,7 @@ namespace Squeal
             if (norms[j] > norms[pivot])
               pivot = j;
 
-          // ------------------------------------------------- the largest one next
+          // ------------------------------------------------- pivot: the largest column
           const double largest = norms[pivot];
           if (pivot > 0)
             {
@@ -77,7 +77,7 @@ namespace Squeal
           if (!(largest > smallest[k]))
             break;
 
-          // ------------------------------------------------- removed from the others
+          // ------------------------------------------------- projection of the others
           MultiVector q = view(X, k, 1);
           q *= 1. / largest;
           R(k, k) = largest;

@@ -18,11 +18,13 @@ namespace Squeal
 
     /// Corrections above this fraction of |λ| mean that ψᵀQ'(λ)φ vanishes: the eigenvalue is defective.
     constexpr double largest_correction = 1e-6;
-    /// ‖M − I‖_F attributed to rounding errors of modal coordinates; eigenvalues are corrected with M itself.
+    /// ‖M − I‖_F up to this limit is attributed to rounding errors of modal coordinates: M⁻¹ is omitted, but eigenvalues are corrected with
+    /// M.
     constexpr double unit_mass = 1e-11;
     /// |Im λ| / |λ| below which λ is certainly real [-].
     constexpr double surely_real = 1e-13;
-    /// |Im λ| / |λ| up to which λ counts as real: above rounding errors of corrected eigenvalues, far below oscillating modes [-].
+    /// |Im λ| / |λ| up to which λ counts as real: above rounding errors of corrected eigenvalues, far below the values of oscillating modes
+    /// [-].
     constexpr double real_dense = 1e-12;
 
     /// Square root of a real or complex number with Im λ ≥ 0.
@@ -50,7 +52,7 @@ namespace Squeal
         }
     }
 
-    /// Indices of the requested eigenvalues in their order; stores real ones in @p modes.
+    /// Indices of the requested eigenvalues in the order of the result; stores real eigenvalues in @p modes.
     std::vector<int> sorted_values(const int                          n,
                                    const std::function<Complex(int)> &value,
                                    const bool                         linear,
@@ -81,7 +83,7 @@ namespace Squeal
       return wanted;
     }
 
-    /// Modes as in dense_quadratic_modes(); with @p squares as in dense_modes_of_band().
+    /// Computes dense_quadratic_modes(), or, with @p squares, dense_modes_of_band().
     std::optional<DenseQuadraticModes> found_modes(const DenseMatrix         &mass,
                                                    const DenseMatrix         *damping,
                                                    const DenseMatrix         &stiffness,
@@ -128,7 +130,7 @@ namespace Squeal
           companion.bottomRightCorner(r, r) = C / -unit;
         }
       const auto lambda_of = [&](const Complex &of_companion) { return unit * (linear ? upper_root(of_companion) : of_companion); };
-      // Select few vectors beyond those kept below
+      // Compute few vectors in addition to those that are selected below
       const DenseEigenpairs pairs = eigenpairs(companion, [&](const Complex &of_companion) {
         const Complex lambda = lambda_of(of_companion);
         return std::abs(lambda.imag()) <= largest_circular_frequency &&
@@ -144,7 +146,7 @@ namespace Squeal
       modes.right = modes.left = ComplexDenseMatrix(r, k);
       if (k == 0)
         return modes;
-      // yᴴ A = λ yᴴ, but ψᵀ is not conjugated
+      // LAPACK's left vectors satisfy yᴴ A = λ yᴴ; ψ is the conjugate of y
       std::vector<int> columns;
       for (const int j : wanted)
         columns.push_back(static_cast<int>(std::lower_bound(pairs.numbers.begin(), pairs.numbers.end(), j) - pairs.numbers.begin()));
@@ -177,7 +179,7 @@ namespace Squeal
     for (Eigen::Index j = 0; j < X.cols(); ++j)
       if (const double largest = X.col(j).cwiseAbs().maxCoeff(); largest > 0.)
         {
-          // The first among equal ones
+          // Use the first entry among those of equal modulus
           const auto    x = X.col(j);
           const Complex pivot =
             *std::find_if(x.begin(), x.end(), [largest](const Complex &y) { return std::abs(y) >= (1. - 1e-8) * largest; });

@@ -11,8 +11,8 @@
 
 namespace Squeal
 {
-  /// S and its eigenvalues: the only conversion between λ, θ and ν. In units of the radius ρ: θ = ρ θ̂ with λ = s + θ for degree two, θ =
-  /// ρ² θ̂ with λ² = s² + θ for degree one; ν̂ = 1 / θ̂.
+  /// The operator S and the conversion between λ, θ and ν, in units of the radius ρ: θ = ρ θ̂ with λ = s + θ for degree two, θ = ρ² θ̂ with
+  /// λ² = s² + θ for degree one; ν̂ = 1 / θ̂.
   class InverseAtShift
   {
   public:
@@ -24,8 +24,8 @@ namespace Squeal
       , zero_square(options.zero_modulus > 0. ? options.zero_modulus * options.zero_modulus :
                                                 std::pow(zero_frequency * options.largest_circular_frequency, 2))
     {
-      // The discs |λ - s| ≤ radius and |λ² - s²| ≤ radius² contain every requested λ. The farthest one is the corner with the largest Im λ
-      // for degree one, -ρ for degree two
+      // The discs |λ - s| ≤ radius and |λ² - s²| ≤ radius² contain every requested λ. The most distant λ is the corner with the largest Im
+      // λ for degree one, and -ρ for degree two
       const std::complex<double> corner(-options.largest_damping * options.largest_circular_frequency, options.largest_circular_frequency);
       largest_modulus = std::abs(corner);
       radius          = degree == 2 ? largest_modulus + s : std::sqrt(std::abs(corner * corner - s * s));
@@ -56,7 +56,7 @@ namespace Squeal
       n_solves += b;
     }
 
-    /// λ for ν; for degree one the λ with Im λ ≥ 0, and Re λ ≥ 0 if it is real.
+    /// λ for ν; for degree one, the root with Im λ ≥ 0, and with Re λ ≥ 0 if it is real.
     std::complex<double> value(const std::complex<double> nu) const
     {
       const double               tiny  = std::numeric_limits<double>::min();
@@ -76,15 +76,15 @@ namespace Squeal
     }
 
     /**
-     * Estimate of ‖Q(λ)φ‖/‖Kφ‖ for φ = upper part of S x and ‖S x - ν x‖ = ε.
-     * With S x = ν x + [r_0; r_1], Q(λ)φ = θ (C + 2 s M) r_0 + θ² M r_0 + ρ θ M r_1 (degree two) or θ M r_0 (degree one), without the
-     * stiffness. Relative to |λ²| |ν| ‖M u‖ for uniform masses; the true residuals decide.
+     * Estimate of ‖Q(λ)φ‖/‖Kφ‖ for φ = upper part of S x and ‖S x - ν x‖ = ε. With S x = ν x + [r_0; r_1], Q(λ)φ = θ (C + 2 s M) r_0 + θ² M
+     * r_0 + ρ θ M r_1 (degree two) or θ M r_0 (degree one): the stiffness is not needed. The estimate divides by |λ²| |ν| ‖M u‖ and assumes
+     * uniform masses; modes are accepted by their true residuals.
      */
     double residual_estimate(const std::complex<double> nu, const double epsilon) const
     {
       const double theta  = 1. / std::max(std::abs(nu), std::numeric_limits<double>::min());
       const double square = std::norm(value(nu)), lambda = std::sqrt(square) / radius;
-      // The error of λ² must keep a zero below the threshold
+      // For a zero eigenvalue, the error of λ² must be well below the threshold for zeros
       if (square < zero_square)
         return std::max(1., theta * radius * radius * zero_margin / zero_square) * epsilon * theta;
       if (degree == 1)
@@ -92,7 +92,7 @@ namespace Squeal
       return epsilon * theta * theta / (lambda * lambda) * (1. + theta + 2. * s / radius) * std::hypot(1., theta);
     }
 
-    /// Tolerances of 10⁻⁹ reach 10⁻² of the zero threshold.
+    /// With a tolerance of 10⁻⁹, the error of λ² of a zero is below 10⁻² of the threshold [-].
     static constexpr double zero_margin = 1e-7;
 
     const QuadraticPencil &pencil;
@@ -100,13 +100,13 @@ namespace Squeal
     double                 s, radius;
     double                 largest_modulus; ///< ρ of the requested λ [rad/s]
     int                    degree;
-    double                 zero_square; ///< |λ|² up to this counts as zero
+    double                 zero_square; ///< |λ|² up to this limit counts as zero [rad²/s²]
     mutable int            n_solves = 0;
   };
 
-  /// Corrects modes that miss the tolerance by steps of minimal residuals with Q(s)⁻¹. Modes far below the others contain rounding errors
-  /// of high frequency, and modes with strong dampers contain high-frequency motions, small in φ but large in Kφ or Cφ, for which Q(s)⁻¹
-  /// nearly inverts Q(λ) up to a factor. Steps that do not lower the residual are rejected.
+  /// Corrects modes that miss the tolerance by steps of minimal residuals with Q(s)⁻¹. Modes of very low frequency contain high-frequency
+  /// rounding errors, and modes with strong dampers contain high-frequency motions. Both are small in φ but large in Kφ or Cφ, and for them
+  /// Q(s)⁻¹ is nearly proportional to Q(λ)⁻¹. Steps that do not lower the residual are rejected.
   void correct(const QuadraticPencil &pencil, const LinearOperator &inverse, QuadraticModes &modes, double tolerance);
 
   /// Largest ratio of a residual to its limit: the tolerance or, if larger, rounding errors of Kφ and λCφ.

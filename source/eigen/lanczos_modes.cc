@@ -12,14 +12,14 @@ namespace Squeal
 {
   namespace
   {
-    /// Components of a vector below this fraction of it are rounding errors.
+    /// Components below this fraction of the norm of a vector are rounding errors [-].
     constexpr double rounding_of_whole = 1e-15;
-    /// A unit vector whose norm falls below this in a second projection consists of rounding errors.
+    /// A unit vector whose norm is smaller than this after a second projection consists of rounding errors [-].
     constexpr double rounding_of_unit = 1e-3;
 
     /**
-     * W = Q R by Gram–Schmidt in the inner product of M, updating B = M W; columns with a remainder of at most the fraction @p smallest are
-     * dropped. Q and M Q replace the first columns of W and B; returns R, k × b.
+     * W = Q R by Gram–Schmidt in the inner product of M, updating B = M W; columns are dropped if at most the fraction @p smallest of their
+     * norm remains. Q and M Q replace the first columns of W and B; returns R, k × b.
      */
     DenseMatrix mass_qr(MultiVector &W, MultiVector &B, const double smallest)
     {
@@ -53,13 +53,13 @@ namespace Squeal
      *
      *   A V = V T + Q R Eᵀ,   [V Q] M-orthonormal,
      *
-     * T block tridiagonal, E the last columns of the identity (R. G. Grimes, J. G. Lewis, H. D. Simon, SIAM J. Matrix Anal. Appl.
-     * 15 (1994) 228).
+     * where T is block tridiagonal and E contains the last columns of the identity (R. G. Grimes, J. G. Lewis, H. D. Simon, SIAM J. Matrix
+     * Anal. Appl. 15 (1994) 228).
      */
     class BlockLanczos
     {
     public:
-      /// Overwrites @p start. Linearly dependent columns of it are dropped.
+      /// Overwrites @p start; its linearly dependent columns are dropped.
       BlockLanczos(const ShiftInvert &A, MultiVector start, const int n_reserved)
         : A(A)
         , basis(std::make_unique<MultiVector>(A.map(), std::max(n_reserved, 1), false))
@@ -87,7 +87,7 @@ namespace Squeal
         R = next;
       }
 
-      /// Eigenpairs of T, largest first, and ‖A x − ν x‖ of their Ritz vectors in the norm of M.
+      /// Eigenpairs of T, largest first, and the residuals ‖A x − ν x‖ of their Ritz vectors in the M-norm.
       struct RitzPairs
       {
         std::vector<double> values, errors;
@@ -162,7 +162,7 @@ namespace Squeal
       DenseMatrix                  T, R;
     };
 
-    /// Number of converged Ritz values, from the largest up to the first that has not converged.
+    /// Number of Ritz values, in descending order, before the first that has not converged.
     int n_converged(const BlockLanczos::RitzPairs &ritz, const double tolerance)
     {
       int n = 0;
@@ -178,10 +178,10 @@ namespace Squeal
     const int n = A.n_free(), width = std::max(1, std::min(request.block_size, n / 4));
     const int largest = std::min(n - width, 4 * request.n_wanted + (20 + 10 * request.attempt) * width);
 
-    // One application removes high frequencies from the start vectors
+    // Apply A once to remove high frequencies from the random start vectors
     MultiVector random = random_vectors(A.map(), width, request.seed), start(A.map(), width, false);
     A.apply(random, start);
-    // Reserve enough: unused space takes no physical memory, while growing later would need a copy
+    // Reserve the largest size: unused space takes no physical memory, and growing later would require a copy
     BlockLanczos process(A, std::move(start), largest + 2 * width);
 
     // About two vectors per mode are needed in the end

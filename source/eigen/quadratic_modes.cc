@@ -23,18 +23,18 @@ namespace Squeal
     constexpr double nearly_real = 1e-7;
     /// Number of values outside the radius that must converge, to be sure that all inside have converged.
     constexpr int n_beyond = 2;
-    /// Block steps from random directions, with the found values deflated, before these count as complete.
+    /// Number of block steps, from random directions and with the found values deflated, that check for missing values.
     constexpr int n_proving_steps = 8;
-    /// Number of these steps if fewer modes were found than expected.
+    /// Number of such steps if fewer modes were found than expected.
     constexpr int n_searching_steps = 16;
 
     /// Convergence of the Ritz values.
     struct Convergence
     {
       int    n_inside    = 0; ///< Ritz values inside the radius
-      int    n_converged = 0; ///< of these, converged
+      int    n_converged = 0; ///< converged Ritz values inside the radius
       double worst       = 0.;
-      bool   complete    = false; ///< all of them, and some outside, have converged
+      bool   complete    = false; ///< all values inside the radius, and some outside, have converged
     };
 
     Convergence convergence(const InverseAtShift &transformation, const RitzPairs &ritz, const double tolerance, const bool exhausted)
@@ -62,7 +62,7 @@ namespace Squeal
       return state;
     }
 
-    /// A λ = x + iy in the result, before its vectors are computed.
+    /// A λ of the result before its vectors are computed.
     struct Candidate
     {
       Complex value;
@@ -100,7 +100,7 @@ namespace Squeal
           if (!transformation.inside(nu) || std::abs(lambda) > transformation.largest_modulus)
             continue;
           const bool is_real = !(std::abs(lambda.imag()) / std::abs(lambda) > nearly_real);
-          // Real λ below a fraction of the band's end are creep motions: they count as zeros
+          // Real λ below zero_frequency times the end of the band are creep motions and count as zeros
           if (!(std::norm(lambda) > transformation.zero_square) ||
               (is_real && !(std::abs(lambda) / options.largest_circular_frequency > zero_frequency)))
             modes.n_zero_values += transformation.degree == 1 ? 2 : 1;
@@ -112,7 +112,8 @@ namespace Squeal
             }
           else if (lambda.imag() > 0. && lambda.imag() <= options.largest_circular_frequency && lambda.real() >= -options.largest_decay)
             {
-              // The members of a conjugate pair ν share two columns; for degree one both have a λ with Im λ > 0, for degree two only one
+              // Both members of a conjugate pair ν use the same two columns; for degree one, both have a λ with Im λ > 0, for degree two
+              // only one of them
               candidates.push_back({lambda, ritz.positions[i], !pair ? 0. : nu.imag() > 0. ? 1. : -1.});
             }
         }
@@ -129,7 +130,7 @@ namespace Squeal
       modes.imaginary_part = k > 0 ? std::make_shared<MultiVector>(pencil.mass->map(), k) : nullptr;
       if (k > 0)
         {
-          // A few modes at a time: memory may not suffice for all of them twice
+          // Process a few modes at a time: there may not be enough memory for two copies of all modes
           constexpr int modes_together = 16;
           for (int first = 0; first < k; first += modes_together)
             {
@@ -193,7 +194,7 @@ namespace Squeal
         refuse("The operators have different sizes", "pass the factors of the same pencil");
     }
 
-    /// The iteration: extends the Krylov space, restarts it, and checks convergence.
+    /// Extends the Krylov space, restarts it, and checks convergence.
     class Search
     {
     public:
@@ -237,13 +238,13 @@ namespace Squeal
                          std::to_string(krylov.dimension) + " vectors, " + std::to_string(transformation.n_solves) + " solves");
       }
 
-      /// Size at the next check; restarts if it does not fit.
+      /// Size of the space at the next check; restarts if this size exceeds the largest basis.
       int next_size()
       {
         int n_more = n_until_next_look();
         if (krylov.dimension + n_more > largest_basis())
           {
-            // Half of the space beyond the requested vectors keeps values that are converging
+            // Use a third of the space beyond the requested vectors to keep values that are still converging
             const int n_kept = std::min(krylov.dimension, state.n_inside + (largest_basis() - state.n_inside) / 3);
             if (++n_restarts > options.max_restarts)
               throw_unconverged(state, state.worst, "no convergence after " + std::to_string(options.max_restarts) + " restarts", options);
@@ -253,9 +254,9 @@ namespace Squeal
         return krylov.dimension + n_more;
       }
 
-      /// Number of vectors until the next check. All values converge within a few steps, each of which costs more than a check:
-      /// extrapolates the decrease of the worst one since the last check; three quarters of the result, because it becomes faster at the
-      /// end.
+      /// Number of vectors until the next check. Steps cost more than checks, and finally all values converge within a few steps. The
+      /// number is therefore extrapolated from the decrease of the largest error since the last check, and reduced to three quarters,
+      /// because convergence accelerates at the end.
       int n_until_next_look() const
       {
         const int n_missing = state.n_inside - state.n_converged, least = transformation.degree * std::max(krylov.block_size, 1);
@@ -267,9 +268,9 @@ namespace Squeal
       }
 
       /**
-       * Searches for eigenvalues inside the radius without a component in the block, such as members of a cluster larger than the block: a
-       * short process from random directions, with everything inside deflated. If it finds any, random directions join the search and the
-       * result is false.
+       * Searches for missing eigenvalues inside the radius, for example in a cluster larger than the block, by a short process from random
+       * directions in which all values found inside the radius are deflated. Returns false if it finds any; random directions are then
+       * injected into the block.
        */
       bool proven()
       {
@@ -306,16 +307,16 @@ namespace Squeal
 
       const QuadraticModesOptions &options;
       InverseAtShift               transformation;
-      int                          n_wanted; ///< states needed at least
+      int                          n_wanted; ///< estimated number of basis states for the requested values
       CompactKrylov                krylov;
-      double                       tolerance; ///< for the estimated residual
+      double                       tolerance; ///< limit for estimated residuals
       RitzPairs                    ritz;
       Convergence                  state;
       bool                         exhausted  = false; ///< the basis spans all states
       int                          n_restarts = 0, n_basis_largest = 0;
 
     private:
-      /// Sums of the close vectors, if any, and of all others, so that the block has a component in every mode.
+      /// Random sums of the close vectors, with a small random part that gives the block a component in every mode.
       MultiVector first_block()
       {
         constexpr double share_of_others = 1e-3;
@@ -334,7 +335,7 @@ namespace Squeal
         return [this](const MultiVector &states, MultiVector &image) { transformation.apply(states, image); };
       }
 
-      /// Different vectors at every call.
+      /// Random vectors, different at every call.
       MultiVector fresh_vectors(const int n)
       {
         return random_vectors(transformation.pencil.mass->map(), n, options.seed + 7919 * n_injections++);
@@ -346,7 +347,7 @@ namespace Squeal
       }
 
       int    n_injections   = 0;
-      int    dimension_seen = 0, dimension_before = 0; ///< at the last check and at the previous one
+      int    dimension_seen = 0, dimension_before = 0; ///< dimension at the last check and at the previous one
       double worst_before = 0.;
     };
   } // namespace
@@ -379,7 +380,7 @@ namespace Squeal
                 modes.n_basis    = search.n_basis_largest;
                 return modes;
               }
-            // The estimate assumes uniform masses: tighten it by its error
+            // The estimate assumes uniform masses: tighten its limit by the ratio to the true residual
             search.tolerance *= 0.3 / excessive;
             if (search.exhausted || search.tolerance < std::numeric_limits<double>::epsilon())
               throw_unconverged(search.state, excessive * options.tolerance, "rounding errors do not allow a smaller residual", options);

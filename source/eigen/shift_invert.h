@@ -11,8 +11,8 @@
 
 namespace Squeal
 {
-  /// (K + s M)⁻¹ M on the M-orthogonal complement of given modes: its largest eigenvalues 1 / (ω² + s) belong to the lowest other modes.
-  /// Self-adjoint in the inner product of M.
+  /// The operator (K + s M)⁻¹ M on the M-orthogonal complement of deflated modes: its largest eigenvalues 1 / (ω² + s) belong to the lowest
+  /// remaining modes. It is self-adjoint in the inner product of M.
   class ShiftInvert : public LinearOperator
   {
   public:
@@ -34,7 +34,7 @@ namespace Squeal
       return mass.map();
     }
 
-    /// Y = (I - ΦΦᵀM) (K + s M)⁻¹ B if B = M X is known.
+    /// Y = (I - ΦΦᵀM) (K + s M)⁻¹ B for B = M X that has already been computed.
     void apply_to_image(const MultiVector &B, MultiVector &Y) const
     {
       inverse.apply(B, Y);
@@ -61,23 +61,23 @@ namespace Squeal
     const MultiVector    *deflated;
   };
 
-  /// Requirements for a Krylov solver.
+  /// Request to a Krylov solver.
   struct KrylovRequest
   {
     int          n_wanted;
     double       tolerance; ///< relative residual of the inverted problem
     int          block_size;
     unsigned int seed;
-    int          attempt; ///< number of previous starts: later ones search a larger space
+    int          attempt; ///< number of previous starts without new modes: later starts search a larger space
     std::string  what;
   };
 
-  /// Approximate eigenvectors of the largest eigenvalues by Anasazi: up to n_wanted, nothing if none converged.
+  /// Approximate eigenvectors of the largest eigenvalues by Anasazi: at most n_wanted, nothing if none converged.
   std::optional<MultiVector> anasazi_vectors(const ShiftInvert &A, const KrylovRequest &request);
 
-  /// The same by block Lanczos; only converged vectors, up to the largest value that has not converged.
+  /// Converged eigenvectors by block Lanczos, in descending order of the eigenvalues up to the first that has not converged.
   std::optional<MultiVector> lanczos_vectors(const ShiftInvert &A, const KrylovRequest &request);
 
-  /// The same by ARPACK.
+  /// Converged eigenvectors by ARPACK.
   std::optional<MultiVector> arpack_vectors(const ShiftInvert &A, const KrylovRequest &request);
 } // namespace Squeal

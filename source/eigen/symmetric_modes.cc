@@ -19,15 +19,15 @@ namespace Squeal
 {
   namespace
   {
-    /// Rows of a matrix that are not coupled with others; they stay on their processes.
+    /// Rows of a matrix that are not coupled with other rows; each row stays on its process.
     struct UncoupledPart
     {
       RowMap                                  map;
       std::vector<int>                        places;  ///< local indices of its rows
-      std::shared_ptr<const std::vector<int>> numbers; ///< for all rows of the matrix, number within its part
+      std::shared_ptr<const std::vector<int>> numbers; ///< number of each row of the matrix within its part
     };
 
-    /// For each row the smallest row number of its part, the same on every process.
+    /// Smallest row number in the part of each row, identical on every process.
     std::vector<int> part_labels(const SparseMatrix &A)
     {
       std::vector<int> label(A.n_rows());
@@ -35,7 +35,7 @@ namespace Squeal
       SparseMatrix::Row row;
       while (true)
         {
-          // Parts joined so far by the local rows
+          // Join the parts found so far with the couplings in the local rows
           std::vector<int>                   rank(label.size(), 0), parent(label.size());
           boost::disjoint_sets<int *, int *> sets(rank.data(), parent.data());
           for (int i = 0; i < A.n_rows(); ++i)
@@ -67,7 +67,7 @@ namespace Squeal
       const auto                   numbers = std::make_shared<std::vector<int>>();
       std::map<int, UncoupledPart> parts;
       std::map<int, int>           sizes;
-      // Rows keep their order, and with it contiguous ranges per process
+      // Rows keep their order, so that each process has a contiguous range of them
       for (const int label : labels)
         {
           parts[label];
@@ -91,7 +91,7 @@ namespace Squeal
       });
     }
 
-    /// Modes of all uncoupled parts, sorted, as vectors of all rows.
+    /// Modes of all uncoupled parts, sorted, as vectors with all rows.
     SymmetricModes merged(const std::vector<UncoupledPart> &uncoupled, const std::vector<SymmetricModes> &parts, const RowMap &rows)
     {
       SymmetricModes all;
@@ -125,7 +125,7 @@ namespace Squeal
       return all;
     }
 
-    /// Relative distance of eigenvalues below which counting does not separate them [-].
+    /// The search does not separate eigenvalues whose relative distance is smaller [-].
     constexpr double cluster_width = 1e-3;
   } // namespace
 
@@ -181,7 +181,7 @@ namespace Squeal
                        const double        highest,
                        const std::string  &what)
   {
-    // Bracket: too few modes below the lower end, enough below the upper one
+    // Bracket: too few modes below the lower limit, enough below the upper limit
     ModeCount lower = {0, 0.}, upper = count_below(K, M, std::min(first, highest), what);
     while (upper.n_modes < n_modes)
       {
@@ -193,7 +193,7 @@ namespace Squeal
         upper = count_below(K, M, std::min(2. * upper.limit, highest), what);
       }
 
-    // Modes are distributed about evenly: regula falsi, at least half a mode from either end
+    // Regula falsi, because modes are distributed evenly; at least half a mode from either limit
     while (upper.n_modes > n_modes && upper.limit - lower.limit > cluster_width * upper.limit)
       {
         const double    share                      = (n_modes + 0.5 - lower.n_modes) / (upper.n_modes - lower.n_modes);

@@ -22,15 +22,16 @@ namespace Squeal
     /// Largest accepted residual of a rigid-body mode, relative to the largest requested eigenvalue [-].
     constexpr double largest_rigid_residual = 1e-8;
 
-    /// Lowest eigenvalue relative to the end of the band, below which K⁻¹ amplifies its mode so much that others lose digits [-].
+    /// If the lowest eigenvalue is below this fraction of the end of the band, K⁻¹ amplifies its mode so much that other modes lose digits
+    /// [-].
     constexpr double almost_rigid = 1e-6;
 
-    /// s relative to the end of the band if a body has rigid-body or nearly rigid motions [-].
+    /// Shift s, relative to the end of the band, for bodies with rigid-body or nearly rigid motions [-].
     constexpr double shift_of_free_bodies = 0.01;
 
     constexpr int most_refinements = 3;
 
-    /// Starts without new modes before giving up; the last one uses the other solver.
+    /// Number of starts without new modes after which the solver gives up; the last one uses the other solver.
     constexpr int most_fruitless_starts = 4;
 
   } // namespace
@@ -57,7 +58,7 @@ namespace Squeal
         dense_pairs = symmetric_eigenpairs(stiffness, mass);
         return;
       }
-    // For massless dofs: M x = ν (K + s M) x with ν = 1 / (ω² + s), omitting ν = 0
+    // M is singular, with massless dofs: solve M x = ν (K + s M) x with ν = 1 / (ω² + s) and omit ν = 0
     const double     s       = count.limit;
     const RealPairs  inverse = symmetric_eigenpairs(mass, stiffness + s * mass); // ascending
     constexpr double zero    = 1e-12;
@@ -94,7 +95,7 @@ namespace Squeal
         Residuals result = refine(pairs);
         if (!(result.excess <= 1.) && options.solver != RealSolver::lanczos && !is_dense())
           {
-            // For copies of an eigenvalue, libraries may return mixtures with others, which refinement does not separate
+            // For multiple eigenvalues, Anasazi and ARPACK may return mixtures with other modes, which refinement does not separate
             options.solver = RealSolver::lanczos;
             pairs          = find_all();
             result         = refine(pairs);
@@ -119,7 +120,7 @@ namespace Squeal
         }
       catch (const SolverError &)
         {
-          // K is probably singular because of rigid-body motions: a shift helps. For another reason, the next attempt reports it
+          // K is probably singular because of rigid-body motions: try a shift. If there is another reason, that attempt throws
         }
     if (shift == 0.)
       shift = shift_of_free_bodies * count.limit;
@@ -134,7 +135,7 @@ namespace Squeal
 
     RitzPairs pairs;
     int       n_found = 0, n_fruitless = 0;
-    // Members of multiple eigenvalues may be missing at first; every start finds at least one more, usually all
+    // Members of multiple eigenvalues may be missing after the first start; every further start finds at least one, usually all
     for (unsigned int attempt = 0; n_found < count.n_modes; ++attempt)
       {
         const std::optional<MultiVector> fresh = krylov(count.n_modes - n_found, attempt, n_fruitless, pairs.vectors);
@@ -157,7 +158,7 @@ namespace Squeal
     const int         n_all = std::upper_bound(all.values.begin(), all.values.end(), count.limit) - all.values.begin();
     if (n_all > static_cast<int>(pairs.values.size()))
       {
-        // Vectors above the limit must not be deflated: they may be far from modes
+        // Keep only vectors below the limit for deflation: the others may be poor approximations of modes
         pairs.values.assign(all.values.begin(), all.values.begin() + n_all);
         pairs.vectors.emplace(view(*all.vectors, 0, n_all));
       }
@@ -189,7 +190,7 @@ namespace Squeal
     request.seed       = options.seed + 7919 * attempt;
     request.attempt    = n_fruitless;
     request.what       = options.what;
-    // If the chosen solver finds no more modes, another one may
+    // If the chosen solver finds no more modes, try another one
     const RealSolver other = options.solver == RealSolver::anasazi ? RealSolver::arpack : RealSolver::anasazi;
     switch (n_fruitless < most_fruitless_starts - 1 ? options.solver : other)
       {
@@ -237,7 +238,7 @@ namespace Squeal
         const double rounding = 10. * std::numeric_limits<double>::epsilon() * norm_K * norm_V[j] / scale;
         residuals.values.push_back(norm_R[j] / scale);
         const double excess = residuals.values[j] / std::max({options.tolerance, rounding, rigid ? largest_rigid_residual : 0.});
-        // NaN must count as the worst
+        // The negated comparison makes NaN the worst value
         if (!(excess <= residuals.excess))
           {
             residuals.excess = excess;
@@ -249,7 +250,7 @@ namespace Squeal
 
   SymmetricSolver::Residuals SymmetricSolver::refine(RitzPairs &pairs)
   {
-    // Errors of LAPACK are relative to the largest of all eigenvalues, which must not decide which are zero
+    // LAPACK's errors are proportional to the largest of all eigenvalues; reduce them before rigid-body modes are identified
     if (is_dense())
       pairs = rayleigh_ritz(*pairs.vectors);
     Residuals result = residuals(pairs);

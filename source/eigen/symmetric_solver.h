@@ -15,7 +15,7 @@ namespace Squeal
   /// Systems up to this size are solved densely.
   constexpr int largest_dense_system = 300;
 
-  /// Solves one symmetric eigenproblem stepwise: counts on construction, then finds, refines and accepts modes.
+  /// Solves one symmetric eigenproblem: counts the modes on construction, then finds, refines and accepts them.
   class SymmetricSolver
   {
   public:
@@ -31,7 +31,7 @@ namespace Squeal
     SymmetricModes modes();
 
   private:
-    /// Rayleigh-Ritz approximations in a space, ascending.
+    /// Rayleigh-Ritz approximations of modes, ascending.
     struct RitzPairs
     {
       std::vector<double>        values;
@@ -41,24 +41,24 @@ namespace Squeal
     /// Residuals of Ritz pairs relative to their limits.
     struct Residuals
     {
-      std::vector<double> values;      ///< as in SymmetricModes
+      std::vector<double> values;      ///< see SymmetricModes::residuals
       double              excess = 0.; ///< largest ratio of a residual to its limit
-      int                 worst  = 0;  ///< index of this mode
+      int                 worst  = 0;  ///< index of the mode with this ratio
     };
 
     RitzPairs rayleigh_ritz(const MultiVector &V) const;
 
-    /// A space with approximations of all requested modes.
+    /// Computes approximations of all requested modes.
     RitzPairs find_all();
 
     RitzPairs                  dense();
     std::optional<MultiVector> krylov(int n_wanted, unsigned int attempt, int n_fruitless, const std::optional<MultiVector> &deflated);
 
-    /// Adds new vectors to the pairs if they contain modes in the band; returns the number in the band.
+    /// Adds new vectors to the pairs if they contain new modes in the band; returns the number of modes in the band.
     int merge(const MultiVector &fresh, RitzPairs &pairs) const;
 
-    /// Counts again at a slightly higher limit if a mode coincides with the limit up to rounding, because count and search may disagree on
-    /// it. Returns true if the limit was raised.
+    /// Counts again at a slightly higher limit if a mode coincides with the limit up to rounding, because count and search may treat this
+    /// mode differently. Returns true if the limit was raised.
     bool lift_limit();
 
     const LinearOperator &inverse();
@@ -75,9 +75,9 @@ namespace Squeal
 
     const SparseMatrix            &K, &M;
     SymmetricModesOptions          options;
-    double                         shift; ///< s in K + s M, factorised here [rad²/s²]
+    double                         shift; ///< s in K + s M, which this object factorises [rad²/s²]
     ModeCount                      count;
-    const double                   hidden_square; ///< eigenvalues up to this are zero: rounding errors of K
+    const double                   hidden_square; ///< eigenvalues up to this limit count as zero: rounding errors of K
     bool                           lifted = false;
     std::unique_ptr<Factorization> factorization;
     std::optional<RealPairs>       dense_pairs;

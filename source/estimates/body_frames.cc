@@ -19,7 +19,7 @@ namespace Squeal
       return found == frames.end() ? nullptr : &*found;
     }
 
-    /// Maps x from one interval to another.
+    /// Maps x linearly from the interval [a, b] to [new_a, new_b].
     double moved(const double x, const double a, const double b, const double new_a, const double new_b)
     {
       return b > a ? new_a + (x - a) / (b - a) * (new_b - new_a) : new_a;

@@ -25,7 +25,7 @@ namespace Squeal
 
   namespace
   {
-    /// A point in a cell.
+    /// Position of a point in a cell.
     struct PointInCell
     {
       const Cell *cell;
@@ -36,23 +36,23 @@ namespace Squeal
     /// Extent of the search for a point.
     enum class PointSearch
     {
-      inside, ///< in cells whose bounding box contains it
-      nearest ///< in the nearest cells, clipped to them
+      inside, ///< in cells whose bounding box contains the point
+      nearest ///< in the nearest cells; the point is clipped to the cell
     };
 
-    /// Finds points in the cells of this process, separately for each body: because the faces of disc and pins coincide, a position does
-    /// not determine the body.
+    /// Finds points in the cells of this process, separately for each body, because a position on the common face of disc and pin does not
+    /// determine the body.
     class PointLocation
     {
     public:
-      /// @param model must outlive it
+      /// @param model must outlive this object
       explicit PointLocation(const Model &model);
 
       /// Index of a body in the mesh; throws MeshError listing the bodies.
       unsigned int body(const std::string &name) const;
 
-      /// Cell of a body that contains a point; with PointSearch::nearest, for a point outside the body, for example between two polygonal
-      /// outlines, the closest point in the nearest cells, with reference coordinates clipped to the cell.
+      /// Cell of a body that contains a point. For a point outside the body, for example between two polygonal outlines,
+      /// PointSearch::nearest returns the closest point in the nearest cells, with reference coordinates clipped to the cell.
       PointInCell find(unsigned int body, const Point<3> &point, PointSearch search) const;
 
     private:
@@ -62,10 +62,10 @@ namespace Squeal
       std::vector<Leaf> candidates(unsigned int body, const Point<3> &point, PointSearch search) const;
 
       const Model             &model;
-      std::vector<RTree<Leaf>> trees; ///< of each body
+      std::vector<RTree<Leaf>> trees; ///< search trees of the cells of each body
     };
 
-    /// Number of nearby cells that are tried after those whose boxes contain the point.
+    /// Number of nearby cells that are searched in addition to the cells whose boxes contain the point.
     constexpr unsigned int n_beside = 16;
 
     /// Tolerance of reference coordinates for points inside a cell, for rounding errors [-].
@@ -153,7 +153,7 @@ namespace Squeal
             return {&cell, inside, 0.};
           if (search == PointSearch::inside)
             continue;
-          if (!reference) // the cell is far away: use its nearest node
+          if (!reference) // Newton's method fails for a distant cell: use its nearest node
             inside = reference_nodes(cell.shape, model.degree())[std::min_element(nodes.begin(), nodes.end(), is_nearer) - nodes.begin()];
           const auto &functions = ShapeFunctions::of(cell.shape, model.degree());
           Point<3>    place;
@@ -171,7 +171,7 @@ namespace Squeal
       unsigned int body, point, direction;
     };
 
-    /// Points in a cell.
+    /// Common points in a cell, with their masses.
     struct CellPoints
     {
       std::int64_t          cell;
@@ -243,7 +243,7 @@ namespace Squeal
             }
           here.push_back(of_cell);
         }
-    // In the order of the cells, independent of their distribution
+    // Sort by the cell number, so that the order does not depend on the distribution of the cells
     std::vector<CellPoints> all;
     for (const auto &part : Utilities::MPI::all_gather(model.communicator(), here))
       all.insert(all.end(), part.begin(), part.end());
@@ -259,7 +259,7 @@ namespace Squeal
 
   namespace
   {
-    /// Entries of a row of E, sent from the process with the cell of its point to the process with the row.
+    /// Entries of a row of E. The process that has the cell of the point sends them to the owner of the row.
     struct RowEntries
     {
       int               number;
@@ -272,7 +272,8 @@ namespace Squeal
       }
     };
 
-    /// Points in the cells of this process, and for each point the first process that has it in, or closest to, a cell.
+    /// Positions of the points in the cells of this process, and for each point the first process whose cells contain it or are closest to
+    /// it.
     std::pair<std::vector<PointInCell>, std::vector<int>> located(const CommonPoints              &points,
                                                                   const std::vector<unsigned int> &bodies,
                                                                   const PointLocation             &location,
@@ -313,7 +314,7 @@ namespace Squeal
   std::unique_ptr<const SparseMatrix> displacements_at(const CommonPoints &points, const Model &model, const Directions directions)
   {
     const PointLocation       location(model);
-    std::vector<unsigned int> numbers; // of the bodies in this mesh
+    std::vector<unsigned int> numbers; // numbers of the bodies in this mesh
     for (const CommonPoints::Body &body : points.bodies)
       numbers.push_back(location.body(body.name));
 
@@ -322,7 +323,7 @@ namespace Squeal
     const RowMap           map          = RowMap::even(rows.size(), communicator);
     const auto [found, processes]       = located(points, numbers, location, communicator);
 
-    // Rows with points in cells of this process
+    // Compute the rows whose points are in cells of this process
     std::map<unsigned int, std::vector<RowEntries>> sent;
     const int                                       me = map.rank();
     for (std::size_t number = 0; number < rows.size(); ++number)

@@ -19,10 +19,10 @@ namespace Squeal
   namespace
   {
     constexpr int n_lanczos_steps = 15;
-    /// Norm of a Lanczos vector relative to the previous one, below which the space is exhausted [-].
+    /// The Krylov space is exhausted if the norm of a Lanczos vector relative to the previous one is below this limit [-].
     constexpr double negligible_beta = 1e-14;
 
-    /// Relative distance of λ below which they form one multiple eigenvalue [-].
+    /// Eigenvalues λ with a smaller relative distance form one multiple eigenvalue [-].
     constexpr double width_of_clusters = 1e-7;
 
     using Operator = std::function<MultiVector(const MultiVector &)>;
@@ -92,7 +92,7 @@ namespace Squeal
     double condition_of_mass(const SparseMatrix &M)
     {
       const auto [smallest, largest] = equilibrated_extremes(M, root_of_diagonal(M));
-      return largest / std::max(smallest, std::numeric_limits<double>::epsilon() * largest); // floor for massless dofs
+      return largest / std::max(smallest, std::numeric_limits<double>::epsilon() * largest); // massless dofs have eigenvalues of zero
     }
 
     double condition_of_stiffness(const SparseMatrix &K, const UpdatedInverse &inverse)
@@ -129,8 +129,8 @@ namespace Squeal
       return result;
     }
 
-    /// T with TᴴGT = I in each cluster: an eigensolver returns an arbitrary basis for a multiple eigenvalue, whose conditioning has no
-    /// meaning.
+    /// T with TᴴGT = I in each cluster: for a multiple eigenvalue, an eigensolver returns an arbitrary basis, whose condition number is
+    /// meaningless.
     ComplexDenseMatrix orthonormal_within_clusters(const std::vector<std::complex<double>> &lambda, const ComplexDenseMatrix &G)
     {
       const int          k = static_cast<int>(lambda.size());
@@ -153,7 +153,7 @@ namespace Squeal
       return T;
     }
 
-    /// κ of each λ from the energies of the states and their conjugates, and the condition number of these energies.
+    /// κ of each λ, and the condition number of G, from the products of modes with stiffness and mass.
     std::pair<std::vector<double>, double> conditions(const std::vector<std::complex<double>> &lambda,
                                                       const DenseMatrix                       &stiffness,
                                                       const DenseMatrix                       &mass)
@@ -180,7 +180,7 @@ namespace Squeal
       basis.bottomRightCorner(k, k) = T.conjugate();
       G                             = ComplexDenseMatrix(basis.adjoint() * G * basis);
 
-      // Real form of a Hermitian matrix, with every eigenvalue twice
+      // Real form of the Hermitian matrix G, in which every eigenvalue occurs twice
       DenseMatrix real(4 * k, 4 * k);
       real << G.real(), -G.imag(), G.imag(), G.real();
       const RealPairs     axes = symmetric_eigenpairs(real);

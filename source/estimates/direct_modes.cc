@@ -16,7 +16,7 @@ namespace Squeal
 {
   namespace
   {
-    /// A⁻ᵀ from the factors of A.
+    /// Operator A⁻ᵀ from the factors of A.
     struct TransposedInverse : LinearOperator
     {
       explicit TransposedInverse(const Factorization &factor)
@@ -50,7 +50,7 @@ namespace Squeal
       return result;
     }
 
-    /// Columns of @p modes in the order of @p lambda, each used once.
+    /// Sorts the columns of @p modes so that their eigenvalues match @p lambda; each is used once.
     QuadraticModes in_order_of(const std::vector<std::complex<double>> &lambda, const QuadraticModes &modes)
     {
       if (modes.values.size() != lambda.size())
@@ -97,7 +97,7 @@ namespace Squeal
       return result;
     }
 
-    /// Ψ ← Ψ D⁻ᵀ makes the products D of left and right vectors the identity.
+    /// Replaces the left vectors Ψ by Ψ D⁻ᵀ, whose products with the right vectors are the identity.
     void make_dual(ComplexModes &modes, const ComplexDenseMatrix &D)
     {
       const ComplexDenseMatrix X  = D.inverse().transpose();
@@ -109,7 +109,7 @@ namespace Squeal
     }
   } // namespace
 
-  /// Factors of Q(s). Throws SolverError naming @p source if Q is also singular at another shift, and thus for all λ.
+  /// LU factors of Q(s). Throws a SolverError that names @p source if Q is also singular at another shift, and thus for all λ.
   static std::unique_ptr<Factorization> factors_at(const SecondOrderSystem &matrices, const double shift, const std::string &source)
   {
     constexpr double other  = 1.3;

@@ -68,7 +68,7 @@ namespace Squeal
           if (k != j && pairs[k].partner >= 0)
             {
               const double distance = omega - fine.lambda[k].imag();
-              if (std::abs(distance - (other(j).imag() - other(k).imag())) >= std::abs(distance)) // they may coalesce
+              if (std::abs(distance - (other(j).imag() - other(k).imag())) >= std::abs(distance)) // j and k may coalesce
                 error.divergence = std::max({error.divergence, divergence_error(k), is_neutral ? 0.5 * std::abs(distance) / omega : 0.});
             }
         error.verdict = verdict(fine.lambda[j], error.divergence, solver_error);
@@ -78,7 +78,7 @@ namespace Squeal
 
   namespace
   {
-    /// Relative differences of values up to this are rounding errors [-].
+    /// Relative differences of values up to this limit are rounding errors [-].
     constexpr double rounding = 1e-13;
 
     /// Limit from the two finest values with order p.
@@ -95,7 +95,7 @@ namespace Squeal
       const double quotient = (v[0] - v[1]) / (v[1] - v[2]);
       if (!(quotient > 0.))
         return {};
-      // Increases with p
+      // f increases with p
       const auto f = [&](const double p) { return std::log((std::pow(h[0] / h[1], p) - 1.) / (1. - std::pow(h[2] / h[1], p)) / quotient); };
       const double f_at_smallest = f(plausible.smallest), f_at_largest = f(plausible.largest);
       if (!(f_at_smallest <= 0. && f_at_largest >= 0.))

@@ -15,13 +15,13 @@ namespace Squeal
     /// Condition number above which no estimates are given [-].
     constexpr double largest_condition = 1e3;
 
-    /// ψ_jᵀ A φ_j for every column, no conjugate.
+    /// ψ_jᵀ A φ_j (without conjugation) for every column.
     Eigen::VectorXcd bilinear(const DenseMatrix &A, const ComplexDenseMatrix &psi, const ComplexDenseMatrix &phi)
     {
       return psi.cwiseProduct(multiply(A, phi)).colwise().sum();
     }
 
-    /// x_jᴴ A x_j for every column, A symmetric; diagonal in modal coordinates.
+    /// x_jᴴ A x_j for every column, with a symmetric A, which is diagonal in modal coordinates.
     Eigen::VectorXd squares(const DenseMatrix &A, const ComplexDenseMatrix &X)
     {
       if (A.isDiagonal(0.))
@@ -33,7 +33,7 @@ namespace Squeal
     Complex smaller_root(const Complex a, const Complex b, const Complex e)
     {
       const Complex root = std::sqrt(b * b + 4. * a * e);
-      // 2 e / (b ± root) with the larger denominator avoids cancellation
+      // The formula 2 e / (b ± root) with the larger denominator avoids cancellation
       const Complex denominator = std::abs(b + root) > std::abs(b - root) ? b + root : b - root;
       return std::abs(denominator) > 0. ? 2. * e / denominator : 0.;
     }

@@ -11,7 +11,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Verdicts with these relative errors. Without damping, growth requires a second mode within the errors.
+    /// Verdicts for given relative errors of λ. Without damping, a mode can grow only if there is a second mode within the errors.
     std::vector<Verdict> verdicts_of(const ComplexModes &modes, const std::vector<double> &errors, const bool has_damping)
     {
       const auto          &lambda = modes.lambda;
@@ -84,7 +84,7 @@ namespace Squeal
     result.modes = std::move(modes);
     result.conditioning =
       estimate_conditioning(system, *frictionless.inverse, frictionless.shift, result.modes, modal_products(system, result.modes));
-    // Friction and damping do not change K φ = 0; with damping, λ = 0 need not be a double eigenvalue
+    // Friction and damping do not change rigid-body modes, K φ = 0: the other pairs of λ that count as zero are slow modes
     result.n_slow             = std::max(0, result.modes.n_rigid_body - frictionless.real.n_rigid_body);
     result.modes.n_rigid_body = frictionless.real.n_rigid_body;
     result.verdicts           = verdicts_of(result.modes, uncertainties(system, result.modes, result.conditioning), system.has_damping());

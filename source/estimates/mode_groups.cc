@@ -16,7 +16,7 @@ namespace Squeal
     /// Minimum energy share of a disc mode [-].
     constexpr double half = 0.5;
 
-    /// uᴴ A u and its part from the selected rows, for each column of a complex u.
+    /// uᴴ A u and the contribution of the selected rows, for each column of a complex u.
     struct QuadraticForms
     {
       QuadraticForms(const SparseMatrix &A, const MultiVector &selection, const MultiVector &real_part, const MultiVector &imaginary_part)
@@ -96,7 +96,7 @@ namespace Squeal
 
   namespace
   {
-    /// Squared norm of a direction relative to the largest, up to which it is a rounding error: squares are accurate to 1e-16 [-].
+    /// Directions whose squared norm is below this fraction of the largest are rounding errors: squares are accurate to 1e-16 [-].
     constexpr double negligible_square = 1e-12;
 
     /// W with Wᴴ G W = 1 for a Hermitian positive semidefinite G, without directions that are rounding errors.

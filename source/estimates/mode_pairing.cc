@@ -17,20 +17,21 @@ namespace Squeal
   {
     using Complex = std::complex<double>;
 
-    /// Fraction of the energy of a mode that connects it with others, and fraction of the largest share below which a share is ignored [-].
+    /// Fraction of the energy of a mode in the modes with which it is connected, and fraction of the largest share below which a share is
+    /// ignored [-].
     constexpr double connecting = 0.75, side = 0.25;
 
-    /// Smallest fraction of a mode in the span of others that gives it a counterpart [-].
+    /// Smallest energy fraction in the span of the other modes for which a mode has a counterpart [-].
     constexpr double least_represented = 0.5;
 
-    /// Relative size of directions that are dependent up to rounding [-].
+    /// Directions of smaller relative size are linearly dependent up to rounding [-].
     constexpr double dependent = 1e-10;
 
     /// Products of all modes of two meshes, modes normalised.
     struct Products
     {
       ComplexDenseMatrix coarse, fine; ///< Gram matrices
-      ComplexDenseMatrix mixed;        ///< of fine with coarse modes, k_fine × k_coarse
+      ComplexDenseMatrix mixed;        ///< products of fine with coarse modes, k_fine × k_coarse
     };
 
     Products products(const ModesAtPoints &coarse, const ModesAtPoints &fine)
@@ -46,7 +47,7 @@ namespace Squeal
       return result;
     }
 
-    /// |c|² of the combinations of modes with Gram matrix G that are closest to others; C: products of the modes with these.
+    /// |c|² of the combinations of modes with Gram matrix G that are closest to given vectors; C: products of the modes with the vectors.
     DenseMatrix shares(const ComplexDenseMatrix &G, const ComplexDenseMatrix &C)
     {
       if (C.size() == 0) // Eigen would access the first entry
@@ -58,11 +59,11 @@ namespace Squeal
     }
 
     /**
-     * For each mode, the modes of the other mesh with the largest shares that make up its connecting fraction; none if they do not
-     * represent it at all. Modes of the other mesh × modes.
+     * Connections of each mode with modes of the other mesh: the largest shares, up to the fraction `connecting`; none if the other modes
+     * do not represent the mode. One row for each mode of the other mesh, one column for each mode.
      *
      * @param G Gram matrix of the other modes
-     * @param C products of the other modes with these, all normalised
+     * @param C products of the other modes with the modes, all normalised
      */
     Eigen::MatrixX<bool> connections(const ComplexDenseMatrix &G, const ComplexDenseMatrix &C)
     {
@@ -99,7 +100,7 @@ namespace Squeal
     {
       const Eigen::MatrixX<bool> of_coarse = connections(products.fine, products.mixed),
                                  of_fine   = connections(products.coarse, products.mixed.adjoint());
-      // Keep pairs of modes connected only with each other, even if further modes are connected with one of them
+      // Separate pairs of modes that are connected only with each other, even if a third mode is connected with one of them
       const int                          n_fine = products.mixed.rows(), n_coarse = products.mixed.cols();
       const Eigen::VectorX<Eigen::Index> n_of_coarse = of_coarse.colwise().count(), n_of_fine = of_fine.colwise().count();
       const auto                         is_pair = [&](const int i, const int j) {
@@ -110,7 +111,7 @@ namespace Squeal
         for (int j = 0; j < n_fine; ++j)
           if (is_pair(i, j))
             coarse_is_paired[i] = fine_is_paired[j] = true;
-      const auto connected = [&](const int number, const int i) { // i < number: the coarse modes come first
+      const auto connected = [&](const int number, const int i) { // i < number, and coarse modes come first
         const int j = number - n_coarse;
         return i < n_coarse && j >= 0 && (coarse_is_paired[i] || fine_is_paired[j] ? is_pair(i, j) : of_coarse(j, i) || of_fine(i, j));
       };
@@ -128,11 +129,11 @@ namespace Squeal
       return groups;
     }
 
-    /// Drops the modes of a group that are badly represented by those of the other mesh.
+    /// Drops the modes of a group that the group's modes of the other mesh represent badly.
     Group represented(const Group &group, const Products &products)
     {
       const auto kept = [](const std::vector<int> &modes, const std::vector<int> &others, const ComplexDenseMatrix &others_gram,
-                           const ComplexDenseMatrix &mixed) { // products of others with modes
+                           const ComplexDenseMatrix &mixed) { // mixed: products of others with modes
         std::vector<int> result;
         for (const int i : modes)
           {
@@ -147,7 +148,7 @@ namespace Squeal
               kept(group.fine, group.coarse, products.coarse, products.mixed.adjoint())};
     }
 
-    /// Pairs in a group, coarse and fine, that minimise the sum of squared distances of λ after shifting by the mean difference.
+    /// Pairs of coarse and fine modes of a group that minimise the sum of squared distances of λ after a shift by the mean difference.
     std::vector<std::pair<int, int>> partners(const Group                &group,
                                               const std::vector<Complex> &coarse,
                                               const std::vector<Complex> &fine,
@@ -177,7 +178,7 @@ namespace Squeal
       return result;
     }
 
-    /// Replaces the result of this process by that of process 0.
+    /// Replaces the result of this process by the result of process 0.
     void agree_on_pairs(const MPI_Comm communicator, std::vector<PairedMode> &modes)
     {
       DenseMatrix numbers(3, modes.size());

@@ -21,7 +21,7 @@ namespace Squeal
 
     /// Weight of individual MAC-M relative to the share in the span of the cluster [-].
     constexpr double member_weight = 0.1;
-    /// |λ̂ − λ| / |λ| above which a reduced mode is a counterpart only if there is no other [-].
+    /// A reduced mode with a larger |λ̂ − λ| / |λ| becomes a counterpart only if there is no other candidate [-].
     constexpr double far = 0.3;
 
     /// |ω̂ − ω| / ω
@@ -65,7 +65,7 @@ namespace Squeal
     return result;
   }
 
-  /// Sets all errors that do not depend on the pairing, from the counterpart and from the mode closest in shape.
+  /// Sets the errors relative to the counterpart and to the mode closest in shape.
   static void set_differences(const Complex              exact,
                               const ReducedModes        &chosen,
                               const EigenvalueEstimates &estimates,
@@ -121,7 +121,7 @@ namespace Squeal
       throw SolverError("the reduced model has " + std::to_string(n_reduced) + " oscillating modes, the reference " + std::to_string(k),
                         "errors of a reduced model", "use a larger basis and all of its modes");
 
-    // Inner products in the mass matrix among reference modes, among reduced modes, and between them
+    // M-inner products of reference modes, of reduced modes, and of reference with reduced modes
     const MultiVector        X  = join({reference.real_part.get(), reference.imaginary_part.get()});
     const MultiVector        MX = mass * X;
     const ComplexDenseMatrix A  = hermitian_products(gram(X, MX));
@@ -129,14 +129,14 @@ namespace Squeal
     const DenseMatrix        XT = gram(MX, model.basis());
     const ComplexDenseMatrix C  = from_halves(append_columns(XT.topRows(k), -XT.bottomRows(k))) * modes.right;
 
-    // Clusters
+    // Clusters of reference modes
     const auto &lambda  = reference.lambda;
     const auto  cluster = connected_groups(
        k, [&](const int i, const int j) { return std::abs(lambda[i] - lambda[j]) <= cluster_tolerance * std::abs(lambda[i]); });
     const auto members = members_of(cluster);
 
-    // Counterparts: the span of the cluster selects the reduced modes, MAC-M of single modes assigns them to members
-    std::vector<Eigen::RowVectorXd> shares(k); // by the first member
+    // Counterparts: shares in the span of a cluster select the reduced modes, and MAC-M of individual modes assigns them to members
+    std::vector<Eigen::RowVectorXd> shares(k); // for each cluster, at the index of its first member
     for (const std::vector<int> &all : members)
       shares[all.front()] = shares_in_span(A(all, all), C(all, Eigen::placeholders::all), B);
     const auto mac  = [&](const int i, const int j) { return std::norm(C(i, j)) / (A(i, i).real() * B(j, j).real()); };
@@ -154,7 +154,7 @@ namespace Squeal
             closest[i] = j;
       }
     for (std::vector<int> *choice : {&match, &closest})
-      agree(X.communicator(), choice->data(), k); // ties are decided by rounding
+      agree(X.communicator(), choice->data(), k); // rounding may decide ties differently on each process
     const ReducedModes        chosen    = selected(modes, match);
     const EigenvalueEstimates estimates = estimate(chosen);
 

@@ -45,7 +45,7 @@ namespace Squeal
       EigenvalueEstimates estimates;
     };
 
-    /// All eigenvalues within the radius of the band at one friction coefficient: oscillating modes, then real eigenvalues, if any.
+    /// All eigenvalues within the radius of the band at one friction coefficient: oscillating modes, then modes with real eigenvalues.
     using State = std::vector<AssessedModes>;
 
     /// Largest estimated error; NaN if any is NaN.
@@ -57,7 +57,7 @@ namespace Squeal
       return max_norm(as_column(errors));
     }
 
-    /// Residuals of the modes above the tolerance.
+    /// Residuals of the modes whose errors exceed the tolerance.
     std::vector<MultiVector> inaccurate_directions(const State &state, const double tolerance)
     {
       std::vector<MultiVector> parts;
@@ -86,7 +86,7 @@ namespace Squeal
       return inside.size() == modes.lambda.size() ? modes : selected(modes, inside);
     }
 
-    /// State with the largest error among all friction coefficients.
+    /// State at the friction coefficient with the largest error.
     State worst_state(const CoupledSystem       &system,
                       const UpdatedInverse      &inverse,
                       const ReducedModel        &model,
@@ -120,7 +120,7 @@ namespace Squeal
                               const MultiVector    &real_modes,
                               const bool            friction)
   {
-    // The friction response to the reactions from damping, μ A V_C, is of second order
+    // Friction forces due to damping, μ A V_C, are omitted because they are of second order
     const int   k = real_modes.n_columns();
     MultiVector vectors(real_modes.map(), k * (1 + (friction ? 2 : 0) + (system.has_damping() ? 1 : 0)), false);
     int         column = 0;
@@ -147,7 +147,7 @@ namespace Squeal
     int         column = 0;
     for (const int j : chosen)
       {
-        // Coefficients in an M-orthonormal basis: their norm is the M-norm of the mode
+        // The basis is M-orthonormal: the norm of the coefficients is the M-norm of the mode
         const double right = modes.right.col(j).norm(), left = modes.left.col(j).norm();
         X.col(column++) = residuals.right_displacements.col(j) / right;
         X.col(column++) = residuals.right_displacements.col(k + j) / right;
@@ -163,7 +163,7 @@ namespace Squeal
     if (directions.empty())
       return {};
     const MultiVector      all     = join_all(directions);
-    const std::vector<int> columns = nonzero_columns(all); // imaginary parts of neutral modes are zero
+    const std::vector<int> columns = nonzero_columns(all); // skips zero columns: the imaginary parts of neutral modes
     if (columns.empty())
       return {};
     MultiVector X = compress(M, model, selected(all, columns));

@@ -32,11 +32,11 @@ namespace Squeal
                                                                                         {FactorizationLibrary::cholmod, "CHOLMOD"},
                                                                                         {FactorizationLibrary::mumps, "MUMPS"}};
 
-  /// Hexahedra.
+  /// Hexahedral finite elements.
   enum class Element
   {
     trilinear,          ///< 8 nodes, straight edges
-    incompatible_modes, ///< the same, with quadratic displacements inside each element (model/cell_stiffness.h)
+    incompatible_modes, ///< trilinear with additional quadratic displacements inside each element (model/cell_stiffness.h)
     quadratic           ///< 27 nodes, edges that follow named cylinders
   };
 

@@ -15,8 +15,8 @@ namespace Squeal
   inline constexpr double largest_rate_of_band = 0.1;
 
   /**
-   * The band of a run. The argument principle counts the eigenvalues in the rectangle Im λ ≤ end, |Re λ| ≤ rate. Eigenvalues with |λ| ≤
-   * radius(), a circle that encloses the rectangle, are listed, except those that decay faster than largest_decay. Faster growth or decay
+   * Frequency band of a run. The argument principle counts the eigenvalues in the rectangle Im λ ≤ end, |Re λ| ≤ rate. Eigenvalues with |λ|
+   * ≤ radius(), a circle that encloses the rectangle, are listed, except those that decay faster than largest_decay. Faster growth or decay
    * depends on the mesh.
    */
   struct Band
@@ -32,7 +32,7 @@ namespace Squeal
     double end;             ///< largest Im λ [rad/s]
     double rate;            ///< largest |Re λ| of the rectangle [1/s]
     double largest_damping; ///< largest |Re λ| within the radius, relative to the end [-]
-    double largest_decay;   ///< of listed modes [1/s]
+    double largest_decay;   ///< largest −Re λ of listed modes [1/s]
 
     double radius() const
     {
@@ -60,8 +60,7 @@ namespace Squeal
     return circular_frequency / (2. * M_PI);
   }
 
-  /// Reported quantities of an eigenvalue λ = R + iω of Q(λ) = λ² M + λ C + K. The only function that converts rad/s to Hz and rates to
-  /// per cent.
+  /// Reported quantities of an eigenvalue λ = R + iω of Q(λ) = λ² M + λ C + K.
   struct ModalQuantities
   {
     double frequency;       ///< ω / 2π [Hz]
@@ -74,7 +73,7 @@ namespace Squeal
   inline ModalQuantities modal_quantities(const std::complex<double> &lambda)
   {
     const double R = lambda.real(), omega = lambda.imag();
-    // A rigid-body or overdamped mode has no period to relate R to
+    // Rigid-body and overdamped modes have ω = 0
     const double xi = omega > 0. ? R / omega : 0.;
     return {hertz(omega), R, xi, -2. * xi};
   }

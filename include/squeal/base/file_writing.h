@@ -10,7 +10,7 @@ namespace Squeal
   /// Writes a complete text file and closes it. Returns 0 or `errno`.
   int write_file(const std::filesystem::path &file, std::string_view text);
 
-  /// Replaces a file atomically, via `FILE.incomplete`: the old or the new content is complete at any time. Throws
+  /// Replaces a file atomically, via `FILE.incomplete`, so that it always has either its complete old or its complete new content. Throws
   /// std::filesystem::filesystem_error.
   void replace_file(const std::filesystem::path &file, std::string_view text);
 } // namespace Squeal

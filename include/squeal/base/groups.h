@@ -9,7 +9,8 @@
 
 namespace Squeal
 {
-  /// Groups of n items, chained by connected(i, j), j < i: for each item the number of the first member of its group.
+  /// Connected components of n items, where connected(i, j), j < i, is true for connected items. Returns for each item the index of the
+  /// first member of its group.
   template <typename Predicate>
   std::vector<int> connected_groups(const int n, const Predicate &connected)
   {
@@ -33,8 +34,8 @@ namespace Squeal
   }
 
   /**
-   * Assigns each of @p n_rows to a different column so that the sum of gain(row, column) is largest; needs n_rows ≤ n_columns. Returns the
-   * column of each row. Shortest augmenting paths (H. W. Kuhn 1955; R. Jonker, A. Volgenant 1987), n_rows² · n_columns operations.
+   * Assigns each of @p n_rows to a different column so that the sum of gain(row, column) is largest; requires n_rows ≤ n_columns. Returns
+   * the column of each row. Shortest augmenting paths (H. W. Kuhn 1955; R. Jonker, A. Volgenant 1987), n_rows² · n_columns operations.
    */
   std::vector<int> best_assignment(int n_rows, int n_columns, const std::function<double(int, int)> &gain);
 } // namespace Squeal

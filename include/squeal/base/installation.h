@@ -10,8 +10,8 @@ namespace Squeal
   /// the source and build trees if not installed.
   struct Installation
   {
-    std::filesystem::path geometries; ///< geometries that come with the program
-    std::filesystem::path mesher;     ///< executable in which Gmsh runs
+    std::filesystem::path geometries; ///< folder of the geometries supplied with the program
+    std::filesystem::path mesher;     ///< executable that runs Gmsh
   };
 
   /// Installation of this process.

@@ -9,9 +9,9 @@
 namespace Squeal
 {
   /**
-   * Memory that the processes of this machine may use in total before the kernel kills one [byte]: the smaller of the available memory
-   * (`MemAvailable`) and the remaining limit of the control groups (version 2). Cached files count as available. Infinity if neither is
-   * known.
+   * Memory that the processes of this machine may use in total before the kernel kills one of them [byte]: the smaller of the available
+   * memory (`MemAvailable`) and the remaining limit of the control groups (version 2). Cached files count as available. Infinity if neither
+   * is known.
    *
    * @param root folder that contains /proc and /sys
    */
@@ -29,9 +29,9 @@ namespace Squeal
   /// Peak resident memory since the start of the process or the last reset_peak_memory() [byte]; 0 if the system does not report it.
   double peak_resident_memory();
 
-  /// Returns freed memory at the end of the heap to the system if it exceeds 256 MB. SuperLU_dist, which the deal.II packages link, makes
-  /// the allocator keep all memory, so that a process would hold the sum of all steps. Large blocks are not mapped individually: clearing
-  /// the pages of each temporary vector takes a tenth of a large run. Call once, before anything else.
+  /// Returns freed memory at the end of the heap to the system if it exceeds 256 MB. Call once at the start of main(). SuperLU_dist, which
+  /// deal.II packages link, configures the allocator to keep all freed memory, so that memory would accumulate over the steps of a run.
+  /// Large blocks are not mapped individually: clearing the pages of each temporary vector would take a tenth of the time of a large run.
   void return_freed_blocks();
 
   /// Returns all freed memory to the system.

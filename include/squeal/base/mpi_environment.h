@@ -5,12 +5,12 @@
 namespace Squeal
 {
   /**
-   * Sets environment variables of Open MPI that it cannot determine; call before MPI starts. Variables that the user has set are kept.
+   * Sets environment variables for situations that Open MPI does not detect; call before MPI starts. Variables set by the user are kept.
    *
-   * - With more processes than cores on this machine, waiting processes yield the core. Otherwise they spin, which is faster with one core
-   * each.
-   * - A process that mpirun has not started needs no daemon, which would share its limits and signals, and no session folder: without the
-   * daemon all such processes would share one folder, and a process that ends would remove it while another starts.
+   * - If there are more processes than cores on this machine, waiting processes yield the core. Otherwise they spin, which is faster if
+   * each process has its own core.
+   * - A process started without mpirun uses neither the daemon, which would inherit its limits and signals, nor a session folder. Without
+   * the daemon, all such processes would use the same folder, and a process that ends would remove it while another one starts.
    */
   void prepare_mpi_environment();
 } // namespace Squeal

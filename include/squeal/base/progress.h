@@ -51,7 +51,7 @@ namespace Squeal
     /// Records steps and prints nothing.
     Progress() = default;
 
-    /// Prints to @p stream; @p live: it is a terminal.
+    /// Prints to @p stream; @p live: with a live counter, for a terminal.
     Progress(std::ostream &stream, bool live);
 
     ~Progress();
@@ -62,7 +62,7 @@ namespace Squeal
     /// Begins a step, after finishing the current one.
     void begin(const std::string &name);
 
-    /// Sets the state of the current step that the live counter shows.
+    /// Sets the text that the live counter shows for the current step.
     void update(const std::string &state);
 
     /// Ends the current step, prints its final line and returns its cost.

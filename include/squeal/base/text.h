@@ -44,6 +44,6 @@ namespace Squeal
   /// A command line in POSIX shell syntax, with words quoted if necessary.
   std::string shell_command(const std::vector<std::string> &words);
 
-  /// First lines in which two texts differ, for a message: "`a = 1` there, `a = 2` here", or "nothing" if one text ends.
+  /// First pair of lines in which two texts differ, for a message: "`a = 1` there, `a = 2` here", or "nothing" if one text ends.
   std::string first_difference(const std::string &there, const std::string &here);
 } // namespace Squeal

@@ -12,7 +12,7 @@
 
 namespace Squeal
 {
-  /// Quantities from which bases are built; those that are needed determine the cost.
+  /// Quantities from which bases are built. The cost of a basis includes the cost of the quantities that it uses.
   enum class BasisSource
   {
     disc_free,    ///< Φ_f^D, n_uncoupled × k, truncated as requested
@@ -27,8 +27,8 @@ namespace Squeal
     constraint_disc,
     constraint_pins,
     coupled_attachment, ///< K_c⁻¹ A
-    uncoupled_factor,   ///< of K
-    coupled_factor      ///< of K_c
+    uncoupled_factor,   ///< factor of K, uncoupled bodies
+    coupled_factor      ///< factor of K_c, coupled system
   };
 
   template <>
@@ -56,12 +56,12 @@ namespace Squeal
     int                        contact    = 0; ///< n_c
   };
 
-  /// Input of bases. Anything that a basis does not need may be null; pointers must be valid during the call only.
+  /// Input of reduced_basis(). Objects that a basis does not need may be null; pointers must be valid during the call only.
   struct BasisIngredients
   {
-    std::map<BasisSource, const MultiVector *> sets; ///< of modes
+    std::map<BasisSource, const MultiVector *> sets; ///< sets of modes or vectors
 
-    const StaticModes       *static_modes = nullptr; ///< of the uncoupled bodies
+    const StaticModes       *static_modes = nullptr; ///< static modes of the uncoupled bodies
     const SecondOrderSystem *uncoupled    = nullptr; ///< for connected bases
     const ContactOperators  *contact      = nullptr; ///< for connected bases
     const CoupledSystem     *coupled      = nullptr;
@@ -69,7 +69,7 @@ namespace Squeal
 
     double friction_coefficient = 0.; ///< μ of the rubbing attachment modes and of the response to damping
 
-    /// Null if the set is missing.
+    /// The set of this source; null if it is missing.
     const MultiVector *set(const BasisSource source) const
     {
       const auto found = sets.find(source);
@@ -77,29 +77,29 @@ namespace Squeal
     }
   };
 
-  /// A block of basis vectors: a given set, or computed responses.
+  /// A block of basis vectors: a set from the input, or responses computed from it.
   struct BasisPart
   {
     const char                *symbol;
-    std::vector<BasisSource>   rests_on; ///< quantities computed beforehand
-    std::optional<BasisSource> set;      ///< the vectors, or modes with one response each; without a set, one vector per contact node
-    bool                       is_uncoupled                     = false;   ///< vectors of the uncoupled bodies
-    MultiVector (*compute)(const BasisIngredients &ingredients) = nullptr; ///< null: the vectors are the set
+    std::vector<BasisSource>   rests_on; ///< quantities that must be computed beforehand
+    std::optional<BasisSource> set;      ///< input set: the vectors, or modes with one response each; none: one vector per contact node
+    bool                       is_uncoupled                     = false;   ///< the vectors have uncoupled dofs
+    MultiVector (*compute)(const BasisIngredients &ingredients) = nullptr; ///< null: use the set itself
   };
 
-  /// A reduced basis: its parts and its eigenproblems.
+  /// Recipe of a reduced basis: its parts, and the kinds of system to which it applies.
   struct BasisRecipe
   {
     const char                    *name;
     std::vector<const BasisPart *> parts; ///< columns of T_r0, from left to right
     bool                           needs_friction = true;
     bool                           needs_damping  = false;
-    bool                           is_pod         = false; ///< principal axes of the columns; else all independent columns
+    bool                           is_pod         = false; ///< true: principal axes of the columns (POD); false: all independent columns
 
     /// Symbols of the parts: "Phi_f^D Phi_f^P (Psi_an^D - Psi_an^P)".
     std::string columns() const;
 
-    /// True if built on the uncoupled dofs and connected by eq. (22); other bases have coupled columns.
+    /// True if the columns have uncoupled dofs and are connected by eq. (22); other bases have columns in coupled coordinates.
     bool is_connected() const
     {
       return parts.front()->is_uncoupled;

@@ -21,17 +21,17 @@ namespace Squeal
     std::shared_ptr<MultiVector> vectors;     ///< n_free × k, orthonormal in M, zero on the other components
   };
 
-  /// Lumped nodal masses [kg] of the rows of this process; zero for other and for clamped nodes. Row sums; if some are not positive, as at
-  /// the corners of quadratic tetrahedra, the total mass is distributed in proportion to the diagonal (E. Hinton, T. Rock, O. C.
-  /// Zienkiewicz 1976).
+  /// Lumped nodal masses [kg] of the rows of this process; zero for other and for clamped nodes. The masses are row sums of M; if some sums
+  /// are not positive, as at the corners of quadratic tetrahedra, the total mass is distributed in proportion to the diagonal (E. Hinton,
+  /// T. Rock, O. C. Zienkiewicz 1976).
   std::vector<double> nodal_masses(const Model &model, const SparseMatrix &mass);
 
   /**
-   * All modes of a component with ω² ≤ @p largest_eigenvalue, contact nodes free or sliding, labelled by shape. Throws SolverError if their
-   * number differs from the inertia count.
+   * All modes of a component with ω² ≤ @p largest_eigenvalue, with free or sliding contact nodes, labelled by shape. Throws SolverError if
+   * their number differs from the inertia count.
    *
    * @param interface all contact nodes, closed or open: they define the axes of the pins
-   * @param closed    contact nodes in contact
+   * @param closed    closed contact nodes
    */
   ComponentModes component_modes(const Model                 &model,
                                  const ContactInterface      &interface,
@@ -58,7 +58,7 @@ namespace Squeal
                                         const MultiVector                         &real_part,
                                         const MultiVector                         *imaginary_part);
 
-  /// VᵀMX of the component modes V of each of the @p references with vectors X, n_free × r.
+  /// Products VᵀMX of the component modes V in each of the @p references with the vectors X, n_free × r.
   std::vector<DenseMatrix> products_with(const std::vector<const ComponentModes *> &references,
                                          const SparseMatrix                        &mass,
                                          const MultiVector                         &X);
@@ -77,9 +77,9 @@ namespace Squeal
 
   /**
    * Labels real or complex coupled modes by their M-inner products with component modes; modes of one shape (a doublet, the F1 modes of all
-   * pins) count together. If each mode is dominated by a different component mode, it gets the label of that one. If several modes compete
-   * (an A0-5 mode with larger motion of the pins), labels are distributed so that the sum of all participations is largest and no label
-   * occurs more often than there are component modes with it. A participation below 0.1 gives no label.
+   * pins) count together. If each mode is dominated by a different component mode, it gets the label of this component mode. If several
+   * modes compete (an A0-5 mode with larger motion of the pins), labels are assigned so that the sum of all participations is largest and
+   * no label occurs more often than there are component modes with it. Participations below 0.1 are ignored.
    *
    * @param references component modes, as for shape_shares()
    * @param shares     result of shape_shares(), one entry per coupled mode

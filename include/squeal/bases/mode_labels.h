@@ -15,18 +15,18 @@
 
 namespace Squeal
 {
-  /// Moving part and type of motion of a mode.
+  /// Family of a mode: the body that moves most, and its type of motion.
   enum class ModeFamily
   {
-    unnamed, ///< resembles none of the remaining component modes
+    unnamed, ///< similar to none of the component modes that are still available
     rigid_body,
-    axial, ///< of the disc, by dominant kinetic energy
+    axial, ///< disc modes: direction of the dominant kinetic energy
     radial,
     circumferential,
-    flexural, ///< of pins, about the axis through their contact faces
+    flexural, ///< pin modes: type of motion relative to the axis through the contact face
     torsional,
     longitudinal,
-    body ///< of another body, whose name it takes
+    body ///< mode of another body, named after the body
   };
 
   template <>
@@ -43,7 +43,7 @@ namespace Squeal
     plus ///< faster growth or higher frequency
   };
 
-  /// Family, nodal circles, nodal diameters, rank and body: common to both modes of a doublet, or to the modes of equal pins.
+  /// Family, nodal circles, nodal diameters, rank and body: common to both modes of a doublet, or to the same mode of identical pins.
   using ModeShape = std::tuple<ModeFamily, int, int, int, std::string>;
 
   /// Label of a mode: the component mode that it is or resembles most.
@@ -52,10 +52,10 @@ namespace Squeal
     ModeFamily  family          = ModeFamily::unnamed;
     int         nodal_circles   = 0; ///< of a disc mode
     int         nodal_diameters = 0; ///< of a disc mode
-    int         rank            = 0; ///< of a mode of pins or another body; 1 for the lowest of its family
+    int         rank            = 0; ///< modes of pins or other bodies: 1 for the lowest mode of the family
     DoubletSign sign            = DoubletSign::none;
     double      participation   = 0.; ///< Σ |ψᵀ M φ|² / φᴴ M φ over the component modes ψ of this shape [-]
-    std::string body            = {}; ///< of ModeFamily::body
+    std::string body            = {}; ///< name of the body, for ModeFamily::body only
 
     ModeShape shape() const
     {
@@ -80,7 +80,7 @@ namespace Squeal
    * neither grows, the one with the higher frequency. All tables of all studies use this rule.
    *
    * @param labels       of modes in ascending order of frequency
-   * @param growth_rates of each mode, zero for one that does not grow [any unit]; empty: no mode grows
+   * @param growth_rates one for each mode, zero if the mode does not grow [any unit]; empty: no mode grows
    */
   void mark_doublets(std::vector<ModeLabel> &labels, const std::vector<double> &growth_rates = {});
 
@@ -90,7 +90,7 @@ namespace Squeal
    * component is the energy of its least-squares projection on { r^k cos nθ, r^k sin nθ }, k = 0 ... 4, weighted by nodal masses; nodal
    * circles are the sign changes of the radial profile of the dominant harmonic.
    *
-   * Each process projects the nodes whose rows it has. Collective.
+   * Each process projects the nodes whose rows it owns. Collective.
    *
    * @param modes        n_free × k displacements
    * @param nodal_masses see nodal_masses() [kg]
@@ -111,8 +111,8 @@ namespace Squeal
    *   φ = a(r) cos nθ + b(r) sin nθ = ½ (a + ib) e^{-inθ} + ½ (a - ib) e^{inθ}.
    *
    * With u = Re(φ e^{λt}) and ω = Im λ > 0 the first part depends on ωt - nθ and travels along +e_θ with the angular speed ω/n, the second
-   * one along -e_θ. The shares are those of Σ m |a ± ib|² over the nodes. Nothing for pin modes, unnamed modes and modes without nodal
-   * diameters.
+   * one along -e_θ. The shares are the fractions of Σ m |a ± ib|² over the nodes. Empty for pin modes, unnamed modes and modes without
+   * nodal diameters.
    *
    * @param labels         of the modes
    * @param real_part      n_free × k displacements
@@ -125,10 +125,10 @@ namespace Squeal
                                                      const MultiVector            &imaginary_part);
 
   /**
-   * Labels modes of all bodies except the disc. Bodies `pin_*`: F flexural, T torsional, L longitudinal, whichever has the larger energy
-   * about the axis through the centre of the contact nodes of the pin along its normal, numbered in ascending order of frequency: the first
-   * two F modes of every pin are F1. Other bodies: the name of the body with the larger kinetic energy, and the number among its modes.
-   * Modes must be in ascending order of frequency.
+   * Labels modes of all bodies except the disc. Modes of bodies `pin_*` are F (flexural), T (torsional) or L (longitudinal), depending on
+   * the largest energy relative to the axis, which is the mean normal through the centre of the pin's contact nodes. In each family they
+   * are numbered in ascending order of frequency: the first two F modes of every pin are F1. Modes of other bodies have the name of the
+   * body with the largest kinetic energy, and their number among its modes. Modes must be in ascending order of frequency.
    */
   std::vector<ModeLabel> pin_labels(const Model               &model,
                                     const ContactInterface    &interface,

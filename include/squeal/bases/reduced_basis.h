@@ -9,7 +9,7 @@
 
 namespace Squeal
 {
-  /// Nominal numbers of columns of T_r0 and T_r, before rank decisions; tables 2, 4 and 5 of the paper.
+  /// Nominal numbers of columns of T_r0 and T_r, before dependent columns are dropped; tables 2, 4 and 5 of the paper.
   struct BasisSize
   {
     int n_r0, n_r;
@@ -32,13 +32,13 @@ namespace Squeal
   /// Rank of the connection of the components: T_cr spans the kernel of P_n T_r0.
   struct ConnectionRank
   {
-    int    rank             = 0;  ///< of P_n T_r0; 0 for a basis that needs no connection
+    int    rank             = 0;  ///< rank of P_n T_r0; 0 for a basis that needs no connection
     double smallest_kept    = 0.; ///< singular value / largest one [-]
     double largest_dropped  = 0.; ///< singular value / largest one [-]; 0 if none was dropped
     double constraint_error = 0.; ///< max |P_n T_r0 T_cr| / max |T_r0 T_cr| before the final correction [-]
   };
 
-  /// A basis of the coupled system, and rank and accuracy of its construction.
+  /// A basis of the coupled system, with the rank and the accuracy of its construction.
   struct ReducedBasis
   {
     std::shared_ptr<MultiVector> vectors;        ///< T_r in coupled coordinates, n × r, M_c-orthonormal
@@ -46,7 +46,7 @@ namespace Squeal
     int                          n_nominal;      ///< columns of T_r according to the formula
     int                          n_dropped;      ///< columns of T_r0 T_cr that are dependent, or dropped by POD
     double                       tolerance;      ///< rank tolerance [-]
-    double                       condition;      ///< of the Gram matrix of T_r0 T_cr, columns scaled to unit M-norm (POD: unscaled) [-]
+    double                       condition;      ///< condition number of the Gram matrix of T_r0 T_cr, columns scaled (POD: unscaled) [-]
     double                       orthonormality; ///< max |T_rᵀ M_c T_r − I|, below 1e-10
     ConnectionRank               connection;
 
@@ -58,7 +58,7 @@ namespace Squeal
   };
 
   /**
-   * Builds a basis: joins the columns of T_r0; for component modes finds T_cr with P_n T_r0 T_cr = 0 by a singular value decomposition of
+   * Builds a basis: joins the columns of T_r0; for component modes, finds T_cr with P_n T_r0 T_cr = 0 by a singular value decomposition of
    * P_n T_r0, columns scaled to unit M-norm, and converts to coupled coordinates; then orthonormalises the columns in M_c. Rigid-body
    * motions that are missing in the disc_free modes of a free disc are added.
    *

@@ -15,17 +15,17 @@
 
 namespace Squeal
 {
-  /// ω_max / s for the shift s in K + s² M: large enough that the inverse does not amplify slow motions [-].
+  /// ω_max / s for the shift s in K + s² M: s is large enough that the inverse does not amplify slow motions [-].
   inline constexpr double band_per_stabilizing_shift = 50.;
 
   /// Translations along and rotations about x, y, z of one component, the others at rest: n × 6 on the uncoupled dofs.
   MultiVector rigid_motions(const Model &model, unsigned int component);
 
-  /// The six rigid-body motions of the disc, with the pins following where contact requires it, in coupled coordinates, n × 6.
+  /// The six rigid-body motions of the disc in coupled coordinates, n × 6; pins move only where the contact constraints require it.
   MultiVector rigid_disc_motions(const Model &model, const CoupledSystem &system);
 
-  /// Rigid-body motions of an uncoupled body that its mounts leave free (up to rounding errors of K), M-orthonormal; nothing if the body is
-  /// held or has clamped nodes.
+  /// Rigid-body motions of an uncoupled body that its mounts do not resist (up to rounding errors of K), M-orthonormal; nothing if mounts
+  /// resist all motions, or if the body has clamped nodes.
   std::optional<MultiVector> free_motions(const Model &model, const SecondOrderSystem &system, unsigned int component);
 
   /// Rigid-body motions, M-orthonormal, split by their effect on the contact nodes.
@@ -36,8 +36,9 @@ namespace Squeal
   };
 
   /**
-   * Splits the M-orthonormal rigid-body @p motions, n × k, by the singular values of P_n times them, P_n = @p normal; root mean squares
-   * over the contact nodes below 10⁻⁸ of the largest displacement are rounding errors. The same on every process.
+   * Splits the M-orthonormal rigid-body motions N = @p motions, n × k, by the singular values of P_n N, P_n = @p normal. A motion is
+   * sliding if its normal displacement (root mean square over the contact nodes) is below 10⁻⁸ of the largest displacement, the level of
+   * rounding errors. The result is identical on all processes.
    */
   ContactMotions contact_motions(const SparseMatrix &normal, const MultiVector &motions);
 
@@ -51,7 +52,7 @@ namespace Squeal
   double stabilizing_shift(const Model &model, const SecondOrderSystem &system, double largest_circular_frequency);
 
   /**
-   * Solves K u = f for blocks of forces, K symmetric positive semidefinite with a known kernel N of rigid-body motions. With a kernel,
+   * Solves K u = f for blocks of forces, K symmetric positive semidefinite with a known kernel N of rigid-body motions. If N is not empty,
    * inertia relief applies,
    *
    *   K u = f − M N Nᵀf,   NᵀM u = 0,   NᵀM N = 1,

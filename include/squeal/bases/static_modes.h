@@ -16,8 +16,8 @@ namespace Squeal
    * Static boundary modes of disc and pins on the uncoupled dofs, one column for each contact node (sections 5.1 and 6.1 of the paper).
    * Each set is computed on first use and kept. The arguments must outlive the object.
    *
-   * For a disc that its mount leaves free, inertia relief applies: attachment modes are complete only together with
-   * InertiaRelief::rigid_body_modes().
+   * For a disc with rigid-body motions that its mounts do not resist, inertia relief applies: attachment modes are complete only together
+   * with InertiaRelief::rigid_body_modes().
    */
   class StaticModes
   {
@@ -52,7 +52,7 @@ namespace Squeal
      */
     const MultiVector &constraint(Component component) const;
 
-    const InertiaRelief &response; ///< with the rigid-body motions of the uncoupled disc
+    const InertiaRelief &response; ///< static response, with the rigid-body motions of the uncoupled disc
 
   private:
     MultiVector constraint_modes(Component component) const;
@@ -84,7 +84,7 @@ namespace Squeal
    */
   MultiVector friction_response(const CoupledSystem &system, const UpdatedInverse &inverse, const MultiVector &real_modes, Side side);
 
-  /// First-order responses of real coupled modes Φ_R to damping, K_c⁻¹ (C_c − μ A V_C) Φ_R, n × n_R, at a friction coefficient or at the
+  /// First-order responses of real coupled modes Φ_R to damping, K_c⁻¹ (C_c − μ A V_C) Φ_R, n × n_R, at the friction coefficient or at the
   /// parameter values of the system. Throws SolverError if there is no damping.
   MultiVector damping_response(const CoupledSystem  &system,
                                const UpdatedInverse &inverse,

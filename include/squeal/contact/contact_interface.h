@@ -28,7 +28,7 @@ namespace Squeal
   struct ContactNode
   {
     WeightedNodes   on_disc, on_pin; ///< Σ weight u: displacements of both sides
-    WeightedNodes   forces_of_pin;   ///< Σ weight f: force of this node from nodal forces on the pin
+    WeightedNodes   forces_of_pin;   ///< Σ weight f: contact force at this node, from nodal forces f on the pin
     Node            pin_node;
     unsigned int    pin;       ///< component of the pin node
     Eigen::Vector3d position;  ///< [m]
@@ -62,7 +62,7 @@ namespace Squeal
   /// The contact nodes, the same on every process.
   using ContactInterface = std::vector<ContactNode>;
 
-  /// Contact nodes, and notes for the user on how they were found.
+  /// Contact nodes, and notes for the user about their detection.
   struct FoundContact
   {
     ContactInterface         interface;
@@ -74,7 +74,7 @@ namespace Squeal
    * else by mortar(). The normal of a node pair is the area average over the adjacent contact faces of the disc, that of a mortar node the
    * average over those of the pin; t is the direction of the velocity in the tangent plane.
    *
-   * Throws MeshError if a contact node is clamped, if its velocity is zero, not finite or normal to the face, or as mortar() does.
+   * Throws MeshError if a contact node is clamped, if its velocity is zero, not finite or normal to the face, or if mortar() fails.
    */
   FoundContact contact_nodes(const Model &model, const std::vector<ContactPair> &pairs, const SlidingVelocity &velocity, double tolerance);
 

@@ -18,7 +18,7 @@ namespace Squeal
     std::string                         name;      ///< parameter of its term
     double                              stiffness; ///< k [N/m³]
     std::shared_ptr<const SparseMatrix> matrix;    ///< P_nᵀ diag(D) P_n [m²], n × n
-    std::shared_ptr<const SparseMatrix> reaction;  ///< −diag(D) P_n [m²], n_c × n, rows of other pairs zero
+    std::shared_ptr<const SparseMatrix> reaction;  ///< −diag(D) P_n [m²], n_c × n, zero rows for other pairs
   };
 
   /**
@@ -33,8 +33,8 @@ namespace Squeal
    *
    *   S P_nᵀ = I,   S P_tᵀ = 0,   S P_bᵀ = 0,   r_n = S (λ² M + λ C + K) u.
    *
-   * Any S with these properties gives the same eigenvalues. For node pairs it is ½ P_n, because P_n P_nᵀ = 2 I; for mortar nodes it takes
-   * the forces on the pins' nodes.
+   * Any S with these properties gives the same eigenvalues. For node pairs it is ½ P_n, because P_n P_nᵀ = 2 I; for mortar nodes it is a
+   * weighted sum of the forces on the nodes of the pin.
    *
    * T_c eliminates one displacement component of each pin node, the one closest to the normal; if the normal is a coordinate axis, T_c
    * selects dofs.
@@ -54,11 +54,11 @@ namespace Squeal
 
   ContactOperators contact_operators(const Model &model, const ContactInterface &interface);
 
-  /// Components as in the paper.
+  /// Components of the brake, as in the paper.
   enum class Component
   {
     disc,
-    pins ///< all of them together
+    pins ///< all pins together
   };
 
   bool belongs_to(const Node &node, Component component);
@@ -70,14 +70,14 @@ namespace Squeal
     sliding ///< fixed along n, free in the tangent plane
   };
 
-  /// Basis of the admissible displacements of a component, the other one at rest: n × n_component. Selects the dofs of the component; with
-  /// `sliding`, n·u = 0 at its contact nodes, for the disc at every node of a contact constraint.
+  /// Basis of the admissible displacements of a component, n × n_component; the other component is at rest. It selects the dofs of the
+  /// component; with `sliding`, n·u = 0 at its contact nodes, on the disc at every node that occurs in a contact constraint.
   std::shared_ptr<SparseMatrix> component_kernel(const Model            &model,
                                                  const ContactInterface &interface,
                                                  Component               component,
                                                  ContactBoundary         boundary);
 
-  /// q with T q = u for displacements u, n × k, in the range of a kernel T (T_c or component_kernel()): the entries of u at the dofs that T
-  /// selects.
+  /// Coordinates q with T q = u for displacements u, n × k, in the range of a kernel T (T_c or component_kernel()): q contains the entries
+  /// of u at the dofs that T selects.
   MultiVector coordinates(const SparseMatrix &T, const MultiVector &u);
 } // namespace Squeal

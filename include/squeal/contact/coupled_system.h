@@ -11,7 +11,7 @@
 
 namespace Squeal
 {
-  /// Free parameters of a coupled system; parameters of the bodies have fixed values.
+  /// Parameters of a coupled system in addition to the parameters of the bodies.
   namespace SystemParameter
   {
     inline constexpr const char *friction        = "mu";                             ///< μ [-]
@@ -46,14 +46,14 @@ namespace Squeal
    *
    *   Rᵀ diag(c_b) R   and   A diag(c_t) Aᵀ,   R = P_b T_c.
    *
-   * Contact springs are a stiffness term, T_cᵀ P_nᵀ k diag(D) P_n T_c, with V = −k diag(D) P_n T_c.
+   * Contact springs add a stiffness term, T_cᵀ P_nᵀ k diag(D) P_n T_c, with V = −k diag(D) P_n T_c.
    *
    * add_modal_damping() appends another term.
    */
   struct CoupledSystem
   {
     std::vector<Term>                   terms;
-    ParameterValues                     values;                             ///< of all parameters, with μ = 0
+    ParameterValues                     values;                             ///< values of all parameters, with μ = 0
     std::string                         varied = SystemParameter::friction; ///< parameter over which charts follow the modes
     std::shared_ptr<const SparseMatrix> mass, stiffness;                    ///< M_c and K_c, n × n: the symmetric terms without friction
     double hidden_square = 0.; ///< |λ|² up to this value counts as zero: rounding errors of K_c, see unresolved_square() [rad²/s²]
@@ -92,7 +92,7 @@ namespace Squeal
    *
    * @param tangential Aᵀ = P_t T_c, n_c × n
    * @param radial     R = P_b T_c, n_c × n
-   * @param values     of the parameters of the bodies' coefficients
+   * @param values     values of the parameters in the coefficients of the bodies' terms
    */
   CoupledSystem coupled_system(const std::vector<CoupledTerm>     &bodies,
                                std::shared_ptr<const SparseMatrix> tangential,
@@ -112,7 +112,7 @@ namespace Squeal
   /// The same system with other values of some parameters.
   CoupledSystem with_values(CoupledSystem system, const ParameterValues &others);
 
-  /// The system without its terms in λ¹.
+  /// The system without its damping terms (λ¹).
   CoupledSystem undamped(CoupledSystem system);
 
   /**
@@ -148,6 +148,6 @@ namespace Squeal
                                       const MultiVector                       &imaginary_part);
 
   /// Couples a family of terms as couple() does, each term with its own contribution to the reactions. Mass, stiffness and parameter values
-  /// are those in the middle of the family.
+  /// are for the middle of the family.
   CoupledSystem coupled_family(const TermFamily &bodies, const ContactOperators &contact, const ContactDamping &damping = {});
 } // namespace Squeal

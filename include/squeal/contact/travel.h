@@ -48,10 +48,10 @@ namespace Squeal
   std::vector<Eigen::Vector3d> backplate_displacements(const std::vector<Travel> &travels, const std::vector<double> &approach);
 
   /**
-   * R_n0 [N] ≤ 0 with equal reactions at all nodes of a backplate (equal pressure on faces that do not match). The force along its travel,
-   * friction included, is the load per side: Σ e·(n + μ f t) R_n0 = load.
+   * Static reactions R_n0 ≤ 0 [N], equal at all nodes of a backplate (equal pressure on faces that do not match). The force along its
+   * travel, friction included, is the load per side: Σ e·(n + μ f t) R_n0 = load.
    *
-   * Throws MeshError as travels() does, ParameterError if friction alone balances the load.
+   * Throws MeshError if travels() fails, ParameterError if friction alone balances the load.
    */
   std::vector<double> equal_load_shares(const Model &model, const ContactInterface &interface, const OperationParameters &operation);
 } // namespace Squeal

@@ -12,12 +12,12 @@
 
 namespace Squeal
 {
-  /// When the n_c columns of X are computed, which takes longer than the factorisation, and whether the dense n × n_c matrix is kept.
+  /// Storage of the attachment modes X, a dense n × n_c matrix: its computation takes longer than the factorisation.
   enum class AttachmentModes
   {
-    at_once,     ///< with the factor
-    when_needed, ///< on first use; never with solvers that work on a basis
-    not_kept     ///< each product with X is a solve with the factor
+    at_once,     ///< computed with the factor
+    when_needed, ///< computed on first use; solvers that work on a basis never need X
+    not_kept     ///< computed for each product with X, by solves with the factor
   };
 
   /// True if a dense n × n_c matrix fits into an eighth of the available memory.
@@ -62,7 +62,7 @@ namespace Squeal
     /// Calls f(first, X_b) for blocks X_b of columns of S⁻¹ F, starting at column `first`.
     void for_responses(const LowRankFactor &F, const std::function<void(int first, const MultiVector &X_b)> &f) const;
 
-    /// X B for B, n_c × k, the same on every process: takes k solves if X has not been computed.
+    /// X B for a replicated matrix B, n_c × k; takes k solves if X has not been computed.
     MultiVector attachment_modes_times(const DenseMatrix &B) const;
 
     /// Factor of S. Several threads may use it, as well as apply() without friction.
@@ -76,7 +76,7 @@ namespace Squeal
     std::shared_ptr<const LowRankFactor> A;
     std::shared_ptr<const SparseMatrix>  V;
     mutable std::unique_ptr<MultiVector> X;      ///< computed on first use
-    std::unique_ptr<const Factorization> factor; ///< of S
+    std::unique_ptr<const Factorization> factor; ///< Cholesky factor of S
     std::optional<DenseMatrix>           VX;     ///< n_c × n_c, on every process
     double                               friction_coefficient = 0.;
     std::optional<RealLU>                correction;

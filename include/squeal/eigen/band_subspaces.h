@@ -13,21 +13,22 @@ namespace Squeal
   {
     DenseMatrix right; ///< R, n × k
     DenseMatrix left;  ///< L, n × k
-    DenseMatrix small; ///< S, k × k; its eigenvalues, −λ² or λ, belong to R and L
+    DenseMatrix small; ///< S, k × k; its eigenvalues are −λ² or λ of the modes of the band
   };
 
   /**
    * Invariant subspaces of A φ = −λ² φ for all λ with |Im λ| ≤ @p largest_circular_frequency [rad/s].
    *
-   * A is given in modal coordinates of a nearby symmetric pencil with −λ² = @p squares, ascending. Partitioned with the modes of the band
-   * first, up to the widest gap above it, A has blocks B_ij, and
+   * A is given in modal coordinates of a nearby symmetric pencil with −λ² = @p squares, ascending. If the modes up to the widest gap above
+   * the band come first, A has blocks B_ij, and
    *
    *   R = [I; X],           B_21 + B_22 X − X (B_11 + B_12 X) = 0,
    *   Lᵀ = [I − Y X, Y],    S_1 Y − Y T − B_12 = 0,   S_1 = B_11 + B_12 X,  T = B_22 − X B_12.
    *
    * Both equations are solved by fixed-point iteration with the diagonal operator of the symmetric pencil (Stewart 1973, Demmel 1987), a
-   * few block products per step, accelerated by Anderson's method; S = LᵀAR, so that its error is the product of the errors of X and Y. T
-   * has no eigenvalue in the band, real λ included, by Lyapunov's theorem with P = diag(T), or else by powers,
+   * few block products per step, accelerated by Anderson's method; S = LᵀAR, so that its error is the product of the errors of X and Y. One
+   * of two tests proves that T has no eigenvalue in the band, real λ included: Lyapunov's theorem with P = diag(T), or powers of a Cayley
+   * transform,
    *
    *   P (T − ω² I) + (T − ω² I)ᵀ P positive definite, or
    *   Z = (T − ω² I − a I) (T − ω² I + a I)⁻¹:  ‖Z^m‖ < 1 for any m     =>   Re(−λ²) > ω² for all of T.
@@ -37,14 +38,14 @@ namespace Squeal
   std::optional<BandSubspaces> band_subspaces(const DenseMatrix &A, const std::vector<double> &squares, double largest_circular_frequency);
 
   /**
-   * Invariant subspaces with dissipation, of
+   * Invariant subspaces of a system with damping,
    *
    *   [ 0   I ]
    *   [ -A -C ]  [φ; λ φ] = λ [φ; λ φ],   right and left 2r × 2k, small 2k × 2k with eigenvalues λ.
    *
-   * A and C are given in modal coordinates. Each mode of the reference has the pair of coordinates (x, λ x / ω), in which its block is ω J,
-   * J = [0 1; -1 0]. Fixed-point steps divide the part that commutes with J by ω_i − ω_j and the part that anticommutes by ω_i + ω_j. The
-   * tests use −T² instead of T.
+   * A and C are given in modal coordinates. Each mode of the symmetric pencil has a pair of coordinates (x, λ x / ω), in which its block is
+   * ω J, J = [0 1; -1 0]. Fixed-point steps divide the part of the residual that commutes with J by ω_i − ω_j and the anticommuting part by
+   * ω_i + ω_j. The tests use −T² instead of T.
    */
   std::optional<BandSubspaces> damped_band_subspaces(const DenseMatrix         &A,
                                                      const DenseMatrix         &C,

@@ -12,7 +12,7 @@
 
 namespace Squeal
 {
-  /// Eigenpairs of the projected operator of a CompactKrylov, by descending |ν|.
+  /// Eigenpairs of the projected operator H of a CompactKrylov, by descending |ν|.
   struct RitzPairs
   {
     std::vector<std::complex<double>> values; ///< ν; conjugate pairs with Im ν > 0 first
@@ -27,9 +27,8 @@ namespace Squeal
   };
 
   /**
-   * Block Krylov–Schur process in real arithmetic for an operator S on states
-   * x = [x_0; ...; x_{d-1}] of d vectors of length n, whose lower parts only
-   * shift:
+   * Block Krylov–Schur process in real arithmetic for an operator S on states x = [x_0; ...; x_{d-1}] of d vectors of length n. S shifts
+   * the parts down and computes a new first part:
    *
    *     S [x_0; x_1; ...] = [f(x_0, x_1, ...); x_0; ...; x_{d-2}].
    *
@@ -55,28 +54,28 @@ namespace Squeal
     /// f: receives the d parts of b states side by side, n × d b, and returns their images in @p image, n × b.
     using Operator = std::function<void(const MultiVector &states, MultiVector &image)>;
 
-    /// An empty process of degree @p degree; @p n_reserved vectors are allocated at once.
+    /// Creates an empty process of degree @p degree and allocates @p n_reserved vectors.
     CompactKrylov(const RowMap &map, int degree, int n_reserved);
 
     /**
-     * Widens the active block by the states [x; 0; ...] of the columns x of @p directions: for the first block, and to find eigenvectors
-     * without a component in the block, such as members of a multiple eigenvalue beyond the block size. Returns the number of new
-     * directions.
+     * Widens the active block by the states [x; 0; ...] of the columns x of @p directions: to create the first block, and to find
+     * eigenvectors without a component in the block, for example of eigenvalues whose multiplicity exceeds the block size. Returns the
+     * number of new directions.
      */
     int inject(const MultiVector &directions);
 
-    /// Applies S to the active block, which becomes part of the basis. At most block_size new active states remain.
+    /// Applies S to the active block, which becomes part of the basis. The new active block has at most block_size states.
     void expand(const Operator &apply);
 
     /// Eigenpairs of H. Throws SolverError if the QR algorithm fails.
     RitzPairs ritz_pairs() const;
 
-    /// Reduces the basis to the Schur vectors of the first @p n_kept Ritz values (one more if that would split a pair).
+    /// Reduces the basis to the Schur vectors of the first @p n_kept Ritz values (one more if n_kept would split a pair).
     void restart(const RitzPairs &ritz, int n_kept);
 
     /**
-     * A new process that starts from the Schur vectors of the first @p n_locked Ritz values, which have converged, with an empty active
-     * block: injected directions search for missing eigenpairs. It has room for @p n_more vectors.
+     * Creates a process with the Schur vectors of the first @p n_locked Ritz values, which have converged, and an empty active block, to
+     * search for missing eigenpairs from injected directions. It has space for @p n_more vectors.
      */
     CompactKrylov deflated(const RitzPairs &ritz, int n_locked, int n_more) const;
 
@@ -86,7 +85,7 @@ namespace Squeal
      */
     MultiVector ritz_vectors(const RitzPairs &ritz, const std::vector<int> &positions) const;
 
-    int n_vectors  = 0; ///< r, in U
+    int n_vectors  = 0; ///< r, number of columns of U
     int dimension  = 0; ///< m, the number of basis states without the active block
     int block_size = 0; ///< b, the number of active states; 0 if the basis spans an invariant subspace
 
@@ -97,13 +96,13 @@ namespace Squeal
     /// Appends the orthonormalised columns of @p states, d r × b in coordinates, to the active block; returns [VᵀX; R].
     DenseMatrix append_active(const DenseMatrix &states, int n_basis);
 
-    /// Basis of all parts as a view.
+    /// U as a view.
     MultiVector basis() const;
 
-    /// Makes room for @p n vectors in U.
+    /// Allocates space for @p n vectors in U.
     void reserve(int n);
 
-    /// Takes the Schur vectors of some Ritz values of @p from, which may be *this, and its active block.
+    /// Copies the active block of @p from, which may be *this, and the Schur vectors of its first @p n_kept Ritz values.
     void take_schur_vectors(const CompactKrylov &from, const RitzPairs &ritz, int n_kept, int n_reserved);
 
     RowMap                       map;

@@ -10,7 +10,7 @@
 
 namespace Squeal
 {
-  /// Whether eigenvectors of real eigenvalues are computed.
+  /// Selects whether eigenvectors of real eigenvalues are computed.
   enum class RealVectors
   {
     none,
@@ -37,12 +37,9 @@ namespace Squeal
    *     [ 0        I      ]
    *     [ -M⁻¹ K   -M⁻¹ C ]  [φ; λ φ] = λ [φ; λ φ],
    *
-   * or, without damping (null), -M⁻¹ K φ = λ² φ, for which λ → -λ holds
-   * exactly. λ is measured in units of √(‖K‖/‖M‖) (Fan, Lin, Van Dooren 2004);
-   * φ is taken from the larger half of the vector, ψ = M⁻ᵀ times the second
-   * half of the left one. The values get one two-sided Rayleigh correction
-   * -ψᵀQ(λ)φ / ψᵀQ'(λ)φ. Throws SolverError if M is singular or the QR
-   * algorithm fails.
+   * or, without damping (null), -M⁻¹ K φ = λ² φ, for which λ → -λ holds exactly. λ is measured in units of √(‖K‖/‖M‖) (Fan, Lin, Van Dooren
+   * 2004); φ is the larger half of the right vector, ψ = M⁻ᵀ times the second half of the left vector. Each λ receives one two-sided
+   * Rayleigh correction -ψᵀQ(λ)φ / ψᵀQ'(λ)φ. Throws SolverError if M is singular or the QR algorithm fails.
    */
   DenseQuadraticModes dense_quadratic_modes(const DenseMatrix &mass,
                                             const DenseMatrix *damping,
@@ -51,10 +48,10 @@ namespace Squeal
                                             RealVectors        real_vectors               = RealVectors::none);
 
   /**
-   * Computes the same with the QR algorithm restricted to the modes of the band: band_subspaces(), damped_band_subspaces(). Nothing if the
-   * band cannot be separated from the other modes; if it can, none of those has a real λ.
+   * Computes the modes of dense_quadratic_modes() with the QR algorithm restricted to the modes of the band, which band_subspaces() or
+   * damped_band_subspaces() separate. Returns nothing if the band cannot be separated. Otherwise the modes outside the band have no real λ.
    *
-   * @param mass,damping,stiffness in coordinates of the modes of a nearby symmetric pencil
+   * @param mass,damping,stiffness matrices in modal coordinates of a nearby symmetric pencil
    * @param squares                ω² of these modes, ascending
    */
   std::optional<DenseQuadraticModes> dense_modes_of_band(const DenseMatrix         &mass,

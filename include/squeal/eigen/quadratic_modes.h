@@ -24,38 +24,37 @@ namespace Squeal
   /// Options of quadratic_modes().
   struct QuadraticModesOptions
   {
-    double shift                      = 0.; ///< s ≥ 0 [1/s] of the given operator Q(s)⁻¹; s > 0 if K is singular
-    double largest_circular_frequency = 0.; ///< limit of the requested λ, 0 < Im λ ≤ this [rad/s], or λ real
+    double shift                      = 0.; ///< shift s ≥ 0 of the operator Q(s)⁻¹; s > 0 if K is singular [1/s]
+    double largest_circular_frequency = 0.; ///< ω_max: requested λ are real or have 0 < Im λ ≤ ω_max [rad/s]
 
-    /// All λ with |λ| ≤ ρ = hypot(1, this) largest_circular_frequency are requested, which include those with |Re λ| ≤ this
-    /// times largest_circular_frequency [-].
+    /// d in the radius ρ = √(1 + d²) ω_max: all λ with |λ| ≤ ρ are found, and therefore all λ with |Re λ| ≤ d ω_max [-].
     double largest_damping = 0.1;
 
-    double largest_decay = std::numeric_limits<double>::infinity(); ///< λ with Re λ below minus this are omitted [1/s]
+    double largest_decay = std::numeric_limits<double>::infinity(); ///< modes that decay faster, Re λ < −largest_decay, are omitted [1/s]
 
-    double zero_modulus = 0.; ///< |λ| up to this is zero [rad/s]; 0: 1e-4 of the largest frequency
+    double zero_modulus = 0.; ///< |λ| up to this limit counts as zero [rad/s]; 0: limit of 1e-4 ω_max
 
     int    expected  = 0;    ///< estimated number of modes, for example of real modes below the same frequency
     double tolerance = 1e-9; ///< largest ‖Q(λ)φ‖₂ / ‖Kφ‖₂ [-]
 
-    /// A norm of K. Modes far below the others have a small ‖Kφ‖; their ‖Q(λ)φ‖ may reach its rounding errors, ten times the machine
-    /// precision times this norm. 0: no such allowance.
+    /// A norm of K. Modes of very low frequency have a small ‖Kφ‖; their residual ‖Q(λ)φ‖ may be as large as the rounding errors, ten times
+    /// the machine precision times this norm. 0: no such allowance.
     double stiffness_norm = 0.;
-    double damping_norm   = 0.; ///< norm of C, likewise for rounding errors of λCφ
+    double damping_norm   = 0.; ///< norm of C, for rounding errors of λCφ
 
     int block_size = 8; ///< vectors per block solve
 
-    /// Vectors close to the requested ones, for example modes without friction and damping: sums of them start the process. Null: none.
+    /// Approximate modes, for example modes without friction and damping: sums of them start the process. Null: none.
     const MultiVector *close_vectors = nullptr;
 
     /// Number of random vectors that search for missing eigenvalues at the end, for example in clusters larger than the block; 0: none.
     int n_fresh_directions = 4;
 
     int          max_basis    = 0;  ///< largest number of basis vectors before a restart; 0: chosen from the number of modes
-    int          max_restarts = 30; ///< largest number of restarts before SolverError
-    unsigned int seed         = 1;  ///< of the random first block
+    int          max_restarts = 30; ///< maximum number of restarts; then a SolverError is thrown
+    unsigned int seed         = 1;  ///< seed of the random first block
 
-    std::function<void(const std::string &)> report; ///< receives the state of the iteration from time to time; may be empty
+    std::function<void(const std::string &)> report; ///< called with the state of the iteration at every check; may be empty
   };
 
   /// Eigenpairs Q(λ) φ = 0 in a band, and their cost.
@@ -74,10 +73,10 @@ namespace Squeal
     /// Eigenvalues λ = 0 with their multiplicity: two for each rigid-body mode without damping.
     int n_zero_values = 0;
 
-    double radius     = 0.; ///< all λ with |λ - s| (no damping: |λ² - s²|^½) below this were found [rad/s]
-    int    n_solves   = 0;  ///< vectors Q(s)⁻¹ was applied to
+    double radius     = 0.; ///< all λ with |λ - s| (no damping: |λ² - s²|^½) below this radius were found [rad/s]
+    int    n_solves   = 0;  ///< number of vectors to which Q(s)⁻¹ was applied
     int    n_restarts = 0;
-    int    n_basis    = 0; ///< largest number of vectors held
+    int    n_basis    = 0; ///< largest number of vectors in the basis
   };
 
   /**
@@ -94,9 +93,9 @@ namespace Squeal
    *
    * The iteration ends when all Ritz values inside the radius, and some outside, have converged. The residuals are then computed from the
    * pencil; if one exceeds the tolerance, the iteration continues. A short second process from random directions, with the found values
-   * deflated, then searches for missing ones; if it finds any, these directions join the block and the iteration continues. It finds values
-   * well inside the radius: a missing member of a cluster at the very end of the band may remain undetected, therefore the block size
-   * should be at least the size of clusters.
+   * deflated, then searches for missing ones; if it finds any, these directions join the block and the iteration continues. This search
+   * finds values well inside the radius. A missing member of a cluster at the very end of the band may remain undetected; the block size
+   * should therefore be at least the size of clusters.
    *
    * @param inverse_at_shift Q(s)⁻¹ = (s² M + s C + K)⁻¹
    *
@@ -113,7 +112,7 @@ namespace Squeal
                                 const MultiVector                       &real_part,
                                 const MultiVector                       &imaginary_part);
 
-  /// Rotates each complex vector so that its entry of largest modulus is real and positive; among entries that are equal up to rounding,
-  /// the one in the lowest row.
+  /// Rotates each complex vector so that its entry of largest modulus is real and positive; among entries whose moduli are equal up to
+  /// rounding, the entry with the lowest row number.
   void fix_phase(MultiVector &real_part, MultiVector &imaginary_part);
 } // namespace Squeal

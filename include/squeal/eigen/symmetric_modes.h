@@ -17,7 +17,7 @@ namespace Squeal
   struct ModeCount
   {
     int    n_modes;
-    double limit; ///< the requested limit, or slightly above it if an eigenvalue coincides with it [rad²/s²]
+    double limit; ///< the requested limit, or slightly higher if an eigenvalue coincides with the requested limit [rad²/s²]
   };
 
   /// Options of symmetric_modes().
@@ -32,21 +32,21 @@ namespace Squeal
     int block_size = 0;
 
     /// s ≥ 0 in K + s M, which is factorised [rad²/s²]. 0: K itself, or s = largest eigenvalue / 100 if K is not positive definite or
-    /// almost singular. Giving a shift avoids the failing attempt for bodies with rigid-body motions.
+    /// almost singular. For bodies with rigid-body motions, a shift avoids a factorisation of K that fails.
     double shift = 0.;
 
-    /// (K + s M)⁻¹ for this shift, if the caller has it; null: K + s M is factorised here.
+    /// (K + s M)⁻¹ for this shift, if available; null: K + s M is factorised.
     const LinearOperator *inverse = nullptr;
 
-    /// Number of modes below the limit from count_below(), if the caller has it; not with by_parts.
+    /// Result of count_below(), if available; not with by_parts.
     std::optional<ModeCount> count;
 
-    /// K and M consist of many uncoupled blocks, such as pins, which are solved individually; not with inverse.
+    /// True if K and M consist of many uncoupled blocks, for example of pins, which are then solved individually; not with inverse.
     bool by_parts = false;
 
     FactorizationLibrary library = FactorizationLibrary::automatic;
 
-    /// Seed of the random start vectors; affects results by rounding only.
+    /// Seed of the random start vectors; it affects results only by rounding errors.
     unsigned int seed = 1;
 
     /// Name of the eigenproblem, for error messages.
@@ -65,7 +65,7 @@ namespace Squeal
     /// ‖Kφ - ω²Mφ‖ / ‖Kφ‖ [-]; for rigid-body modes ‖Kφ‖ / (largest eigenvalue · ‖Mφ‖).
     std::vector<double> residuals;
 
-    /// Number of eigenvalues that are zero up to rounding errors of K (unresolved_square()), in the band or not: rigid-body motions.
+    /// Number of rigid-body motions: eigenvalues that are zero up to rounding errors of K (unresolved_square()).
     int n_rigid_body = 0;
 
     /// Number of modes in the band by Sylvester's law of inertia; equals the number found.
@@ -76,8 +76,8 @@ namespace Squeal
    * All modes with 0 ≤ ω² ≤ @p largest_eigenvalue [rad²/s²] of K φ = ω² M φ,
    * K symmetric positive semidefinite, M symmetric positive definite.
    *
-   * The inertia of K - limit M gives their number. They are computed by shift-invert (K + s M)⁻¹ M with block Lanczos, block Krylov-Schur
-   * (Anasazi) or implicitly restarted Lanczos (ARPACK), followed by a Rayleigh-Ritz projection. If members of multiple eigenvalues are
+   * The inertia of K - limit M gives the number of modes. The modes are computed by block Lanczos, block Krylov-Schur (Anasazi) or
+   * implicitly restarted Lanczos (ARPACK) for (K + s M)⁻¹ M, followed by a Rayleigh-Ritz projection. If members of multiple eigenvalues are
    * missing, the solver is restarted orthogonally to the modes found.
    *
    * Throws SolverError if modes are missing, or if a residual exceeds both the tolerance and the rounding errors in K φ, 10 ε ‖K‖ ‖φ‖ /
@@ -93,8 +93,8 @@ namespace Squeal
   ModeCount count_below(const SparseMatrix &K, const SparseMatrix &M, double limit, const std::string &what);
 
   /**
-   * Upper end of a band [rad²/s²] that contains exactly the @p n_modes lowest modes, by inertia counts. Modes whose ω² differs by less than
-   * 10⁻³ from that of the last one, such as members of a multiple eigenvalue, may also be included.
+   * Upper end of a band [rad²/s²] that contains exactly the @p n_modes lowest modes, by inertia counts. Modes whose ω² exceeds that of the
+   * last mode by less than 10⁻³, for example members of a multiple eigenvalue, may also be included.
    *
    * @param first   start of the search [rad²/s²]
    * @param highest limit of the search [rad²/s²]

@@ -14,7 +14,7 @@ namespace Squeal
   {
     std::string      name;
     dealii::Point<3> lower, upper;               ///< corners of its bounding box [m]
-    double           inner_radius, outer_radius; ///< of the disc, about z [m]; zeros for pins
+    double           inner_radius, outer_radius; ///< radii of the disc about z [m]; zero for pins
 
     template <class Archive>
     void serialize(Archive &archive, const unsigned int /*version*/)
@@ -26,7 +26,7 @@ namespace Squeal
   /// Frames of the disc and the pins.
   std::vector<BodyFrame> body_frames(const Model &model);
 
-  /// Points at corresponding positions in another design, with the same masses; bodies that it does not have are omitted. Disc points keep
-  /// their angle and their relative radial and axial positions, pin points their relative position in the bounding box.
+  /// Maps points to the corresponding positions in another design, with the same masses; bodies that the other design lacks are omitted.
+  /// Disc points keep their angle and their relative radial and axial positions, pin points their relative position in the bounding box.
   CommonPoints carried_over(const CommonPoints &points, const std::vector<BodyFrame> &from, const std::vector<BodyFrame> &to);
 } // namespace Squeal

@@ -45,28 +45,28 @@ namespace Squeal
   enum class Directions
   {
     cartesian,  ///< x, y, z
-    cylindrical ///< radial, circumferential, z about the disc's axis: unchanged if a pin moves to another angle
+    cylindrical ///< radial, circumferential and axial about the disc's axis: the components do not change if a pin moves to another angle
   };
 
-  /// Points of quadrature() in all cells of a mesh, m_q = ρ |J| w_q; those of the coarsest mesh serve all finer ones. The same on every
-  /// process.
+  /// Points of quadrature() in all cells of a mesh, m_q = ρ |J| w_q, identical on every process. The points of the coarsest mesh are also
+  /// used for all finer meshes.
   CommonPoints common_points(const Model &model, const MaterialParameters &materials, unsigned int degree = 1);
 
   /**
-   * E, 3 n_q × n: displacements at common points times √m_q from the free dofs of a mesh, so that (E u)ᵀ E v is the mass product of u and
-   * v. Rows are distributed evenly over the processes, equally for all meshes. Nodal values only: incompatible modes of elements, which
-   * vanish with the square of the element size, are neglected.
+   * E, 3 n_q × n, maps the free dofs of a mesh to displacements at common points times √m_q, so that (E u)ᵀ E v is the mass product of u
+   * and v. Rows are distributed evenly over the processes, in the same way for all meshes. Incompatible modes of elements, which vanish
+   * with the square of the element size, are neglected.
    *
-   * Throws MeshError if the mesh lacks a body. Collective; each process searches all points in its cells.
+   * Throws MeshError if the mesh lacks a body. Collective; each process searches for all points in its cells.
    */
   std::unique_ptr<const SparseMatrix> displacements_at(const CommonPoints &points,
                                                        const Model        &model,
                                                        Directions          directions = Directions::cartesian);
 
-  /// Modes by their displacements at common points, each component times √m_q: 3 n_q × k.
+  /// Displacements of modes at common points, each component times √m_q: 3 n_q × k.
   struct ModesAtPoints
   {
-    std::vector<std::complex<double>> lambda; ///< [rad/s], in the order of the modes
+    std::vector<std::complex<double>> lambda; ///< λ of each mode [rad/s]
     MultiVector                       real_part, imaginary_part;
   };
 

@@ -9,23 +9,23 @@
 namespace Squeal
 {
   /**
-   * Accuracy of the eigenvalues of a run in relation to the machine precision ε. All quantities are dimensionless and independent of the
-   * units of length, mass and time.
+   * Condition numbers and estimated errors of the eigenvalues of a run, for the machine precision ε. All quantities are dimensionless and
+   * independent of the units of length, mass and time.
    *
-   * Condition numbers of matrices are those of D A D with D = diag(A)^(-1/2), which determine the rounding errors of a Cholesky factor (A.
-   * van der Sluis, Numerische Mathematik 14 (1969) 14–23), estimated from below by Lanczos' method.
+   * Condition numbers of matrices A are computed for D A D with D = diag(A)^(-1/2), which determines the rounding errors of a Cholesky
+   * factor (A. van der Sluis, Numerische Mathematik 14 (1969) 14–23). They are lower bounds from Lanczos' method.
    *
    * First-order error of an eigenvalue of (λ² M̃ + λ C̃ + K̃) φ = 0:
    *
    *   |δλ| / |λ| = ½ κ (√ε_res + ε γ),   γ = |φ|ᵀ |K| |φ| / φᴴ K φ
    *
-   * If the solver estimates its error from left and right residuals, that estimate replaces ½ κ √ε_res, which is too large for modes of a
-   * basis. ε_res (ComplexModes::energy_residuals) is the residual in the energy norm of the displacements that it causes; γ is the factor
-   * by which relative errors ε of the entries of K, for example from assembly, change φᴴ K φ. It is large if parts of the stiffness cancel,
-   * as in bending of a thin plate.
+   * If the solver estimates its error from left and right residuals, this estimate replaces ½ κ √ε_res, which is too large for modes
+   * computed in a reduced basis. ε_res (ComplexModes::energy_residuals) is the residual in the energy norm of the displacements that it
+   * causes; γ is the factor by which relative errors ε of the entries of K, for example from assembly, change φᴴ K φ. It is large if parts
+   * of the stiffness cancel, as in bending of a thin plate.
    *
-   * κ = √(G_jj (G⁻¹)_jj), the condition number of λ within the space of the computed modes and their conjugates, with the energies of pairs
-   * of states (φ_i, λ_i φ_i),
+   * κ_j = √(G_jj (G⁻¹)_jj) is the condition number of λ_j in the space of the computed modes and their conjugates. G contains energy
+   * products of the states (φ_i, λ_i φ_i),
    *
    *   G_ij = φ_iᴴ K φ_j + λ̄_i λ_j φ_iᴴ M φ_j        2k × 2k
    *
@@ -35,11 +35,11 @@ namespace Squeal
   struct Conditioning
   {
     double              stiffness;                 ///< condition number of K_c, or of the shifted matrix that is factorised instead [-]
-    double              mass;                      ///< of M_c [-]
+    double              mass;                      ///< condition number of M_c [-]
     std::vector<double> modes;                     ///< κ of each λ [-]
     std::vector<double> errors;                    ///< |δλ| / |λ| of each λ [-]
     double              largest_cancellation = 1.; ///< largest γ [-]
-    double              span                 = 1.; ///< condition number of G, that is, of the problem projected on the computed modes [-]
+    double              span                 = 1.; ///< condition number of G: of the problem projected on the computed modes [-]
     double              largest_residual     = 0.; ///< largest √ε_res [-]
 
     double largest_error() const;
@@ -59,7 +59,7 @@ namespace Squeal
   /// η = ‖Q(λ)φ‖ / (w ‖φ‖) of each mode [-].
   std::vector<double> backward_errors(const CoupledSystem &system, const ParameterValues &values, const ComplexModes &modes);
 
-  /// [Re Φ, Im Φ]ᵀ A [Re Φ, Im Φ] of modes Φ and the frictionless A = K_c, M_c.
+  /// Products [Re Φ, Im Φ]ᵀ A [Re Φ, Im Φ] of modes Φ with the frictionless matrices A = K_c and M_c.
   struct ModalProducts
   {
     DenseMatrix stiffness, mass;
@@ -67,7 +67,8 @@ namespace Squeal
 
   ModalProducts modal_products(const CoupledSystem &system, const ComplexModes &modes);
 
-  /// Takes about 15 solves with one vector. @p products: from modal_products(), or the equivalent of a reduced model.
+  /// Estimates all quantities of Conditioning with about 15 solves for one vector. @p products: from modal_products() or from a reduced
+  /// model.
   Conditioning estimate_conditioning(const CoupledSystem  &system,
                                      const UpdatedInverse &inverse,
                                      double                shift,

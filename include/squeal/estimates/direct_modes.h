@@ -9,17 +9,17 @@
 namespace Squeal
 {
   /**
-   * Complex modes of a system without a symmetric or definite part, with right vectors of Euclidean norm one: right and left block Krylov
-   * at a real shift s with LU factors of Q(s).
+   * Complex modes of a system without a symmetric or definite part, by right and left block Krylov methods at a real shift s with LU
+   * factors of Q(s). The right vectors have Euclidean norm one.
    *
-   * Condition number of an eigenvalue: κ = w ‖ψ‖ ‖φ‖ / (|λ| |ψᵀQ'(λ)φ|) of F. Tisseur, *Backward error and condition of polynomial
-   * eigenvalue problems*, Linear Algebra and its Applications 309 (2000) 339–361, with ψ dual to all φ of the band,
-   * ψ_iᵀ ((λ_i + λ_j) M + C) φ_j = δ_ij, w as in backward_errors(), and the relative error κ max(η, ε), of first order.
+   * The condition number of an eigenvalue is κ = w ‖ψ‖ ‖φ‖ / (|λ| |ψᵀQ'(λ)φ|) (F. Tisseur, *Backward error and condition of polynomial
+   * eigenvalue problems*, Linear Algebra and its Applications 309 (2000) 339–361), with w as in backward_errors() and ψ dual to all φ of
+   * the band, ψ_iᵀ ((λ_i + λ_j) M + C) φ_j = δ_ij. The first-order relative error is κ max(η, ε).
    *
-   * @param value  of the varied parameter
+   * @param value  value of the varied parameter
    * @param source origin of the system, for messages: "file brake/system.json"
    *
-   * Empty if no mode oscillates in the band.
+   * The result is empty if no mode oscillates in the band.
    *
    * Throws SolverError if Q(s) is singular to working precision, or if the numbers of right and left eigenvalues differ.
    */
@@ -30,7 +30,7 @@ namespace Squeal
                            const std::string      &source,
                            Progress               &progress);
 
-  /// ω_max² MᵀM at a value of the varied parameter: an inner product for bases of such systems, which ignores massless dofs and forces of
-  /// constraints; combinations of modes that consist of these only make a projection singular.
+  /// ω_max² MᵀM at a value of the varied parameter: an inner product for bases of systems without a definite part. It ignores massless dofs
+  /// and constraint forces, because combinations of modes that contain nothing else make a projection singular.
   std::shared_ptr<const SparseMatrix> inertia_square(const CoupledSystem &system, double value, double omega_max);
 } // namespace Squeal

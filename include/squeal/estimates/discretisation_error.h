@@ -14,12 +14,12 @@ namespace Squeal
   struct DiscretisationError
   {
     bool   has_counterpart = false;
-    bool   in_cluster      = false; ///< one of several modes that mix from mesh to mesh: no individual counterpart
-    double overlap         = 0.;    ///< of both shapes, MAC [-]
+    bool   in_cluster      = false; ///< one of several modes that mix differently on each mesh: no individual counterpart
+    double overlap         = 0.;    ///< MAC of both shapes [-]
     double frequency       = 0.;    ///< estimated relative error [-]
     double divergence      = 0.;    ///< estimated error of the divergence rate [-]
 
-    /// Growth within the estimated errors of mesh and solver.
+    /// Verdict on growth, within the estimated errors of mesh and solver.
     Verdict verdict = Verdict::undecided;
 
     /// True if both errors are known and within the limits.
@@ -31,16 +31,17 @@ namespace Squeal
    *
    *   |ω − ω*| ≈ s |ω − ω_c|,   |ξ − ξ*| ≈ s |ξ − ξ_c|,   ξ = R / ω.
    *
-   * With s = 1 / (c − 1) this holds if the errors of the coarser mesh are c times as large, and is conservative if they are larger.
+   * With s = 1 / (c − 1), this holds if the errors of the coarser mesh are c times as large as those of the finer mesh, and is conservative
+   * if the factor exceeds c.
    *
-   * Two modes whose distance Δω changes by 100 % or more from mesh to mesh, |Δω − Δω_c| ≥ |Δω|, may coalesce on finer meshes. They may
-   * exchange their shapes: the larger of their errors of ξ then applies to both, as for a growing mode and its decaying partner. Two modes
-   * that neither grow nor decay, as without damping, may become a growing and a decaying one if they coalesce; since their coupling does
-   * not cause flutter at a distance of Δω, the growth rate is at most |Δω| / 2, which also counts as an error of ξ.
+   * Two modes whose distance Δω changes by 100 % or more from mesh to mesh, |Δω − Δω_c| ≥ |Δω|, may coalesce on finer meshes. Since they
+   * may exchange their shapes, the larger of their errors of ξ applies to both, for example to a growing mode and its decaying partner. Two
+   * neutral modes, as occur without damping, may become a growing and a decaying mode if they coalesce. Their coupling does not cause
+   * flutter at a distance of Δω; the growth rate is therefore at most |Δω| / 2, which also counts as an error of ξ.
    *
-   * A mode is unstable if verdict_of() with the error of the solver finds it so and R exceeds the estimated error; it is stable if it
-   * decays by more than the estimated error, or is neutral with an estimated error of ξ below weak_divergence. All other modes, also those
-   * without counterpart, are undecided.
+   * A mode is unstable if verdict_of() with the error of the solver is `unstable` and R exceeds the estimated error; it is stable if it
+   * decays by more than the estimated error, or is neutral with an estimated error of ξ below weak_divergence. All other modes, and modes
+   * without a counterpart, are undecided.
    *
    * @param coarse        modes on the coarser mesh, in a wider band
    * @param fine          modes on the finer mesh, at the same points
@@ -61,20 +62,21 @@ namespace Squeal
   /// Limit of a sequence of values on successively finer meshes.
   struct Extrapolation
   {
-    double                             limit;           ///< v of the mesh width 0
-    double                             order;           ///< p, observed or assumed
-    std::vector<std::optional<double>> observed_orders; ///< from three consecutive values each; nothing if there is no plausible one
-    bool                               is_trustworthy;  ///< p was observed, its range is plausible, and so are the three finest values
-    double                             uncertainty;     ///< of the limit, estimated
+    double                             limit;           ///< value v for the mesh width 0
+    double                             order;           ///< order p, observed or assumed
+    std::vector<std::optional<double>> observed_orders; ///< order from each three consecutive values; nothing if it is not plausible
+    bool                               is_trustworthy;  ///< true if p was observed in the plausible range from the three finest values
+    double                             uncertainty;     ///< estimated error of the limit
     std::vector<double>                errors;          ///< |v_k − limit| of each value
   };
 
   /**
-   * Richardson extrapolation of values on meshes of decreasing widths, v_k = v + c h_k^p. Three or more values give the order:
+   * Richardson extrapolation of values on meshes of decreasing widths, v_k = v + c h_k^p. If there are three or more values, the order
+   * follows from
    *
    *   (v_1 − v_2) / (v_2 − v_3) = (h_1^p − h_2^p) / (h_2^p − h_3^p)
    *
-   * from the three finest, for any ratios of h (L. F. Richardson 1911; P. J. Roache 1998). If there is no solution in @p plausible, for
+   * for the three finest, with any ratios of h (L. F. Richardson 1911; P. J. Roache 1998). If there is no solution in @p plausible, for
    * example because the values are not monotone, the result is not trustworthy and the assumed order is used.
    *
    * Uncertainty of the limit: the difference from the limit with the assumed order; if not trustworthy, plus the difference of the two

@@ -15,10 +15,10 @@ namespace Squeal
   struct JudgedModes
   {
     ComplexModes         modes;
-    std::vector<Verdict> verdicts; ///< within the uncertainty of λ
-    std::vector<bool>    unstable; ///< growth exceeds the uncertainty
+    std::vector<Verdict> verdicts; ///< verdict on each mode, within the uncertainty of λ
+    std::vector<bool>    unstable; ///< true if the growth of the mode exceeds the uncertainty
     Conditioning         conditioning;
-    int n_slow = 0; ///< pairs of λ that count as zero but are not rigid-body modes, for example slow decay due to strong dampers
+    int n_slow = 0; ///< number of pairs of λ that count as zero but are not rigid-body modes: slow decay due to strong dampers
 
     std::size_t n_unstable() const;
 
@@ -34,17 +34,17 @@ namespace Squeal
 
   bool is_slow(const CoupledSystem &system, const std::complex<double> &lambda);
 
-  /// Largest error of all modes that are not slow.
+  /// Largest relative error |δλ| / |λ| of all modes that are not slow [-].
   double largest_error(const CoupledSystem &system, const ComplexModes &modes, const Conditioning &conditioning);
 
   /// Relative errors of λ for the verdicts. The largest error applies to every mode, because an individual estimate may be far too small by
-  /// chance; slow modes, which lose digits by cancellation in the stiffness, have their own.
+  /// chance; slow modes, which lose digits by cancellation in the stiffness, have individual errors.
   std::vector<double> uncertainties(const CoupledSystem &system, const ComplexModes &modes, const Conditioning &conditioning);
 
-  /// Verdicts of @p modes, each with its own error in @p conditioning.
+  /// Verdicts on @p modes, each with its individual error in @p conditioning.
   JudgedModes judged_by_errors(ComplexModes modes, Conditioning conditioning, bool has_damping);
 
-  /// Verdicts of @p modes, for any solver.
+  /// Verdicts on @p modes of any solver, with uncertainties().
   JudgedModes judged_modes(const CoupledSystem &system, const SystemModes &frictionless, ComplexModes modes);
 
   /// Complex modes of the system in the band, by the solver chosen in the parameters. Throws SolverError if no mode oscillates in the band.

@@ -12,14 +12,14 @@
 
 namespace Squeal
 {
-  /// Errors of a reduced mode, or the largest of a group, relative to reference modes; section 3.2 of the paper.
+  /// Errors of a reduced mode, or the largest errors of a group, relative to reference modes; section 3.2 of the paper.
   struct ErrorMeasures
   {
     double residual             = 0.; ///< ε_res, eq. (16) [-]
     double shape                = 0.; ///< ε_mac, eq. (19) [-]
     double frequency            = 0.; ///< ε_frq, eq. (20) [-]
     double divergence           = 0.; ///< ε_div, eq. (21) [-]
-    double closest_shape        = 0.; ///< ε_mac with the reduced mode selected by eq. (17), one-to-one or not [-]
+    double closest_shape        = 0.; ///< ε_mac with the reduced mode selected by eq. (17), which need not be one-to-one [-]
     double closest_frequency    = 0.; ///< ε_frq of that mode [-]
     double closest_divergence   = 0.; ///< ε_div of that mode [-]
     double eigenvalue           = 0.; ///< |λ̂ − λ| / |λ| [-]
@@ -35,11 +35,11 @@ namespace Squeal
     std::complex<double> reference, reduced, corrected; ///< λ, λ̂ and λ̂ + δλ [rad/s]
     int                  match;                         ///< number of the reduced mode
     int                  closest;                       ///< number of the reduced mode selected by eq. (17)
-    int                  cluster_size;                  ///< reference modes with nearly the same λ, itself included
+    int                  cluster_size;                  ///< number of reference modes with nearly the same λ, including this one
     double               estimated_error;               ///< |δλ| / |λ̂| [-]
     double               estimate_ratio;                ///< |δλ| / |λ̂ − λ| [-]; infinite if λ̂ is exact
     double               condition;                     ///< κ of λ̂ [-]
-    bool                 claimed;                       ///< the estimate is meaningful
+    bool                 claimed;                       ///< true if the estimate is meaningful
     Verdict              verdict;
   };
 
@@ -51,16 +51,17 @@ namespace Squeal
    *
    *   MAC-M = |φᴴ M φ̂|² / (φᴴ M φ  φ̂ᴴ M φ̂)      eq. (18),
    *
-   * using each reduced mode once, so that the sum of MAC-M is largest. (Eq. (17) of the paper takes the mode of the largest MAC-M for each
-   * reference mode individually, so that a reduced mode may be used twice and another never; errors by this choice are the `closest_`
-   * ones.) If several reference modes have |λ_i − λ_j| ≤ @p cluster_tolerance |λ_i|, in chains, individual MAC-M are not meaningful.
-   * Reduced modes are then ranked by their share in the span of the cluster, and angles between the subspaces are given in addition to
-   * ε_mac, all in the complex M-inner product. A reference mode without image in a poor basis gets the best match within 30 % of its λ.
+   * using each reduced mode once, so that the sum of MAC-M is largest. (Eq. (17) of the paper selects the reduced mode with the largest
+   * MAC-M for each reference mode individually, so that a reduced mode may be selected several times or never; the `closest_` errors use
+   * this selection.) For clusters of reference modes, chains with |λ_i − λ_j| ≤ @p cluster_tolerance |λ_i|, individual MAC-M are not
+   * meaningful. Reduced modes are then ranked by their share in the span of the cluster, and angles between the subspaces are given in
+   * addition to ε_mac, all in the complex M-inner product. A reference mode that a poor basis does not represent gets the best match within
+   * 30 % of its λ.
    *
    * @param mass      M
-   * @param modes     with BandEnd::open; otherwise modes near the end of the band may lack counterparts
+   * @param modes     computed with BandEnd::open; otherwise modes near the end of the band may lack counterparts
    * @param reference undamped_modes() for the frictionless problem
-   * @param estimate  errors of reduced modes from their residuals
+   * @param estimate  estimated errors of reduced modes from their residuals
    *
    * Throws SolverError if there are fewer reduced than reference modes.
    */
@@ -71,8 +72,8 @@ namespace Squeal
                                           const std::function<EigenvalueEstimates(const ReducedModes &)> &estimate,
                                           double                                                          cluster_tolerance = 1e-3);
 
-  /// The same for a @p system with a definite part, undamped() for the frictionless problem, with the factor of K_c or of the shifted
-  /// stiffness that replaces it.
+  /// Errors of reduced modes for a @p system with a definite part; undamped() for the frictionless problem. Uses the factor of K_c or of
+  /// the shifted stiffness.
   std::vector<ModeError> reduction_errors(const CoupledSystem  &system,
                                           const UpdatedInverse &inverse,
                                           const ReducedModel   &model,
@@ -85,11 +86,12 @@ namespace Squeal
   {
     std::string group;
     int         n_modes = 0;
-    int         n_other = 0; ///< modes with another counterpart by eq. (17)
+    int         n_other = 0; ///< number of modes with another counterpart by eq. (17)
   };
 
   /**
-   * Maxima of each group, in order of first appearance, then of @p joined groups such as "disc and F1" if all of them have modes.
+   * Largest errors of each group, in the order of first appearance, then of @p joined groups ("disc and F1") if all their members have
+   * modes.
    *
    * @param groups group of each mode
    */

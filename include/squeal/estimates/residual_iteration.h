@@ -15,13 +15,13 @@ namespace Squeal
   struct ResidualIterationOptions
   {
     Band   band          = 0.;
-    double tolerance     = 1e-7; ///< for the estimated |δλ| / |λ| of every mode [-]
-    int    maximum_basis = 1500; ///< vectors
+    double tolerance     = 1e-7; ///< limit for the estimated |δλ| / |λ| of every mode [-]
+    int    maximum_basis = 1500; ///< largest number of basis vectors
     int    maximum_steps = 30;
   };
 
-  /// Starting model of a residual iteration: the real modes Φ_R with their first-order responses to damping and, with @p friction, to
-  /// friction, right and left. The basis is M_c-orthonormal.
+  /// Starting model of a residual iteration: the real modes Φ_R and their first-order responses to damping and, if @p friction is set, to
+  /// friction (right and left). The basis is M_c-orthonormal.
   ReducedModel starting_model(const CoupledSystem &system, const UpdatedInverse &inverse, const MultiVector &real_modes, bool friction);
 
   /// Removes from X its projection on the M-orthonormal basis of a model.
@@ -30,16 +30,16 @@ namespace Squeal
   /// Displacement residuals of the @p chosen modes, right and left, real and imaginary parts, each scaled to its mode: n × 4k.
   MultiVector residual_directions(const ResidualVectors &residuals, const ReducedModes &modes, const std::vector<int> &chosen);
 
-  /// M_c-orthonormal vectors to extend the basis of @p model: principal axes of the components of @p directions outside the basis; nothing
-  /// if there are none.
+  /// M_c-orthonormal vectors that extend the basis of @p model: principal axes of the components of @p directions outside the basis;
+  /// nothing if these components vanish.
   std::optional<MultiVector> new_vectors(const CoupledSystem            &system,
                                          const ReducedModel             &model,
                                          const std::vector<MultiVector> &directions);
 
-  /// A two-sided basis grown by residuals, and its results at the friction coefficient with the largest error.
+  /// A two-sided basis enriched by residuals, and its results at the friction coefficient with the largest error.
   struct GrownBasis
   {
-    ReducedModel        model; ///< its basis is M_c-orthonormal
+    ReducedModel        model; ///< reduced model with an M_c-orthonormal basis
     ReducedModes        modes;
     EigenvalueEstimates estimates;
     double              worst_error; ///< largest estimated |δλ| / |λ| at all friction coefficients [-]
@@ -47,9 +47,9 @@ namespace Squeal
   };
 
   /**
-   * Grows a two-sided basis by residuals (Bobillot; section 4.3 of the paper) until the estimated errors of all modes and real eigenvalues
-   * in the band are below the tolerance at each of the @p friction_coefficients. It starts from the real modes Φ_R and their first-order
-   * responses to friction and damping, right and left,
+   * Enriches a two-sided basis by residuals (Bobillot; section 4.3 of the paper) until the estimated errors of all modes and real
+   * eigenvalues in the band are below the tolerance at each of the @p friction_coefficients. It starts from the real modes Φ_R and their
+   * first-order responses to friction and damping, right and left,
    *
    *   K_c⁻¹ A V_K Φ_R,  K_c⁻¹ V_Kᵀ Aᵀ Φ_R,  K_c⁻¹ C_c Φ_R,
    *
@@ -62,7 +62,7 @@ namespace Squeal
    * @param real_modes Φ_R, n × n_R, M-orthonormal
    * @param inverse    factor of K_c (or of the shifted stiffness) and K_c⁻¹ A
    *
-   * Throws SolverError if the basis reaches its maximum size before the tolerance. @p system must outlive the result.
+   * Throws SolverError if the basis reaches its maximum size before the errors meet the tolerance. @p system must outlive the result.
    */
   GrownBasis grow_residual_basis(const CoupledSystem            &system,
                                  const UpdatedInverse           &inverse,
@@ -71,7 +71,7 @@ namespace Squeal
                                  const ResidualIterationOptions &options,
                                  Progress                       &progress);
 
-  /// Complex modes, right and left, from a basis grown at the friction coefficient @p mu.
+  /// Complex modes, right and left, from a basis enriched at the friction coefficient @p mu.
   ComplexModes residual_iteration(const CoupledSystem            &system,
                                   const UpdatedInverse           &inverse,
                                   const MultiVector              &real_modes,
