@@ -64,7 +64,7 @@ namespace Squeal
 
   double worst_determinant(const Mesh &mesh, const Mesh::Cell &cell)
   {
-    constexpr double rounding     = 1e-6; // a block of an O-grid has a flat corner on the circle, which is acceptable
+    constexpr double rounding     = 1e-6; // accepts the flat corner of an O-grid block on the circle
     const auto &[rule, at_points] = gradients(cell.shape, mesh.degree);
     double least = std::numeric_limits<double>::infinity(), largest = 0.;
     for (std::size_t q = 0; q < at_points.size(); ++q)

@@ -17,7 +17,7 @@ namespace Squeal
     /// Rejects mid-edge nodes so far from the middle that the edge folds back or bulges beyond a half circle.
     void check_middles(const Mesh &mesh)
     {
-      constexpr double           farthest = 0.5; // of the edge's length
+      constexpr double           farthest = 0.5; // relative to the length of the edge
       std::set<unsigned int>     off;
       std::optional<std::size_t> first;
       for (std::size_t element = 0; element < mesh.cells.size(); ++element)
@@ -42,13 +42,13 @@ namespace Squeal
                         "move second-order nodes to the middles of their edges, or use smaller elements where a surface curves");
     }
 
-    /// Rejects edges and quadrilaterals with middle nodes that differ from those of their neighbours, or are corners elsewhere: they would
+    /// Rejects edges and quadrilaterals whose middle nodes differ between neighbouring cells or are corners of other cells: the cells would
     /// separate.
     void check_shared_middles(const Mesh &mesh)
     {
-      std::map<std::array<unsigned int, 4>, unsigned int> middles; // by corners in ascending order; those of edges twice
+      std::map<std::array<unsigned int, 4>, unsigned int> middles; // by ascending corners; edges repeat each corner
       std::vector<bool>                                   is_corner(mesh.points.size(), false);
-      std::set<std::size_t>                               unmatched; // elements
+      std::set<std::size_t>                               unmatched; // indices of elements
       for (const Mesh::Cell &cell : mesh.cells)
         for (unsigned int v = 0; v < topology(cell.shape).corners.size(); ++v)
           is_corner[cell.nodes[v]] = true;

@@ -10,7 +10,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Surfaces of every extruded mesh; those of the plan's curves follow.
+    /// Surfaces of every extruded mesh; the surfaces from curves of the plan follow.
     enum ExtrudedSurface : unsigned int
     {
       disc_contact,
@@ -20,7 +20,7 @@ namespace Squeal
       first_curve
     };
 
-    /// Points at the height (1 - t) lower + t upper through the disc: on straight lines unless faces would invert.
+    /// Points at a height between the faces of the disc: (1 - t) lower + t upper, untangled if faces would invert.
     std::vector<Plan::Point> points_between(const Plan                     &plan,
                                             const std::vector<Plan::Point> &lower,
                                             const std::vector<Plan::Point> &upper,
@@ -43,7 +43,7 @@ namespace Squeal
     class Stack
     {
     public:
-      /// Interpolates the points between the lower and the upper end, see points_between(); layer boundaries are in 0 ... 1.
+      /// Interpolates the points between the lower and the upper end, see points_between(); @p ends are the layer boundaries in [0, 1].
       Stack(const Plan                     &plan,
             const std::vector<Plan::Point> &lower,
             const std::vector<Plan::Point> &upper,
@@ -56,7 +56,7 @@ namespace Squeal
         : nodes(ends.size(), std::vector<unsigned int>(plan.points.size()))
         , mesh(mesh)
       {
-        // Nodes, layer by layer, in the order of the plan; both ends exactly as given, so that contact faces coincide to the last bit
+        // Nodes, layer by layer, in the order of the plan; both ends use the given points, so that contact faces coincide exactly
         const std::set<unsigned int> used     = nodes_of(faces);
         const unsigned int           n_layers = ends.size() - 1;
         for (unsigned int layer = 0; layer <= n_layers; ++layer)

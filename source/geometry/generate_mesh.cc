@@ -37,13 +37,13 @@ namespace Squeal
 
     constexpr const char *built_in_geometry = "disc_pins.geo";
 
-    /// True if Gmsh's Include accepts a path: its lexer ends a path at quotes.
+    /// True if Gmsh's Include accepts a path: the path must not contain quotes or special characters.
     bool can_be_included(const std::string &path)
     {
       return path.find_first_of("\"'\\%$~#\n") == std::string::npos;
     }
 
-    /// A .geo that sets the parameters before it includes the geometry, which keeps existing values.
+    /// Script that sets the parameters before Gmsh reads the geometry, whose defaults do not overwrite existing values.
     std::string driver(const GeometryParameters &parameters)
     {
       std::string script;
@@ -55,7 +55,7 @@ namespace Squeal
       return script;
     }
 
-    /// Notes variables of the script whose values are overridden by defaults of the section.
+    /// Adds a note for each variable of the script that is overridden by the default value of section Geometry.
     void note_overridden_variables(const GeometryParameters &parameters, const std::string &where, Mesh &mesh)
     {
       const auto values = parameters.script_variables(), defaults = GeometryParameters().script_variables();
@@ -69,7 +69,7 @@ namespace Squeal
                                  " as in the script; set the parameter, or give the variable another name");
     }
 
-    // Gmsh statements with effects beyond the mesh
+    // Gmsh statements with side effects outside the mesh
     const std::vector<std::string> shell_statements = {
       "SystemCall", "NonBlockingSystemCall", "OnelabRun", "CreateDir", "Save", "Print", "Printf", "Plugin"};
 
@@ -94,7 +94,7 @@ namespace Squeal
       return input;
     }
 
-    /// Runs Gmsh on the geometry, confined unless the parameters allow more; supplied geometries are trusted.
+    /// Runs Gmsh on the geometry. Gmsh is confined unless the geometry is supplied with the program or the parameters allow shell commands.
     GmshMesh run_gmsh(const GeometryParameters &parameters, const std::string &geometry)
     {
       const bool         is_trusted = parameters.allow_shell_commands || is_supplied(geometry);
@@ -110,10 +110,10 @@ namespace Squeal
         }
     }
 
-    /// Runs Gmsh on one process of the communicator; all receive its mesh or its error.
+    /// Runs Gmsh on process 0; all processes receive the mesh or the error.
     GmshMesh run_gmsh_once(const GeometryParameters &parameters, const std::string &geometry, MPI_Comm communicator)
     {
-      std::pair<std::string, GmshMesh> outcome; // error message; the mesh
+      std::pair<std::string, GmshMesh> outcome; // error message and mesh
       std::exception_ptr               error;
       if (dealii::Utilities::MPI::this_mpi_process(communicator) == 0)
         try
@@ -136,14 +136,14 @@ namespace Squeal
 
     // ---------------------------------------------------------- unit of length
 
-    /// Exponent of a unit of length in which a disc radius of a few decimetres is about 1. The supplied plan is drawn and extruded in this
-    /// unit: tolerances of Gmsh are lengths, so that a scaled plan would be meshed differently.
+    /// Decimal exponent of the unit of length in which the disc radius is between 0.1 and 1. The supplied plan is drawn and extruded in
+    /// this unit, because tolerances of Gmsh are absolute lengths: a scaled plan would be meshed differently.
     int decimal_exponent(const double disc_outer_radius)
     {
       return 1 + static_cast<int>(std::floor(std::log10(disc_outer_radius)));
     }
 
-    /// All lengths divided by a power of ten, by moving the decimal point; exact for up to 15 digits.
+    /// Divides all lengths by a power of ten by moving the decimal point, which is exact for up to 15 digits.
     GeometryParameters in_unit(GeometryParameters parameters, const int exponent)
     {
       const auto move_point = [exponent](double &length) {
@@ -160,7 +160,7 @@ namespace Squeal
       return parameters;
     }
 
-    /// Checks the minimum memory of any study; additional needs are known later.
+    /// Checks the memory that every study needs at least.
     void check_least_memory(ProblemSize size, const std::string &where, const MPI_Comm communicator)
     {
       constexpr double no_modes = 0.;
@@ -168,7 +168,7 @@ namespace Squeal
       check_memory(size, no_modes, where, communicator);
     }
 
-    /// Rejects a mesh with unnamed groups in the relevant dimensions.
+    /// Rejects a mesh without volumes and surfaces, and unnamed groups that would be used.
     void check_groups(const GmshMesh &mesh, const std::string &where)
     {
       const std::string other_formats = "; Gmsh reads no names from formats other than .msh (.unv, .inp, .bdf, ...): name the parts in the "
@@ -185,7 +185,7 @@ namespace Squeal
                           "give it one: Physical Volume(\"disc\") = {...} in a .geo, a line of $PhysicalNames in a .msh" + other_formats);
     }
 
-    /// Rejects missing surface names before unused surfaces are checked.
+    /// Rejects names of missing surfaces; called before unused surfaces are rejected.
     void check_named(const GmshMesh                 &gmsh,
                      const std::vector<std::string> &mounted,
                      const ContactParameters        &contact,
@@ -234,7 +234,7 @@ namespace Squeal
         const std::size_t named = number(contact_name);
         if (named == mesh.surface_names.size())
           mesh.surface_names.push_back(contact_name);
-        std::set<std::array<unsigned int, 4>> known; // faces that an earlier run has added
+        std::set<std::array<unsigned int, 4>> known; // faces that are already on the surface
         for (const Mesh::Face &face : mesh.faces)
           if (face.surface == named)
             known.insert(face_key(face));
@@ -293,7 +293,7 @@ namespace Squeal
       return finished(extrude(plan, parameters));
     }
 
-    // For the supplied plan, if elements of the requested size do not fit between the pins
+    // Repetitions for the supplied plan with smaller elements, if elements of the requested size do not fit between the pins
     constexpr int    max_attempts      = 5;
     constexpr double smaller_next_time = 0.9;
   } // namespace
@@ -326,9 +326,9 @@ namespace Squeal
       for (Mesh::Point &point : mesh.points)
         point *= std::pow(10., exponent);
     check_mesh(mesh);
-    if (!is_built_in) // conforming by construction
+    if (!is_built_in) // the supplied plan is conforming by construction
       {
-        // Tied faces may coincide and need not match, so that their shared nodes are checked
+        // Tied faces may coincide without matching: check the topology with separate bodies
         mesh.tied.clear();
         find_bodies(mesh);
         check_topology(mesh, given.pairing_tolerance, where);

@@ -53,7 +53,7 @@ namespace Squeal
     double size = 0.;
     for (const Mesh::Point &point : mesh.points)
       size = std::max(size, point.norm());
-    // A power of ten, insensitive to rounding errors of the size
+    // Use a power of ten, which does not depend on rounding errors of the size
     const double unit = 1e-8 * std::pow(10., std::floor(std::log10(size)));
     std::string  places;
     for (const Mesh::Point &point : mesh.points)
@@ -132,7 +132,7 @@ namespace Squeal
         volumes_of_bodies[mesh.body_of_volume.back()].push_back(volume);
       }
 
-    // Names
+    // Assign names
     mesh.body_names.clear();
     for (const std::vector<unsigned int> &volumes : volumes_of_bodies)
       {
@@ -246,7 +246,7 @@ namespace Squeal
   {
     using Tensor = dealii::Tensor<1, 3>;
 
-    /// Depth below a face in reference coordinates, from 0 on the face to 1 at the farthest corner: offset + gradient · ξ.
+    /// Depth below a face in reference coordinates, offset + gradient · ξ: 0 on the face, 1 at the most distant corner.
     struct FaceDepth
     {
       double offset;
@@ -294,7 +294,7 @@ namespace Squeal
       return sum;
     }
 
-    /// x(ξ) and its derivatives from the positions of the nodes.
+    /// Isoparametric map x(ξ) and its derivatives.
     std::pair<Tensor, dealii::Tensor<2, 3>> mapped(const ShapeFunctions           &functions,
                                                    const std::vector<Mesh::Point> &nodes,
                                                    const Mesh::Point              &xi)
@@ -308,10 +308,10 @@ namespace Squeal
       return result;
     }
 
-    /// A point of the reference cell close to the nearest one: clipped at each face in turn.
+    /// A point of the reference cell that is approximately closest to ξ, found by projection onto each violated face in turn.
     Mesh::Point moved_inside(const Shape shape, Mesh::Point xi)
     {
-      constexpr unsigned int n_rounds = 8; // one is enough for faces at right angles
+      constexpr unsigned int n_rounds = 8; // one round is enough for faces at right angles
       for (unsigned int round = 0; round < n_rounds; ++round)
         for (const FaceDepth &face : depths_below_faces(shape))
           if (const double depth = face.at(xi); depth < 0.)
@@ -326,7 +326,7 @@ namespace Squeal
                                                    const Mesh::Point              &point)
   {
     constexpr int         max_steps  = 20;
-    constexpr double      negligible = 5e-9, far = 0.75; // the next node of a regular grid is at 1
+    constexpr double      negligible = 5e-9, far = 0.75; // neighbouring nodes of a regular grid are at a distance of 1
     const ShapeFunctions &functions = ShapeFunctions::of(shape, degree);
     Mesh::Point           xi        = reference_centre(shape);
     for (int step = 0; step <= max_steps && least_depth(shape, xi) > -far; ++step)
@@ -357,7 +357,7 @@ namespace Squeal
     const auto xi = reference_coordinates(cell.shape, 1, corners, point);
     if (!xi)
       return {};
-    // Outside, where the map may be singular, use the nearest point
+    // Outside the cell, where the map may be singular, use the nearest point of the cell
     const ShapeFunctions &functions = ShapeFunctions::of(cell.shape, 1);
     Depth                 depth{least_depth(cell.shape, *xi), std::numeric_limits<double>::infinity()};
     if (depth.relative < 0.)

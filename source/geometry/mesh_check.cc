@@ -20,7 +20,7 @@ namespace Squeal
 {
   namespace
   {
-    /// For each corner, the other ends of three of its edges, as a right-handed triple; none at the apex of a pyramid.
+    /// For each corner, the other ends of its three edges as a right-handed triple; the apex of a pyramid is omitted.
     struct CornerEdges
     {
       double                                   unit; ///< triple product of the unit edge vectors in a regular cell
@@ -56,7 +56,7 @@ namespace Squeal
       return result;
     }
 
-    /// True if two faces with the same corners have the same orientation.
+    /// True if two faces with the same corners have the same orientation: their cells are then on the same side.
     bool turn_alike(const CellFace &a, const CellFace &b)
     {
       const auto first = std::find(b.corners.begin(), b.corners.end(), a.corners[0]) - b.corners.begin();
@@ -68,7 +68,8 @@ namespace Squeal
       return names.empty() ? "(none)" : boost::algorithm::join(names, ", ");
     }
 
-    /// Checks that every body is connected; several discs on one axis are separate volumes, each with a mount.
+    /// Checks that every body is connected. The disc may consist of several pieces, each a separate volume with a mount: several discs on
+    /// one axis.
     void check_connected(const Mesh &mesh, const std::vector<std::string> &mounted_surfaces, const std::string &where)
     {
       boost::disjoint_sets_with_storage<> sets(mesh.points.size());
@@ -77,9 +78,9 @@ namespace Squeal
           sets.union_set(node, cell.nodes[0]);
       for (const auto &[node, other] : tied_links(mesh))
         sets.union_set(node, other);
-      std::vector<std::map<std::size_t, std::size_t>> pieces(mesh.body_names.size());       // elements, by root
-      std::vector<std::set<std::size_t>>              of_volumes(mesh.volume_names.size()); // roots
-      std::set<std::size_t>                           held;                                 // roots
+      std::vector<std::map<std::size_t, std::size_t>> pieces(mesh.body_names.size());       // number of elements of each piece, by root
+      std::vector<std::set<std::size_t>>              of_volumes(mesh.volume_names.size()); // roots of its pieces
+      std::set<std::size_t>                           held;                                 // roots of mounted pieces
       for (const Mesh::Cell &cell : mesh.cells)
         {
           const std::size_t root = sets.find_set(cell.nodes[0]);
@@ -192,7 +193,7 @@ namespace Squeal
 
   void check_unique(const Mesh &mesh, const std::string &where)
   {
-    std::map<Mesh::Nodes, std::size_t>                 known; // first element with these nodes
+    std::map<Mesh::Nodes, std::size_t>                 known; // index of the first element with these nodes
     std::optional<std::pair<std::size_t, std::size_t>> twins;
     for (std::size_t element = 0; element < mesh.cells.size(); ++element)
       {
@@ -268,7 +269,7 @@ namespace Squeal
                           list(mesh.volume_names),
                         where, "name the disc's volume 'disc' and each pin's or pad's otherwise, such as 'pin_1'");
 
-      // Volumes that share nodes are one body, except disc and pins
+      // Volumes that share nodes form one body; disc and pins must not share nodes
       std::vector<std::optional<unsigned int>> volume_of_node(mesh.points.size());
       for (const Mesh::Cell &cell : mesh.cells)
         for (const unsigned int node : cell.nodes)
@@ -288,7 +289,7 @@ namespace Squeal
   {
     check_volumes(mesh, where);
 
-    // Surfaces
+    // Required surfaces
     std::vector<std::string> needed = {PhysicalNames::disc_contact, PhysicalNames::pin_contact};
     needed.insert(needed.end(), additional_surfaces.begin(), additional_surfaces.end());
     std::set<std::string> with_faces;
@@ -299,7 +300,7 @@ namespace Squeal
         throw MeshError("There is no face on a physical surface '" + name + "'; the surfaces are: " + list(mesh.surface_names), where,
                         "give the surface this name, or correct the names in Contact/Pairs and Contact/Tied");
 
-    // Named faces must be outer faces of matching volumes
+    // Named faces must be outer faces of the matching volumes
     const std::vector<CellFace> faces = all_faces(mesh);
     for (const Mesh::Face &face : mesh.faces)
       {
@@ -329,7 +330,7 @@ namespace Squeal
     const std::set<unsigned int>    disc         = nodes_by_body(mesh, body_of_node, PhysicalNames::disc_contact)[0];
     const auto                      contacts     = nodes_by_body(mesh, body_of_node, PhysicalNames::pin_contact);
     const auto                      clamps       = nodes_by_body(mesh, body_of_node, PhysicalNames::pin_clamp);
-    std::set<unsigned int>          mounted; // bodies
+    std::set<unsigned int>          mounted; // bodies with mounts
     for (const std::string &surface : mounted_surfaces)
       {
         const auto nodes   = nodes_by_body(mesh, body_of_node, surface);

@@ -26,10 +26,10 @@ namespace Squeal
     struct ElementType
     {
       const char  *name;
-      int          number; ///< in a .msh
+      int          number; ///< number of the type in a .msh file
       Shape        shape;
       unsigned int degree;
-      bool         is_complete = true; ///< false for serendipity elements, without nodes on faces and inside
+      bool         is_complete = true; ///< false for serendipity elements, which have no nodes inside faces and cells
     };
 
     constexpr ElementType element_types[] = {{"Triangle 3", 2, Shape::triangle, 1},
@@ -49,7 +49,7 @@ namespace Squeal
                                              {"Prism 15", 18, Shape::wedge, 2, false},
                                              {"Pyramid 13", 19, Shape::pyramid, 2, false}};
 
-    /// An element of one of the groups of a dimension.
+    /// An element of a physical group.
     struct GroupElement
     {
       const ElementType *type;
@@ -125,7 +125,7 @@ namespace Squeal
       return first == nullptr ? 1 : first->degree;
     }
 
-    /// Numbers the nodes of cells in Gmsh's order and updates the cells; returns the new numbers.
+    /// Renumbers the nodes of cells in the order of Gmsh's node tags and updates the cells; returns the new numbers.
     std::vector<unsigned int> number_nodes(TaggedElements           &cells,
                                            const GmshMesh           &mesh,
                                            std::vector<Mesh::Point> &points,
@@ -175,7 +175,7 @@ namespace Squeal
     for (auto &[tag, face] : faces)
       {
         if (const Topology &parts = topology(face.type->shape); result.degree == 2)
-          face.nodes.resize(parts.corners.size() + parts.edges.size()); // the cell, whose centre it is, may be a serendipity element
+          face.nodes.resize(parts.corners.size() + parts.edges.size()); // drops centre nodes, which the cells of serendipity elements lack
         for (unsigned int &node : face.nodes)
           if ((node = new_index[node]) == not_numbered)
             throw MeshError("Surface '" + result.surface_names[face.group] + "' has a face that is not a face of any element", where,
@@ -196,7 +196,7 @@ namespace Squeal
     const std::size_t n_nodes = mesh.points.size(), n_elements = mesh.cells.size() + mesh.faces.size();
     stream.precision(std::numeric_limits<double>::max_digits10);
 
-    // One entity for each name, with the same number
+    // One entity for each physical name, with the same number
     std::ostringstream names, entities;
     entities.precision(stream.precision());
     const auto box      = dealii::BoundingBox<3>(mesh.points).get_boundary_points();
@@ -229,13 +229,13 @@ namespace Squeal
       }
     stream << "$EndNodes\n";
 
-    // Elements carry their index to keep their order
+    // Element tags are indices in the mesh, which preserve the order of the elements
     struct Block
     {
       std::size_t n_elements = 0;
       std::string lines;
     };
-    std::map<std::array<std::size_t, 3>, Block> blocks; // by dimension, entity and type
+    std::map<std::array<std::size_t, 3>, Block> blocks; // blocks of elements by dimension, entity and type
     const auto add_element = [&](const int dimension, const std::size_t tag, const Shape shape, const Mesh::Nodes &nodes,
                                  const std::size_t part) {
       const auto type  = std::find_if(std::begin(element_types), std::end(element_types), [&](const ElementType &known) {

@@ -26,14 +26,14 @@ namespace Squeal
     using Sample   = std::pair<Position, unsigned int>; ///< a position with the index of a node, face or element
     using Tree     = dealii::RTree<Sample>;
 
-    // Coincident nodes: far below intended distances, above rounding in files with six digits
+    // Tolerances of coincident nodes: well below intended distances, above rounding errors in files with six digits
     constexpr double of_shortest_edge = 1e-3, of_size = 2e-5, most_of_shortest_edge = 0.1, most_of_longest_edge = 5e-3;
 
-    /// Largest distance of nodes of a finer part from the faces of the coarser part, relative to the element, where a curved face is
-    /// approximated by chords [-].
+    /// Largest distance of nodes of a finer part from the faces of a coarser part, relative to the element, if chords approximate a curved
+    /// face [-].
     constexpr double off_curved_faces = 0.3;
 
-    /// Overlap of bodies, relative to the element: chords of a curved face may penetrate another body by less [-].
+    /// Smallest overlap that is an error, relative to the element: chords of a curved face may penetrate another body by less [-].
     constexpr double chord_depth = 0.05;
 
     std::string place(const Position &p)
@@ -60,7 +60,7 @@ namespace Squeal
       return box;
     }
 
-    /// Bounding box with straight edges: second-order nodes are on edges that both neighbours have.
+    /// Bounding box of the corners; it may ignore second-order nodes, which are on edges that neighbouring cells share.
     Box box_around(const Mesh &mesh, const Mesh::Cell &cell)
     {
       std::vector<Position> corners;
@@ -69,7 +69,7 @@ namespace Squeal
       return Box(corners);
     }
 
-    /// Distance above which a neighbouring point is a different node, for each node [m].
+    /// For each node, the distance above which a neighbouring point is a different node [m].
     std::vector<double> node_tolerances(const Mesh &mesh)
     {
       std::vector<double> shortest(mesh.points.size(), std::numeric_limits<double>::infinity()), longest(mesh.points.size(), 0.);
@@ -125,7 +125,7 @@ namespace Squeal
                       const std::vector<unsigned int> &bodies,
                       const std::string               &where)
     {
-      std::map<unsigned int, std::set<unsigned int>> twins; // by body, nodes that coincide with one of lower number
+      std::map<unsigned int, std::set<unsigned int>> twins; // by body: nodes that coincide with a node of lower number
       visit_coincident(nodes, tolerances, [&](const unsigned int node, const unsigned int other) {
         if (bodies[node] == bodies[other])
           twins[bodies[node]].insert(other);
@@ -139,7 +139,7 @@ namespace Squeal
                         "or open the crack that they form");
     }
 
-    /// Rejects quadrilaterals with triangles as neighbours: they share nodes but are not conforming.
+    /// Rejects quadrilaterals with triangles on the other side: they share nodes but are not conforming.
     void check_matching(const Mesh &mesh, const std::vector<CellFace> &outline, const std::string &where)
     {
       std::set<std::array<unsigned int, 4>> triangles;
@@ -188,7 +188,7 @@ namespace Squeal
           centres.emplace_back(disc.back().centre, centres.size());
         }
       const Tree                                    tree = dealii::pack_rtree(centres);
-      std::map<unsigned int, std::vector<CellFace>> wrong; // by pin
+      std::map<unsigned int, std::vector<CellFace>> wrong; // faces with the wrong normal by pin
       for (const CellFace &face : named_faces(mesh, outline, PhysicalNames::pin_contact))
         {
           const FaceGeometry pin         = face_geometry(mesh, face);
@@ -207,13 +207,13 @@ namespace Squeal
 
     // --------------------------------------------------------- nodes in elements
 
-    /// Nodes at which faces of the outline meet in several fans, or edges with more than two faces: parts of a body are joined there only
-    /// by single nodes or edges, as on both sides of hanging nodes.
+    /// Nodes at which outer faces meet in several fans, and nodes of edges with more than two outer faces. Parts of a body are joined there
+    /// only by single nodes or edges, for example on both sides of hanging nodes.
     std::vector<bool> pinched_nodes(const Mesh &mesh, const std::vector<CellFace> &outline)
     {
       struct Edge
       {
-        std::array<unsigned int, 2> nodes, corners; ///< lower node first; corners 4 f + v of face f
+        std::array<unsigned int, 2> nodes, corners; ///< lower node number first; corner v of face f has the index 4 f + v
       };
       std::vector<Edge> all;
       all.reserve(4 * outline.size());
@@ -226,7 +226,7 @@ namespace Squeal
       std::sort(all.begin(), all.end(), [](const Edge &a, const Edge &b) { return a.nodes < b.nodes; });
 
       std::vector<bool>                   result(mesh.points.size(), false);
-      boost::disjoint_sets_with_storage<> fans(4 * outline.size()); // of corners
+      boost::disjoint_sets_with_storage<> fans(4 * outline.size()); // disjoint sets of corner indices
       for (auto first = all.begin(), last = first; first != all.end(); first = last)
         {
           last = std::find_if(first, all.end(), [&](const Edge &edge) { return edge.nodes != first->nodes; });
@@ -255,8 +255,8 @@ namespace Squeal
     /// Misplaced nodes or element centres, by index; the index of the centre of element e is the number of nodes + e.
     struct MisplacedPoints
     {
-      std::map<unsigned int, std::set<unsigned int>>                          hanging;  ///< on or in elements of their body
-      std::map<std::pair<unsigned int, unsigned int>, std::set<unsigned int>> overlaps; ///< by their body and the body that contains them
+      std::map<unsigned int, std::set<unsigned int>>                          hanging;  ///< points on or in other elements of the same body
+      std::map<std::pair<unsigned int, unsigned int>, std::set<unsigned int>> overlaps; ///< by own and containing body
     };
 
     std::vector<Box> boxes_of_bodies(const Mesh &mesh, const std::vector<unsigned int> &bodies)

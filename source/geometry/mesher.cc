@@ -51,15 +51,15 @@ namespace Squeal
     {
       if (!is_confined)
         return boost::this_process::environment();
-      // Only the library path
+      // Pass only the library path
       process::environment result;
       if (const char *path = std::getenv("LD_LIBRARY_PATH"))
         result["LD_LIBRARY_PATH"] = path;
-      result["HOME"] = "/dev/null"; // no preferences of libraries; not even root can create a folder there
+      result["HOME"] = "/dev/null"; // libraries cannot store preferences: not even root can create a folder there
       return result;
     }
 
-    /// A line of Gmsh's output, truncated and without control characters: it may quote arbitrary file contents.
+    /// A line of Gmsh's output, truncated and without control characters, because it may quote arbitrary file contents.
     std::string shown(std::string line)
     {
       constexpr std::size_t longest_line = 500;
@@ -70,7 +70,7 @@ namespace Squeal
       return line;
     }
 
-    /// The end of Gmsh's output, from the first error if there is one.
+    /// The end of Gmsh's output, starting at the first error.
     std::string quoted(const std::string &log)
     {
       std::istringstream       stream(log);

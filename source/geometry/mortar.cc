@@ -15,7 +15,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Smallest overlap relative to the slave area, to the area of an element and to ∫ Ñ_j [-].
+    /// Smallest overlap relative to the slave area, relative to the area of an element, and D_j relative to ∫ Ñ_j [-].
     constexpr double least_overlap = 1e-3, least_of_element = 0.02, least_of_node = 0.1;
 
     /// Smaller weights are rounding errors [-].
@@ -24,7 +24,7 @@ namespace Squeal
     /// Largest mean cosine between the normals of opposite surfaces [-].
     constexpr double largest_cosine = -0.5;
 
-    /// Largest gap relative to the mean size of the slave faces, and gap above which a note is given: chords of curved faces cause smaller
+    /// Largest gap relative to the mean size of the slave faces, and gap above which a note is issued: chords of curved faces cause smaller
     /// gaps [-].
     constexpr double touching_gap = 0.5, noted_gap = 0.05;
 
@@ -56,7 +56,7 @@ namespace Squeal
               add_edge(element.nodes[n_corners(element) + i], element.nodes[i], element.nodes[(i + 1) % n_corners(element)]);
       }
 
-      /// T in Ñ = T N on an element.
+      /// Matrix T of Ñ = T N on an element.
       FaceMatrix of(const SurfaceElement &element) const
       {
         FaceMatrix         result = FaceMatrix::Identity();
@@ -71,13 +71,13 @@ namespace Squeal
       }
 
       std::vector<NodeWeights> values; ///< ũ_j in terms of u
-      std::vector<NodeWeights> forces; ///< forces on ũ_j in terms of forces on u
+      std::vector<NodeWeights> forces; ///< forces that act on ũ_j in terms of forces that act on u
 
     private:
       void add_edge(const unsigned int e, const unsigned int v, const unsigned int w)
       {
         if (values[e].size() > 1)
-          return; // edge of the neighbouring element, already done
+          return; // the edge was added with the neighbouring element
         values[e] = {{e, 1. / (1. - 2. * alpha)}, {v, -alpha / (1. - 2. * alpha)}, {w, -alpha / (1. - 2. * alpha)}};
         forces[e] = {{e, 1. - 2. * alpha}};
         forces[v].emplace_back(e, alpha);
@@ -93,7 +93,7 @@ namespace Squeal
       double                         whole = 0.; ///< ∫ Ñ_j over the elements
       double                         area  = 0.; ///< ∫ Ñ_j over the overlap
       std::map<unsigned int, double> master;     ///< ∫ ψ_j N_l
-      std::set<unsigned int>         neighbours; ///< in overlapping elements
+      std::set<unsigned int>         neighbours; ///< nodes of the same overlapping elements
     };
 
     /// Adds the dual functions of an element; does nothing if its functions are linearly dependent on the overlap.
@@ -124,7 +124,7 @@ namespace Squeal
         }
     }
 
-    /// Slave nodes of each row of multipliers, by the node of the row: nodes with little overlap join the neighbour of largest area.
+    /// Slave nodes of each mortar row, by the node of the row: nodes with little overlap are merged with the neighbour of largest area.
     std::map<unsigned int, std::vector<unsigned int>> grouped(const std::vector<SlaveNode> &nodes)
     {
       std::map<unsigned int, std::vector<unsigned int>> groups;
@@ -136,7 +136,7 @@ namespace Squeal
           area[j]   = nodes[j].area;
           groups[j] = {j};
         }
-      // Repeat, because a negative area may make a sum too small
+      // Repeat until nothing changes, because adding a negative area may make a sum too small
       for (bool is_changed = true; is_changed;)
         {
           is_changed = false;

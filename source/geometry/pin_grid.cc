@@ -9,7 +9,7 @@ namespace Squeal
 {
   namespace
   {
-    // Relative to the radius: all rings except the innermost lie outside the first value, corners of the blocks at the second
+    // Radii relative to the outline: all rings except the innermost lie outside the first; the corners of the blocks are at the second
     constexpr double rings_end = 0.8, blocks_end = 0.6;
 
     /// Shape of the sides of the triangle around the blocks: 0 for arcs, 1 for chords.
@@ -68,7 +68,7 @@ namespace Squeal
       return i == 0 ? centre_node : i == k ? at(2 * k * s) : centre_node + s % 3 * (k - 1) + i;
     };
 
-    // Blocks: i runs along one spoke, j along the next, the opposite sides are on the loop
+    // Blocks: i runs along one spoke, j along the next one; the opposite sides are on the loop
     std::vector<Plan::Face> faces;
     for (unsigned int b = 0; b < 3; ++b)
       {

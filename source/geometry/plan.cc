@@ -82,7 +82,7 @@ namespace Squeal
         for (unsigned int v = 0; v < 4; ++v)
           smallest_edge = std::min(smallest_edge, plan.points[face[v]].distance(plan.points[face[(v + 1) % 4]]));
 
-      // Sorted by x, coincident nodes are close to each other in the list
+      // Sort by x, so that coincident nodes are close to each other in the list
       const double             tolerance = 1e-3 * smallest_edge;
       std::vector<Plan::Point> points    = plan.points;
       std::sort(points.begin(), points.end(), [](const Plan::Point &a, const Plan::Point &b) { return a[0] < b[0]; });
@@ -182,7 +182,7 @@ namespace Squeal
         centres[group.name] = {point[0], point[1]};
       }
 
-      /// Fills the holes, each once for one or two pins
+      /// Fills each hole once, for one pin or for two opposite pins
       void fill_holes()
       {
         const std::set<Plan::Edge>                outline = sorted_edges(boundary_edges(plan.faces));
@@ -222,7 +222,7 @@ namespace Squeal
         plan.pins.push_back(pin);
       }
 
-      /// Faces and nodes that fill a closed curve, without name, side and position.
+      /// Pin that fills a closed curve with faces and nodes, without name, side and position.
       Plan::Pin fill(const std::vector<unsigned int> &loop)
       {
         const PinGrid grid = fill_pin(loop, rings, plan.points);
@@ -237,7 +237,7 @@ namespace Squeal
         return pin;
       }
 
-      /// Index of a node in the plan; nodes without a surface are not included.
+      /// Index of a node in the plan, which contains only nodes of surfaces.
       unsigned int node_index(const unsigned int node)
       {
         if (plan_node[node] == no_node)
@@ -272,9 +272,9 @@ namespace Squeal
       const PinRings                     rings;
       const std::string                 &where;
       std::vector<unsigned int>          plan_node;
-      std::map<Plan::Face, unsigned int> face_index; ///< by ascending nodes
+      std::map<Plan::Face, unsigned int> face_index; ///< index of each face by its ascending nodes
       std::vector<Plan::Curve>           pin_curves;
-      std::map<std::string, Plan::Point> centres; ///< of pins
+      std::map<std::string, Plan::Point> centres; ///< centres of pins by name
     };
   } // namespace
 
@@ -323,7 +323,7 @@ namespace Squeal
     reader.fill_holes();
     Plan plan = std::move(reader.plan);
 
-    // Top before bottom, pin_top_2 before pin_top_10
+    // Order: top before bottom, pin_top_2 before pin_top_10
     std::sort(plan.pins.begin(), plan.pins.end(), [](const Plan::Pin &a, const Plan::Pin &b) {
       return std::make_tuple(a.side, a.name.size(), a.name) < std::make_tuple(b.side, b.name.size(), b.name);
     });

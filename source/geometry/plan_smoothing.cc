@@ -11,8 +11,8 @@ namespace Squeal
 {
   namespace
   {
-    /// Moves a point to reduce a function of it below @p least, by steps in eight directions with successively halved lengths. Returns the
-    /// smallest value found.
+    /// Moves a point to reduce a function below its initial value @p least, by steps in eight directions with successively halved lengths.
+    /// Returns the smallest value found.
     template <typename Function>
     double move_to_least(Plan::Point &point, const double longest_step, const double shortest_step, double least, const Function &function)
     {
@@ -35,18 +35,18 @@ namespace Squeal
       return least;
     }
 
-    // Sine of a corner angle below which a face is bad: far above the limit of check_mesh(), and below values in regular plans
+    // Sine of a corner angle below which a face is bad: well above the limit of check_mesh(), and below the values in regular plans
     constexpr double least_sine = 0.1;
 
-    // Rows of faces around the bad ones that move with them; fewer than between neighbouring pins
+    // Rows of faces around bad faces that are also moved; there are more rows between neighbouring pins
     constexpr int n_rings = 6;
 
-    constexpr int    max_untangling_sweeps = 100; ///< ε has its smallest value for a third of them
+    constexpr int    max_untangling_sweeps = 100; ///< ε has its smallest value during a third of the sweeps
     constexpr double epsilon_decrease      = 0.9;
     constexpr double smallest_epsilon      = 1e-3;
     constexpr double converged             = 1e-3; ///< relative decrease of a node's energy in a sweep
-    constexpr double first_turn            = 0.3;  ///< [rad]
-    constexpr double smallest_step         = 1e-3; ///< of a node [mean edge], of a part [rad]
+    constexpr double first_turn            = 0.3;  ///< first step of the rotation of a part [rad]
+    constexpr double smallest_step         = 1e-3; ///< smallest step of a node [mean edge] or of a part [rad]
 
     bool is_bad(const Plan::Face &face, const std::vector<Plan::Point> &points)
     {
@@ -56,7 +56,7 @@ namespace Squeal
       return false;
     }
 
-    /// The faces around bad ones, and which of their nodes may move.
+    /// Bad faces and the faces around them, with the nodes and parts that may move.
     class Region
     {
     public:
@@ -124,7 +124,7 @@ namespace Squeal
       }
 
     private:
-      /// Faces whose shape depends on the angle of a part: those with nodes both in and outside it.
+      /// Faces whose shape depends on the rotation of a part: they have nodes of the part and other nodes.
       std::vector<unsigned int> faces_around(const TurningPart &part) const
       {
         std::vector<bool> on_part(points.size(), false);
@@ -186,8 +186,8 @@ namespace Squeal
 
       std::vector<Plan::Point>              &points;
       std::vector<Plan::Face>                region;
-      std::vector<std::vector<unsigned int>> faces_at; ///< by node
-      std::vector<unsigned int>              nodes;    ///< free to move
+      std::vector<std::vector<unsigned int>> faces_at; ///< indices of the faces at each node
+      std::vector<unsigned int>              nodes;    ///< nodes that may move
       std::vector<const TurningPart *>       parts;
       std::vector<std::vector<unsigned int>> part_faces;
       double                                 mean_area = 0., epsilon = 1.;
@@ -220,7 +220,7 @@ namespace Squeal
     constexpr double good_shape = 0.6;
     constexpr int    max_sweeps = 100;
 
-    // Enough to spread a displacement from a pin to its neighbours; it need not be uniform
+    // Enough sweeps to spread the displacement of a pin to the nodes around it; full convergence is not required
     constexpr int displacement_sweeps = 200;
     constexpr int displacement_steps  = 5;
 
@@ -244,7 +244,7 @@ namespace Squeal
         fixed[edge[0]] = fixed[edge[1]] = true;
     }
 
-    /// Fixes the nodes on the outline of a pin and those of its rings.
+    /// Fixes the nodes on the outline of a pin and the nodes of its rings.
     void fix(const Plan::Pin &pin, const Plan &plan, std::vector<bool> &fixed)
     {
       fix_outline(plan.faces_of(pin), fixed);
@@ -252,7 +252,7 @@ namespace Squeal
         fixed[node] = true;
     }
 
-    /// A pin with the present positions of its nodes: it may rotate about its centre.
+    /// A pin as a rotating part, with the current positions of its nodes.
     TurningPart turning_part(const Plan::Pin &pin, const Plan &plan, const std::vector<Plan::Point> &points)
     {
       const std::vector<Plan::Face> faces = plan.faces_of(pin);
@@ -269,7 +269,7 @@ namespace Squeal
           if (!fixed[node])
             faces_at[node].push_back(face);
 
-      // Fixed step lengths keep tangled nodes from moving far away
+      // Limit steps by the initial edge lengths, so that tangled nodes do not move far away
       std::vector<double> longest_edge(points.size(), 0.);
       for (const Plan::Face &face : faces)
         for (unsigned int v = 0; v < 4; ++v)
@@ -279,7 +279,7 @@ namespace Squeal
               longest_edge[node] = std::max(longest_edge[node], length);
           }
 
-      // Sweeps: try the mean of the neighbours, then steps of decreasing length
+      // In each sweep and for each node, try the mean of the neighbours, then steps of decreasing length
       const auto worst_at = [&](const unsigned int node) {
         double worst = 1.;
         for (const unsigned int face : faces_at[node])
@@ -298,7 +298,7 @@ namespace Squeal
               if (before >= good_shape)
                 continue;
 
-              // The mean of the neighbours, if it is better
+              // Use the mean of the neighbours if it is better
               const Plan::Point place = points[node];
               Plan::Point       sum;
               unsigned int      count = 0;
@@ -360,7 +360,7 @@ namespace Squeal
     if (!displaced)
       return plan.points;
 
-    // The other nodes follow their neighbours
+    // Displacements of the other nodes are means of their neighbours
     std::vector<std::vector<unsigned int>> neighbours(plan.points.size());
     for (const Plan::Face &face : plan.faces)
       for (unsigned int v = 0; v < 4; ++v)
@@ -378,7 +378,7 @@ namespace Squeal
             displacements[node] = sum / double(neighbours[node].size());
           }
 
-    // In steps, smoothed each time: faces inverted in one large step might not be repaired
+    // Move in several steps and smooth after each: faces inverted by one large step might not be repairable
     std::vector<Plan::Point> points = plan.points;
     for (int step = 0; step < displacement_steps; ++step)
       {

@@ -13,7 +13,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Largest distance of a point from its circle, relative to the radius.
+    /// Largest distance of a point from its circle, relative to the radius [-].
     constexpr double roundness = 1e-6;
   } // namespace
 
@@ -57,7 +57,7 @@ namespace Squeal
     constexpr double      straight      = 1e-8;
     if (points.size() < fewest_points)
       return {};
-    // Relative to the centroid, scaled by the distances from it
+    // Shift coordinates to the centroid and scale them by the root mean square distance from it
     Eigen::MatrixX2d x(points.size(), 2);
     for (std::size_t i = 0; i < points.size(); ++i)
       x.row(i) << points[i][0], points[i][1];

@@ -18,12 +18,12 @@ namespace Squeal
 {
   namespace
   {
-    // Fitted constants of ProblemSize::memory() [byte]
+    // Constants of ProblemSize::memory(), fitted to measurements [byte]
     constexpr double program          = 1.8e8;
     constexpr double bytes_per_entry  = 90.;   ///< per entry of K, for all matrices
-    constexpr double factor_per_dof   = 3100.; ///< for reference_dofs
+    constexpr double factor_per_dof   = 3100.; ///< memory of the factor per dof at reference_dofs
     constexpr double reference_dofs   = 3e4;
-    constexpr double factor_growth    = 0.4; ///< exponent of the factor per dof
+    constexpr double factor_growth    = 0.4; ///< exponent of the growth of factor_per_dof with the number of dofs
     constexpr double vectors_per_node = 1., vectors_per_mode = 3.;
 
     /// ProblemSize::row_length for meshes of one cell shape.
@@ -42,8 +42,7 @@ namespace Squeal
         }
     }
 
-    /// Size of an extruded plan from numbers of faces and nodes, in total and under all pins. Layers of nodes belong to two layers of
-    /// cells.
+    /// Size of an extruded plan from its numbers of faces and nodes, in total and under all pins.
     ProblemSize extruded(const double              faces,
                          const double              nodes,
                          const double              pin_faces,
@@ -147,8 +146,8 @@ namespace Squeal
 
   namespace
   {
-    /// Fraction of the disc's faces that a rotation about an axis maps onto themselves, n·(a × (x − c)) ≈ 0: the smaller of that of the
-    /// lateral faces, which determine the position of the axis, and that of the others, which determine its direction.
+    /// Area fraction of the disc's faces that a rotation about an axis maps onto themselves, n·(a × (x − c)) ≈ 0. Returns the smaller one
+    /// of the fractions of lateral faces, which determine the position of the axis, and of the other faces, which determine its direction.
     double round_share(const Mesh &mesh, const std::vector<CellFace> &faces, const Mesh::Point &c, const dealii::Tensor<1, 3> &a)
     {
       constexpr double largest_lateral_cosine = 0.5, fitting_motion = 5e-3;
@@ -160,14 +159,15 @@ namespace Squeal
           const double               area       = normal.norm();
           const bool                 is_lateral = std::abs(normal * a) < largest_lateral_cosine * area;
           all[is_lateral] += area;
-          double least = std::numeric_limits<double>::infinity(), most = -least; // at the corners
+          double least = std::numeric_limits<double>::infinity(), most = -least; // normal motion at the corners
           for (unsigned int v = 0; v < face.n_corners; ++v)
             {
               const double value = normal * cross_product_3d(a, mesh.points[face.corners[v]] - c);
               least              = std::min(least, value);
               most               = std::max(most, value);
             }
-          // A chord is parallel to its circle at its midpoint, which need not be the centre of a triangle
+          // A chord is parallel to its circle only at its midpoint, which need not be the centre of a triangle: use the mean of the
+          // extremes
           if (std::abs(least + most) / 2. < fitting_motion * area * motion.norm())
             fitting[is_lateral] += area;
         }
@@ -177,10 +177,10 @@ namespace Squeal
 
   bool is_round_about_z(const Mesh &mesh, const std::string &where)
   {
-    constexpr double clearly_rounder = 0.1, least_round = 0.5;          // shares of the surface
+    constexpr double clearly_rounder = 0.1, least_round = 0.5;          // fractions of the surface
     constexpr double negligible_angle = 5e-3, negligible_offset = 5e-3; // [rad], [outer radius]
 
-    // Moments of each face, exact for triangles and parallelograms: weight 1/12 for each corner, the remainder for the centre
+    // Second moments of each face, exact for triangles and parallelograms: each corner has the weight 1/12, the centre has the remainder
     std::vector<CellFace> faces = outer_faces(mesh);
     faces.erase(std::remove_if(faces.begin(), faces.end(), [](const CellFace &face) { return face.body != 0; }), faces.end());
     double          area = 0., radius = 0.;
@@ -202,7 +202,7 @@ namespace Squeal
       }
     centre /= area;
 
-    // The axis of a body of revolution belongs to the eigenvalue that differs from the other two
+    // The axis of a body of revolution is the eigenvector of the eigenvalue that differs from the other two
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(moments / area - centre * centre.transpose());
     const Eigen::Vector3d                                s    = axes.eigenvalues(); // ascending
     Eigen::Vector3d                                      axis = axes.eigenvectors().col(s[1] - s[0] < s[2] - s[1] ? 2 : 0);

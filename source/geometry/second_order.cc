@@ -17,13 +17,13 @@ namespace Squeal
 
   namespace
   {
-    using Edge = std::array<unsigned int, 2>; ///< its corners, lower number first
+    using Edge = std::array<unsigned int, 2>; ///< numbers of its corners, lower number first
     using Key  = std::array<unsigned int, 4>; ///< see face_key()
 
     /// Largest relative difference of the distances of a face's corners from the axis [-].
     constexpr double round_within = 1e-6;
 
-    /// Points closer than this coincide [m]: far below any element size, in any unit of length.
+    /// Points at smaller distances coincide [m]. The limit is relative to the mesh size and far below any element size.
     double resolution(const std::vector<Point<3>> &points)
     {
       const auto [lower, upper] = dealii::BoundingBox<3>(points).get_boundary_points();
@@ -72,12 +72,12 @@ namespace Squeal
       }
 
     private:
-      using Place = std::array<long, 3>; ///< equal for coincident middles of edges
+      using Place = std::array<long, 3>; ///< position of the middle of an edge in units of the resolution
 
       const Mesh                                              &mesh;
       const double                                             grid;
       const std::vector<CellFace>                              faces;
-      std::map<std::pair<std::size_t, unsigned int>, Point<2>> surfaces; ///< axes of named faces, by cell and number
+      std::map<std::pair<std::size_t, unsigned int>, Point<2>> surfaces; ///< axes of faces on named cylinders, by cell and face number
       std::map<Edge, Point<2>>                                 axis_of_edge;
       std::map<Key, Point<2>>                                  axis_of_face;
       std::map<Place, Point<2>>                                axis_of_place;
@@ -92,20 +92,20 @@ namespace Squeal
         return {first, std::find_if(first, faces.end(), [&](const CellFace &face) { return face.key != key; })};
       }
 
-      /// Finds cylindrical surfaces, body by body.
+      /// Finds the cylindrical surfaces of each body.
       void find_surfaces()
       {
         for (const char *name :
              {PhysicalNames::pin_side, PhysicalNames::disc_rim, PhysicalNames::disc_bore}) // the last one takes precedence
           {
-            std::map<unsigned int, std::vector<CellFace>> patches; // by body
+            std::map<unsigned int, std::vector<CellFace>> patches; // faces of the surface by body
             for (const Mesh::Face &face : mesh.faces)
               if (mesh.surface_names[face.surface] == name)
                 if (const auto [first, last] = cells_at(face_key(face)); last - first == 1)
                   patches[first->body].push_back(*first);
             for (const auto &[body, patch] : patches)
               {
-                std::vector<Point<2>> points; // seen along z
+                std::vector<Point<2>> points; // projections of the corners along z
                 for (const CellFace &face : patch)
                   for (unsigned int v = 0; v < face.n_corners; ++v)
                     points.emplace_back(mesh.points[face.corners[v]][0], mesh.points[face.corners[v]][1]);
@@ -116,17 +116,17 @@ namespace Squeal
           }
       }
 
-      /// Attaches the surfaces, then the rings behind them.
+      /// Attaches the surfaces to their cylinders, then the rings behind them.
       void attach_surfaces()
       {
         struct RingFace
         {
-          CellFace    face; ///< between two rings, or between the innermost one and the interior
+          CellFace    face; ///< face between two rings, or between the innermost ring and the interior
           std::size_t behind;
           Point<2>    axis;
         };
         std::vector<RingFace>               rings;
-        std::map<std::size_t, unsigned int> n_faces; // of the cells behind
+        std::map<std::size_t, unsigned int> n_faces; // number of ring faces of each cell behind a ring
         for (const auto &[place, axis] : surfaces)
           {
             CellFace face = face_of_cell(mesh, place.first, place.second);
@@ -144,7 +144,7 @@ namespace Squeal
             attach(ring.face, ring.axis);
       }
 
-      /// Opposite face of a hexahedron, as a face of the next cell, if there is one and the face is round.
+      /// Opposite face of a hexahedron, as a face of the next cell; nothing without a next cell or if the face is not round.
       std::optional<CellFace> face_behind(const CellFace &face, const Point<2> &axis) const
       {
         if (mesh.cells[face.cell].shape != Shape::hexahedron)
@@ -164,8 +164,8 @@ namespace Squeal
         return first->cell == own.cell ? *(first + 1) : *first;
       }
 
-      /// Attaches the same edges on the other side of the contact: outline and rings of a pin on the disc, rim or bore of the disc on a pad
-      /// that ends there.
+      /// Attaches the coincident edges on the other side of the contact: the outline and rings of a pin on the disc, and the rim or bore of
+      /// the disc on a pad that ends there.
       void attach_other_side()
       {
         for (const Mesh::Face &face : mesh.faces)
@@ -182,7 +182,7 @@ namespace Squeal
         return {{std::lround(p[0] / grid), std::lround(p[1] / grid), std::lround(p[2] / grid)}};
       }
 
-      /// Attaches a face and its edges, except straight edges along the axis.
+      /// Attaches a face and its edges to a cylinder. Edges along the axis are not attached on the other side of the contact.
       void attach(const CellFace &face, const Point<2> &axis)
       {
         axis_of_face[face.key] = axis;
@@ -196,7 +196,7 @@ namespace Squeal
       }
     };
 
-    /// Weighted mean of points: of their positions, or of their angles, radii and heights about an axis.
+    /// Weighted mean of points: mean position or, with an axis, mean angle, radius and height.
     Point<3> mean(const std::vector<std::pair<double, Point<3>>> &points, const Point<2> *axis)
     {
       Point<3> sum;
@@ -215,11 +215,11 @@ namespace Squeal
       return {(*axis)[0] + radius * std::cos(start + turn), (*axis)[1] + radius * std::sin(start + turn), sum[2]};
     }
 
-    /// Adds the missing nodes of elements of degree 2, each once.
+    /// Adds the missing nodes of elements of degree 2, once for all cells that share a node.
     class AddedNodes
     {
     public:
-      /// @param cylinders null: none
+      /// @param cylinders null: straight edges
       AddedNodes(Mesh &mesh, const Cylinders *cylinders)
         : mesh(mesh)
         , cylinders(cylinders)
@@ -243,7 +243,7 @@ namespace Squeal
       Mesh                        &mesh;
       const Cylinders             *cylinders;
       std::map<Edge, unsigned int> edges;
-      std::map<Key, unsigned int>  faces; ///< quadrilateral
+      std::map<Key, unsigned int>  faces; ///< centre nodes of quadrilateral faces
 
       static Key key_of(const Mesh::Nodes &nodes, const std::vector<unsigned int> &numbers)
       {
@@ -265,7 +265,7 @@ namespace Squeal
         for (unsigned int f = 0; f < parts.faces.size(); ++f)
           if (const auto &numbers = nodes_of_face(shape, 2, f); numbers.size() == 9)
             nodes.push_back(on_face(nodes, numbers));
-        // Transfinite interpolation: faces minus edges plus corners
+        // Transfinite interpolation with the weights of face, edge and corner nodes
         std::vector<std::pair<double, Point<3>>> points;
         for (unsigned int i = 0; i < nodes.size(); ++i)
           points.emplace_back(i < n_corners ? 1. / 8. : i < n_outline ? -1. / 4. : 1. / 2., mesh.points[nodes[i]]);

@@ -20,7 +20,7 @@ namespace Squeal
   const Topology &topology(const Shape shape)
   {
     using Q = Point<3>;
-    // Outwards by the right-hand rule, edges in Gmsh's order
+    // Faces are outwards by the right-hand rule; edges are in Gmsh's order
     static const std::array<Topology, 6> all = {
       {{"triangles", 2, {Q(0, 0, 0), Q(1, 0, 0), Q(0, 1, 0)}, {{{0, 1}}, {{1, 2}}, {{2, 0}}}, {{0, 1, 2}}},
        {"quadrilaterals", 2, {Q(0, 0, 0), Q(1, 0, 0), Q(1, 1, 0), Q(0, 1, 0)}, {{{0, 1}}, {{1, 2}}, {{2, 3}}, {{3, 0}}}, {{0, 1, 2, 3}}},
@@ -73,7 +73,7 @@ namespace Squeal
   {
     constexpr unsigned int n_shapes = 6;
 
-    /// A value for each shape in degree 1 and 2.
+    /// Table with a value for each shape in degree 1 and 2.
     template <typename Value, typename Make>
     std::array<std::array<Value, 2>, n_shapes> for_all_elements(const Make &make)
     {
@@ -117,7 +117,7 @@ namespace Squeal
 
   namespace
   {
-    /// An element of deal.II with its functions in our order.
+    /// An element of deal.II with its functions in the order of reference_nodes().
     template <int dim>
     class DealFunctions : public ShapeFunctions
     {
@@ -195,10 +195,10 @@ namespace Squeal
       static constexpr unsigned int n_functions = 14;
       using Matrix                              = Eigen::Matrix<double, n_functions, n_functions>;
 
-      /// Functions that span the space, with derivatives. w is set to zero at the apex, which no quadrature point reaches.
+      /// Functions that span the space, with derivatives. w is set to zero at the apex, which is not a quadrature point.
       static Eigen::Matrix<double, n_functions, 4> space(const Point<3> &p)
       {
-        using Function = Eigen::RowVector4d; // value and derivatives
+        using Function = Eigen::RowVector4d; // value and three derivatives
         const Function one(1., 0., 0., 0.), x(p[0], 1., 0., 0.), y(p[1], 0., 1., 0.), z(p[2], 0., 0., 1.);
         const double   below = 1. - p[2];
         const Function w     = below > 1e-12 ? Function(p[0] * p[1], p[1], p[0], p[0] * p[1] / below) / below : Function(Function::Zero());
@@ -242,7 +242,7 @@ namespace Squeal
         }
     }
 
-    /// Maps a rule on [0, 1]³ to the pyramid, with a cross-section that decreases as 1 − z.
+    /// Maps a rule on [0, 1]³ to the pyramid, whose width decreases as 1 − z.
     Quadrature<3> on_pyramid(const Quadrature<3> &cube)
     {
       std::vector<Point<3>> points;
@@ -306,7 +306,7 @@ namespace Squeal
         case Shape::hexahedron:
           return listed(QGauss<3>(n));
         default:
-          return listed(on_pyramid(QGauss<3>(n + 1))); // for rational functions and the decreasing cross-section
+          return listed(on_pyramid(QGauss<3>(n + 1))); // one point more, for rational functions and the factor (1 − z)²
       }
   }
 } // namespace Squeal

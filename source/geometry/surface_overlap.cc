@@ -22,11 +22,11 @@ namespace Squeal
 
   namespace
   {
-    using Space      = Eigen::Matrix<double, 3, most_face_nodes>; // coefficients of positions
-    using Plane      = Eigen::Matrix<double, 2, most_face_nodes>; // of positions in a plane
+    using Space      = Eigen::Matrix<double, 3, most_face_nodes>; // coefficients of positions, by monomial
+    using Plane      = Eigen::Matrix<double, 2, most_face_nodes>; // coefficients of positions in a plane
     using Derivative = Eigen::Matrix<double, most_face_nodes, 2>;
 
-    /// Monomials; the first n span the shape functions of a face with n nodes.
+    /// Monomials m_k; combinations of them are the shape functions of all faces.
     FaceVector monomials(const Vector2d &r)
     {
       const double x = r[0], y = r[1];
@@ -59,7 +59,7 @@ namespace Squeal
       return 2 * (degree_of(element) - 1) + (element.shape == Shape::triangle ? 0 : 1);
     }
 
-    /// Coefficients of the shape functions, N_i = Σ_k C_ik m_k, which are integers.
+    /// Integer coefficients C of the shape functions, N_i = Σ_k C_ik m_k.
     FaceMatrix find_coefficients(const Shape shape, const unsigned int degree)
     {
       const auto      nodes = reference_nodes(shape, degree);
@@ -98,7 +98,7 @@ namespace Squeal
       unsigned int          element;
       std::vector<Vector3d> corners;
       Vector2d              reference; ///< coordinates of the centre
-      Vector3d              normal;    ///< unit
+      Vector3d              normal;    ///< unit normal
       double                area;      ///< [m²]
     };
 
@@ -120,7 +120,7 @@ namespace Squeal
       facet.area          = area.norm();
       facet.normal        = area / facet.area;
 
-      // Only convex polygons can be clipped
+      // Divide a quadrilateral that is not convex: clipping requires convex polygons
       if (n == 4)
         for (unsigned int i = 0; i < 4; ++i)
           {
@@ -167,7 +167,7 @@ namespace Squeal
       return a[0] * b[1] - a[1] * b[0];
     }
 
-    /// Part of a polygon inside a convex one, both counter-clockwise (I. E. Sutherland, G. W. Hodgman 1974).
+    /// Part of a polygon inside a convex polygon, both counter-clockwise (I. E. Sutherland, G. W. Hodgman 1974).
     Polygon clipped(Polygon polygon, const Polygon &by)
     {
       for (std::size_t k = 0; k < by.size(); ++k)
@@ -196,7 +196,7 @@ namespace Squeal
       return twice / 2.;
     }
 
-    /// Reference coordinates of a position by Newton's method from @p r.
+    /// Reference coordinates of a position by Newton's method, starting at @p r.
     Vector2d located(const Plane &map, const Vector2d &place, Vector2d r)
     {
       constexpr double longest_step = 0.25;
@@ -205,7 +205,7 @@ namespace Squeal
           const Vector2d step = (map * derivatives(r)).inverse() * (place - map * monomials(r));
           // A longer step may reach a region where the map is folded
           r += step * std::min(1., longest_step / step.norm());
-          // The remaining error is of the order of the square
+          // After the step, the error is of the order of the square of the step
           if (step.squaredNorm() < 1e-16)
             return r;
         }
@@ -245,7 +245,7 @@ namespace Squeal
         , space(map_of(patch, patch.elements[facet.element]))
         , r(facet.reference)
       {
-        space.col(0) -= plane.origin; // differences avoid cancellation of positions
+        space.col(0) -= plane.origin; // coordinates relative to the origin avoid cancellation
         map = plane.axes * space;
       }
 
@@ -271,9 +271,9 @@ namespace Squeal
       Vector2d          r; ///< reference coordinates of the last position
     };
 
-    /// Quadrature rule, exact for products on straight triangles, polynomials of degree 4. On distorted quadrilaterals and curved triangles
-    /// functions are not polynomials of the position: 28 points give the nodal forces of a constant pressure to 1e-13 if corners are
-    /// shifted by 10 % of the element, to 1e-10 for 20 %.
+    /// Quadrature rule. On straight triangles, products of functions are polynomials of degree 4, and the rule is exact. On distorted
+    /// quadrilaterals and curved triangles, functions are not polynomials of the position: with 28 points, the nodal forces of a constant
+    /// pressure have errors of 1e-13 if corners are shifted by 10 % of the element, and of 1e-10 for 20 %.
     const std::vector<QuadraturePoint> &rule(const bool are_affine)
     {
       static const auto polynomials = quadrature(Shape::triangle, 2), others = quadrature(Shape::triangle, 5);
@@ -311,9 +311,9 @@ namespace Squeal
 
   SurfaceOverlap overlap(const SurfacePatch &slave, const SurfacePatch &master, const double search_distance)
   {
-    // Skip facets with an angle above 78° between them
+    // Skip pairs of facets if the angle between them exceeds 78°
     constexpr double least_cosine = 0.2;
-    // Skip rounding errors along common edges
+    // Skip overlaps that are rounding errors along common edges
     constexpr double least_part = 1e-14;
 
     const std::vector<Facet> masters = facets_of(master);
@@ -324,15 +324,15 @@ namespace Squeal
     const auto tree = dealii::pack_rtree(leaves);
 
     SurfaceOverlap result{std::vector<ElementOverlap>(slave.elements.size()), 0., 0., 0.};
-    double         facing = 0.; // area
+    double         facing = 0.; // area of all overlaps
     for (const Facet &facet : facets_of(slave))
       {
         const FacetPlane  plane(facet);
         const Polygon     below = plane.polygon(facet);
         const OverlapSide of_slave(slave, facet, plane);
         ElementOverlap   &element = result.elements[facet.element];
-        double            covered = 0., sizes = 0.;             // for the mean size of master facets
-        const double      beside = 0.1 * std::sqrt(facet.area); // curved elements extend beyond the boxes of their facets
+        double            covered = 0., sizes = 0.;             // sums for the mean size of opposite master facets
+        const double      beside = 0.1 * std::sqrt(facet.area); // margin: curved elements extend beyond the boxes of their facets
         const auto        visit  = [&](const Leaf &leaf) {
           const Facet  &other  = masters[leaf.second];
           const double  cosine = facet.normal.dot(other.normal);

@@ -13,7 +13,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Smallest part of a tied surface that must be opposite the other one [-].
+    /// Smallest admissible fraction of a tied surface that is opposite the other surface [-].
     constexpr double least_tied = 0.2;
 
     /// Smaller coefficients of a row are rounding errors [-].
@@ -26,7 +26,7 @@ namespace Squeal
       std::vector<unsigned int> numbers;
     };
 
-    /// Faces as in the cells, outwards and with all nodes; @p outer: all outer faces of the mesh.
+    /// Named surface with faces from the cells, outwards and with all nodes; @p outer: all outer faces of the mesh.
     NumberedPatch patch_of(const Mesh &mesh, const std::vector<CellFace> &outer, const std::string &surface)
     {
       std::set<std::array<unsigned int, 4>> named;

@@ -20,17 +20,17 @@ namespace Squeal
 {
   namespace
   {
-    // Numbers of system calls that do not exist on a processor are negative, and ignored
+    // System calls that do not exist on a processor have negative numbers, which libseccomp ignores
     constexpr int forbidden[] = {SCMP_SYS(execve),     SCMP_SYS(execveat),  SCMP_SYS(fork),     SCMP_SYS(vfork),    SCMP_SYS(socket),
                                  SCMP_SYS(socketpair), SCMP_SYS(truncate),  SCMP_SYS(creat),    SCMP_SYS(mkdir),    SCMP_SYS(mkdirat),
                                  SCMP_SYS(mknod),      SCMP_SYS(mknodat),   SCMP_SYS(rename),   SCMP_SYS(renameat), SCMP_SYS(link),
                                  SCMP_SYS(linkat),     SCMP_SYS(renameat2), SCMP_SYS(symlink),  SCMP_SYS(chmod),    SCMP_SYS(fchmodat),
                                  SCMP_SYS(chown),      SCMP_SYS(lchown),    SCMP_SYS(fchownat), SCMP_SYS(symlinkat)};
 
-    // Scripts do not need these; Gmsh itself tries to remove files that it did not create
+    // Calls that fail with EACCES instead of ending the process, because Gmsh tries to remove files that it did not create
     constexpr int removing_files[] = {SCMP_SYS(unlink), SCMP_SYS(unlinkat), SCMP_SYS(rmdir)};
 
-    // Alternatives to the above with arguments that a filter cannot check; callers fall back to the older call
+    // Newer calls with arguments that a filter cannot check: they fail with ENOSYS, and libraries use the older calls
     constexpr int unavailable[] = {SCMP_SYS(clone3), SCMP_SYS(openat2), SCMP_SYS(io_uring_setup)};
 
     void check(const int result)
@@ -42,7 +42,7 @@ namespace Squeal
 
   void confine()
   {
-    // Gmsh's output goes to a file
+    // Limit the size of the file to which Gmsh writes its output
     constexpr rlim_t largest_log = 1 << 24; // [byte]
     const rlimit     file_size{largest_log, largest_log};
     setrlimit(RLIMIT_FSIZE, &file_size);
@@ -58,7 +58,7 @@ namespace Squeal
         check(seccomp_rule_add(filter.get(), SCMP_ACT_KILL_PROCESS, SCMP_SYS(open), 1, SCMP_A1(SCMP_CMP_MASKED_EQ, bit, bit)));
         check(seccomp_rule_add(filter.get(), SCMP_ACT_KILL_PROCESS, SCMP_SYS(openat), 1, SCMP_A2(SCMP_CMP_MASKED_EQ, bit, bit)));
       }
-    // Threads are permitted, programs are not
+    // Permit new threads, but not new processes
     check(seccomp_rule_add(filter.get(), SCMP_ACT_KILL_PROCESS, SCMP_SYS(clone), 1, SCMP_A0(SCMP_CMP_MASKED_EQ, CLONE_THREAD, 0)));
     for (const int call : removing_files)
       check(seccomp_rule_add(filter.get(), SCMP_ACT_ERRNO(EACCES), call, 0));
@@ -74,7 +74,7 @@ namespace Squeal
       const rlimit both{whole, whole};
       setrlimit(resource, &both);
     };
-#if !defined(__SANITIZE_ADDRESS__) // needs more address space than any machine has memory
+#if !defined(__SANITIZE_ADDRESS__) // the sanitizer reserves more address space than any limit allows
     limit(RLIMIT_AS, bytes);
 #endif
     limit(RLIMIT_CORE, 0.);

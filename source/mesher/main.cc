@@ -21,7 +21,7 @@ namespace
 {
   using namespace Squeal;
 
-  /// Sends a reply to the original standard output; output of Gmsh is redirected to the log.
+  /// Sends a reply to the original standard output; Gmsh's output is redirected to the log.
   void send(std::FILE *answer, const MesherReply reply, const std::string &content)
   {
     std::fputc(static_cast<char>(reply), answer);
@@ -30,7 +30,7 @@ namespace
   }
 } // namespace
 
-/// Arguments: file or empty, bytes of memory, seconds, confined or not, then pairs of names and values for DefineNumber.
+/// Arguments: file (may be empty), memory limit [byte], time limit [s], confined or free, then pairs of names and values for DefineNumber.
 int main(int argc, char **argv)
 {
   if (argc < 5)

@@ -16,7 +16,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Runs one step and checks the log: Gmsh continues after most errors, so that a call that returns may have failed.
+    /// Runs one step and checks the log, because Gmsh continues after most errors: a call that returns may have failed.
     void attempt(const std::string &step, const std::function<void()> &action)
     {
       bool failed = false;
@@ -28,7 +28,7 @@ namespace Squeal
         {
           throw;
         }
-      catch (...) // 4.8 throws integers or strings
+      catch (...) // Gmsh 4.8 throws integers or strings
         {
           failed = true;
         }
@@ -38,7 +38,7 @@ namespace Squeal
         throw GmshError("Gmsh failed while " + step);
     }
 
-    /// Elements by their type.
+    /// Elements of a mesh by their type.
     struct Elements
     {
       /// Elements of one entity, or of all entities of a dimension.
@@ -60,8 +60,8 @@ namespace Squeal
       return groups;
     }
 
-    /// True for a mesh format before 4, where every element has its own physical tag in addition to that of its entity. Gmsh gives all
-    /// elements of an entity all groups of any of them, and some converters write a single entity.
+    /// True for mesh formats before 4, in which every element has a physical tag in addition to the tag of its entity. Gmsh adds all
+    /// elements of an entity to the groups of each of them, which is wrong for files with a single entity, as some converters write.
     bool has_physical_tags(const std::string &file)
     {
       std::ifstream stream(file, std::ios::binary);
@@ -115,7 +115,7 @@ namespace Squeal
           throw GmshError("Elements of dimension " + std::to_string(dimension) + " have the negative physical tag " + std::to_string(tag));
     }
 
-    /// Entities of a dimension by the numbers of their physical groups; 0: no group. For @p are_tagged, see has_physical_tags().
+    /// Entities of a dimension by the number of their physical group; 0: no group. @p are_tagged: see has_physical_tags().
     std::map<int, std::vector<int>> physical_groups(const int dimension, const bool are_tagged)
     {
       gmsh::vectorpair entities;
@@ -123,13 +123,13 @@ namespace Squeal
       std::map<int, std::vector<int>> result;
       for (const auto &[d, entity] : entities)
         {
-          std::vector<int> groups = {entity}; // physical tags were read as entity tags
+          std::vector<int> groups = {entity}; // Mesh.SwitchElementTags reads physical tags as entity tags
           if (!are_tagged)
             gmsh::model::getPhysicalGroupsForEntity(dimension, entity, groups);
           if (groups.empty())
             groups = {0};
           for (const int group : groups)
-            result[std::abs(group)].push_back(entity); // negative if a file reverses the entity
+            result[std::abs(group)].push_back(entity); // group numbers are negative if a file reverses the entity
         }
       return result;
     }
@@ -146,7 +146,7 @@ namespace Squeal
       elements.erase(std::remove_if(elements.begin(), elements.end(), is_copy), elements.end());
     }
 
-    /// Groups of one dimension; groups with the same name are merged.
+    /// Physical groups of one dimension; groups with the same name are merged.
     std::vector<GmshMesh::Group> collect_groups(const int                                  dimension,
                                                 const std::map<int, std::vector<int>>     &entities_of_groups,
                                                 const std::map<std::size_t, unsigned int> &nodes)
@@ -197,16 +197,15 @@ namespace Squeal
 
   void start_gmsh()
   {
-    // One of Gmsh's libraries would store preferences in the user's home folder
+    // Prevent one of Gmsh's libraries from storing preferences in the user's home folder
     const char       *variable = std::getenv("HOME");
     const std::string home     = variable != nullptr ? variable : "/";
-    setenv("HOME", "/dev/null", 1); // where not even root can create a folder
+    setenv("HOME", "/dev/null", 1); // not even root can create a folder there
     gmsh::initialize(0, nullptr, /* readConfigFiles */ false);
     setenv("HOME", home.c_str(), 1);
     gmsh::option::setNumber("General.Terminal", 1);
     gmsh::option::setNumber("General.NumThreads", 1);
-    // An exception cannot leave the parallel region in which Gmsh meshes surfaces and would end the program: errors are detected in the log
-    // instead
+    // Detect errors in the log: an exception in the parallel region in which Gmsh meshes surfaces would end the program
     gmsh::option::setNumber("General.AbortOnError", 0);
     gmsh::option::setNumber("Mesh.RandomSeed", 1);
     gmsh::option::setNumber("Mesh.RandomFactor", 1e-9);
@@ -225,7 +224,7 @@ namespace Squeal
     attempt("reading the geometry", [&] {
       gmsh::open(script);
       if (!file.empty())
-        gmsh::merge(file); // not by Include in the script, whose strings end at quotes
+        gmsh::merge(file); // instead of Include in the script, which does not accept paths with quotes
     });
     if (are_tagged)
       check_physical_tags();

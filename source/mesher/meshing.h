@@ -9,7 +9,7 @@
 
 namespace Squeal
 {
-  /// Gmsh failed or reported an error; the message names the step, details are in its log.
+  /// Error of Gmsh; the message names the step, and details are in Gmsh's log.
   class GmshError : public std::runtime_error
   {
   public:
@@ -23,17 +23,17 @@ namespace Squeal
   /// Sets the value for DefineNumber[..., Name "..."]. Throws GmshError.
   void set_number(const std::string &name, double value);
 
-  /// Opens a script that sets variables, then a geometry or mesh if there is one, and meshes what is not meshed yet: a solid as prescribed
-  /// in the file, a plan with quadrilaterals only, every element halved. Groups with the same name are merged. Throws GmshError, and
-  /// std::bad_alloc if memory is exhausted.
+  /// Opens a script that sets variables, then a geometry or mesh file (may be empty), and generates the mesh unless the file contains it:
+  /// for a solid as prescribed in the file, for a plan with quadrilaterals only, with every element halved. Groups with the same name are
+  /// merged. Throws GmshError, and std::bad_alloc if memory is exhausted.
   GmshMesh mesh_geometry(const std::string &script, const std::string &file);
 
   /**
-   * Confines this process: from now on it starts no program, does not write, create, rename or remove files, and opens no connection; open
-   * files remain usable. A forbidden call ends the process by SIGSYS (libseccomp).
+   * Confines this process: it can no longer start programs, write, create, rename or remove files, or open connections. Files that are
+   * already open remain usable. A forbidden call ends the process by SIGSYS (libseccomp).
    *
-   * Gmsh scripts can do all of these by SystemCall, NonBlockingSystemCall, OnelabRun, CreateDir, Save, Print, Printf > "file", and some
-   * plugins and options.
+   * Gmsh scripts could perform these actions by SystemCall, NonBlockingSystemCall, OnelabRun, CreateDir, Save, Print, Printf > "file", and
+   * some plugins and options.
    *
    * Throws std::runtime_error if the system cannot confine a process.
    */

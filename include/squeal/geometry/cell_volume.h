@@ -6,9 +6,10 @@
 
 namespace Squeal
 {
-  /// Volume of a cell, from the map of its nodes [m³].
+  /// Volume of a cell, from its isoparametric map [m³].
   double volume_of(const Mesh &mesh, const Mesh::Cell &cell);
 
-  /// Smallest det(∂x/∂ξ) of that map at the points of quadrature() and, if clearly negative there, at the nodes [m³].
+  /// Smallest det(∂x/∂ξ) of the isoparametric map at the points of quadrature(); values at nodes count only if they are clearly negative
+  /// [m³].
   double worst_determinant(const Mesh &mesh, const Mesh::Cell &cell);
 } // namespace Squeal

@@ -33,9 +33,9 @@ namespace Squeal
     struct Group
     {
       int                                         dimension;
-      int                                         number;   ///< the smallest if several groups share the name
-      std::string                                 name;     ///< empty if the group has only a number
-      std::map<std::string, std::vector<Element>> elements; ///< by Gmsh's name of the type, e.g. "Quadrilateral 4"; ascending by tag
+      int                                         number;   ///< number of the group; the smallest one if several groups share the name
+      std::string                                 name;     ///< name of the group; empty if it has only a number
+      std::map<std::string, std::vector<Element>> elements; ///< by Gmsh's name of the type ("Quadrilateral 4"); ascending by tag
 
       template <typename Archive>
       void serialize(Archive &archive, unsigned int)
@@ -45,10 +45,11 @@ namespace Squeal
     };
 
     std::vector<std::array<double, 3>> points;                        ///< in the order of Gmsh's node tags [m]
-    std::vector<Group>                 groups;                        ///< by dimension, then in the order of their numbers
-    std::size_t                        n_unnamed_volume_elements = 0; ///< 3-D elements in no physical group
+    std::vector<Group>                 groups;                        ///< sorted by dimension, then by number
+    std::size_t                        n_unnamed_volume_elements = 0; ///< number of 3-D elements without a physical group
 
-    /// Missing system feature that keeps Gmsh from being confined (no programs, no file output); empty: confined, or not requested.
+    /// System feature without which Gmsh could not be confined (no programs, no file output); empty if Gmsh was confined, or if this was
+    /// not requested.
     std::string why_not_confined;
 
     /// Highest dimension with a physical group; 0 without groups.
@@ -67,14 +68,14 @@ namespace Squeal
   /// Mesh from to_bytes(). Throws std::length_error if bytes are missing.
   GmshMesh from_bytes(const std::string &bytes);
 
-  /// First byte of the mesher's reply on standard output, before a text or a mesh. The mesher reads its script from standard input.
+  /// First byte of the mesher's reply on standard output; a text or a mesh follows. The mesher reads its script from standard input.
   enum class MesherReply : char
   {
-    mesh          = 'm', ///< a GmshMesh by to_bytes()
-    failure       = 'f', ///< error message of Gmsh
+    mesh          = 'm', ///< a GmshMesh, serialised by to_bytes(), follows
+    failure       = 'f', ///< an error message of Gmsh follows
     out_of_memory = 'o'  ///< nothing follows
   };
 
-  /// Command-line arguments of the mesher: confined by confine() or not.
+  /// Command-line arguments of the mesher: run confined by confine(), or unconfined.
   inline constexpr const char *mesher_confined = "confined", *mesher_free = "free";
 } // namespace Squeal

@@ -42,14 +42,14 @@ namespace Squeal
     unsigned int              degree = 1;
     std::vector<Point>        points; ///< coordinates [m]
     std::vector<Cell>         cells;
-    std::vector<Face>         faces; ///< on named surfaces only; once for each name
+    std::vector<Face>         faces; ///< faces on named surfaces only, once for each name
     std::vector<std::string>  volume_names;
-    std::vector<std::string>  body_names;     ///< the disc's first
-    std::vector<unsigned int> body_of_volume; ///< of each volume, see find_bodies()
+    std::vector<std::string>  body_names;     ///< names of the bodies, the disc first
+    std::vector<unsigned int> body_of_volume; ///< index of the body of each volume, see find_bodies()
     std::vector<std::string>  surface_names;
-    std::vector<TiedPair>     tied;         ///< surfaces that are bonded
-    std::vector<std::string>  notes;        ///< automatic corrections, for the user
-    std::vector<std::size_t>  element_tags; ///< tags of the cells in the file, for messages; empty without a file
+    std::vector<TiedPair>     tied;         ///< pairs of surfaces that are bonded
+    std::vector<std::string>  notes;        ///< notes for the user about automatic corrections
+    std::vector<std::size_t>  element_tags; ///< tags of the cells in the mesh file, for messages; empty without a file
 
     unsigned int body_of(const Cell &cell) const
     {
@@ -65,15 +65,15 @@ namespace Squeal
   /// Number of cells of each shape, as text: "180 tetrahedra, 20 wedges".
   std::string cell_counts(const Mesh &mesh);
 
-  /// Checksum of the nodal coordinates, rounded to 1e-8 of the mesh size or less (about a nanometre for a brake disc): distinguishes meshes
-  /// with equal numbers of nodes.
+  /// Checksum of the nodal coordinates, rounded to 1e-8 of the mesh size or less (about a nanometre for a brake disc). It distinguishes
+  /// meshes with equal numbers of nodes.
   std::uint64_t checksum(const Mesh &mesh);
 
   /**
-   * Finds the bodies: volumes that share nodes or are tied form one body, and so do all volumes of the disc, which comes first; the others
-   * follow in the order of their first volumes. A body of one volume has its name; a body of several volumes has the common beginning of
-   * their names, up to the end of a word, as `pin_1` for `pin_1_lining` and `pin_1_backplate`; without one, or if another part has that
-   * name, the name of the first volume. The disc is `disc`.
+   * Finds the bodies. Volumes that share nodes or are tied form one body; all volumes of the disc form the first body, `disc`. The other
+   * bodies follow in the order of their first volumes. A body of one volume has the name of this volume. A body of several volumes has the
+   * common beginning of their names, up to the end of a word: `pin_1` for `pin_1_lining` and `pin_1_backplate`. If the names have no common
+   * beginning, or if another part has this name, the body has the name of its first volume.
    */
   void find_bodies(Mesh &mesh);
 
@@ -90,22 +90,22 @@ namespace Squeal
     unsigned int                number; ///< index among the faces of the cell
     unsigned int                body;
     unsigned int                n_corners;
-    std::array<unsigned int, 4> corners; ///< nodes, outwards by the right-hand rule; a triangle repeats the last one
+    std::array<unsigned int, 4> corners; ///< nodes, ordered outwards by the right-hand rule; a triangle repeats its last node
     std::array<unsigned int, 4> key;     ///< see face_key()
   };
 
-  /// Key of a face, the same for all faces with these corners: ascending node numbers, the last one twice for a triangle.
+  /// Key of a face, equal for all faces with the same corners: ascending node numbers; the last one is repeated for a triangle.
   std::array<unsigned int, 4> face_key(const Mesh::Face &face);
 
   CellFace face_of_cell(const Mesh &mesh, std::size_t cell, unsigned int number);
 
-  /// Faces of all cells, ascending by key: both sides of an internal face are adjacent.
+  /// Faces of all cells, ascending by key, so that both sides of an internal face are adjacent in the list.
   std::vector<CellFace> all_faces(const Mesh &mesh);
 
   /// Faces that belong to only one cell.
   std::vector<CellFace> outer_faces(const Mesh &mesh);
 
-  /// Centre of a face [m] and its normal times its area [m²], from its corners.
+  /// Centre of a face [m] and its normal times its area [m²], computed from its corners.
   struct FaceGeometry
   {
     Mesh::Point          centre;
@@ -115,30 +115,30 @@ namespace Squeal
   FaceGeometry face_geometry(const Mesh &mesh, const CellFace &face);
   FaceGeometry face_geometry(const Mesh &mesh, const Mesh::Face &face);
 
-  /// Reference coordinates of a point by Newton's method on the isoparametric map; nothing for points farther than about 0.75 of the cell's
-  /// extent. Nodes in the order of the Lagrange element of this shape and degree.
+  /// Reference coordinates of a point by Newton's method on the isoparametric map; nothing for points at a distance of more than about 0.75
+  /// of the cell's extent. The nodes must be in the order of reference_nodes().
   std::optional<Mesh::Point> reference_coordinates(Shape                           shape,
                                                    unsigned int                    degree,
                                                    const std::vector<Mesh::Point> &nodes,
                                                    const Mesh::Point              &point);
 
-  /// Distance of a point inside a cell from the nearest face; negative outside.
+  /// Distance of a point inside a cell from the nearest face; negative outside the cell.
   struct Depth
   {
-    double relative; ///< relative to the extent of the cell across that face [-]
+    double relative; ///< relative to the extent of the cell normal to the face [-]
     double length;   ///< [m]
   };
 
-  /// Number, volume and position of a cell, for messages.
+  /// Text with number, volume and position of a cell, for messages.
   std::string describe_cell(const Mesh &mesh, std::size_t cell);
 
-  /// Mean of the corners [m].
+  /// Mean of the corners of a cell [m].
   Mesh::Point centre(const Mesh &mesh, const Mesh::Cell &cell);
 
-  /// Depth in the cell with straight edges between its corners; nothing if reference_coordinates() fails.
+  /// Depth of a point in a cell, whose edges are assumed straight; nothing if reference_coordinates() fails.
   std::optional<Depth> depth_in_cell(const Mesh &mesh, const Mesh::Cell &cell, const Mesh::Point &point);
 
-  /// Index of a pin among the body names, the disc's first; throws ParameterError naming @p parameter and all pins.
+  /// Index of a pin among the body names, which begin with the disc; throws a ParameterError that names @p parameter and all pins.
   unsigned int pin_number(const std::vector<std::string> &body_names, const std::string &pin, const char *parameter);
 
   /// Physical names common to all geometries.

@@ -15,10 +15,10 @@ namespace Squeal
   {
     double seconds;     ///< wall time [s]
     double bytes;       ///< address space [byte]
-    bool   is_confined; ///< no programs, no files, no network, if the system supports it
+    bool   is_confined; ///< forbids programs, file output and network connections, if the system supports this
   };
 
-  /// A confined process attempted a forbidden action.
+  /// Error: a confined process attempted a forbidden action.
   class ForbiddenAction : public std::runtime_error
   {
   public:
@@ -28,19 +28,20 @@ namespace Squeal
   /// Input of the Gmsh process.
   struct MesherInput
   {
-    std::string                   file;    ///< a mesh or geometry; may be empty
+    std::string                   file;    ///< mesh or geometry file; may be empty
     std::string                   script;  ///< geometry commands that are read first
-    std::map<std::string, double> numbers; ///< values for DefineNumber[..., Name "..."], by this name
+    std::map<std::string, double> numbers; ///< values for DefineNumber[..., Name "..."], by name
   };
 
   /**
    * Opens a geometry or mesh in a separate process, meshes it by mesh_geometry() (a solid if there are physical volumes, else a plan), and
-   * returns the resulting mesh. A crash of Gmsh does not affect this process nor, if confined, the user's files. A confined process does
-   * not inherit the environment, and it ends with this process. No temporary file is created.
+   * returns the resulting mesh. A crash of Gmsh does not affect this process. A confined Gmsh cannot change the user's files. A confined
+   * process does not inherit the environment, and it ends with this process. No temporary file is created.
    *
    * @param where name of the geometry, for error messages
    *
-   * Throws MeshError if Gmsh fails, crashes, exits or exceeds its limits; ForbiddenAction; FileError if the process cannot be started.
+   * Throws MeshError if Gmsh fails, crashes, exits or exceeds its limits; ForbiddenAction if a confined Gmsh attempts a forbidden action;
+   * FileError if the process cannot be started.
    */
   GmshMesh run_mesher(const MesherInput &input, const std::string &where, const MesherLimits &limits);
 } // namespace Squeal

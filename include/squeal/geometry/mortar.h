@@ -14,7 +14,7 @@ namespace Squeal
   struct SurfaceElement
   {
     Shape       shape;
-    Mesh::Nodes nodes; ///< indices into SurfacePatch::points, in the order of reference_nodes(); outwards by the right-hand rule
+    Mesh::Nodes nodes; ///< indices into SurfacePatch::points, in the order of reference_nodes(), outwards by the right-hand rule
   };
 
   /// One side of a contact; all its elements have the same degree.
@@ -27,7 +27,7 @@ namespace Squeal
   /// Nodes with weights [-].
   using NodeWeights = std::vector<std::pair<unsigned int, double>>;
 
-  /// Multiplier j of a slave node; formulas at mortar().
+  /// Multiplier j of a slave node; see mortar() for the formulas.
   struct MortarRow
   {
     unsigned int node;         ///< of the slave
@@ -39,10 +39,10 @@ namespace Squeal
 
   struct Mortar
   {
-    std::vector<MortarRow> rows;         ///< by ascending node; slave nodes without a row are not in contact
-    double                 slave_area;   ///< of all slave elements [m²]
-    double                 overlap_area; ///< part opposite the master [m²]
-    double                 coarseness;   ///< largest ratio of element sizes, slave to opposite master [-]
+    std::vector<MortarRow> rows;         ///< rows by ascending slave node; slave nodes without a row are not in contact
+    double                 slave_area;   ///< area of all slave elements [m²]
+    double                 overlap_area; ///< slave area opposite the master [m²]
+    double                 coarseness;   ///< largest ratio of the size of a slave element to the opposite master elements [-]
     double                 largest_gap;  ///< largest gap or penetration, along the normals of the slave [m]
   };
 
@@ -59,8 +59,8 @@ namespace Squeal
    * meshes match, W = B.
    *
    * On an element ψ = diag(∫ Ñ) (∫ Ñ Ñᵀ)⁻¹ Ñ, so that ∫ ψ_i Ñ_j = δ_ij ∫ Ñ_j. Both integrals extend over the overlap and use the quadrature
-   * points of ∫ ψ_j N_l: linear displacements are exact whatever the quadrature. Ñ = N and B = G = I, except on slaves with 6-node
-   * triangles, where ∫ N vanishes for a corner. There, with α = 1/5,
+   * points of ∫ ψ_j N_l: linear displacements are therefore exact for any quadrature rule. Ñ = N and B = G = I, except on slaves with
+   * 6-node triangles, where ∫ N vanishes for a corner. There, with α = 1/5,
    *
    *     Ñ_v = N_v + α Σ_e N_e,   Ñ_e = (1 − 2 α) N_e,   ũ_v = u_v,   ũ_e = (u_e − α (u_v + u_v')) / (1 − 2 α)
    *     r_v = f_v + α Σ_e f_e,   r_e = (1 − 2 α) f_e
@@ -69,8 +69,8 @@ namespace Squeal
    * edges with triangles; their centre node is unchanged. B u = ũ.
    *
    * At the edge of the overlap D_j may be small or negative. A multiplier with less than a tenth of the ∫ Ñ_j of the whole elements is
-   * added to the neighbour with the largest D: the rows of B and W become their means weighted by D, D and the rows of G are summed.
-   * Slave elements that overlap by less than 2 % carry no multiplier, which keeps ∫ Ñ Ñᵀ invertible; Σ D_j lacks their share.
+   * added to the neighbour with the largest D: the rows of B and W are averaged with the weights D; D and the rows of G are summed. Slave
+   * elements that overlap by less than 2 % carry no multiplier, so that ∫ Ñ Ñᵀ remains invertible; their area is missing in Σ D_j.
    *
    * B. I. Wohlmuth, SIAM J. Numer. Anal. 38 (2000) 989–1012 (dual functions); M. A. Puso, T. A. Laursen, Comput. Methods Appl. Mech.
    * Engrg. 193 (2004) 601–629 (segments); A. Popp, B. I. Wohlmuth, M. W. Gee, W. A. Wall, SIAM J. Sci. Comput. 34 (2012) B421–B446
@@ -88,7 +88,7 @@ namespace Squeal
 
   /// Notes for the user on a coupling of two named surfaces: overlap, and gaps and face sizes that reduce the accuracy.
   std::vector<std::string> coupling_notes(const Mortar      &coupling,
-                                          double             largest_gap, ///< of the slave
+                                          double             largest_gap, ///< see largest_gap() [m]
                                           const std::string &slave,
                                           const std::string &master);
 } // namespace Squeal

@@ -14,7 +14,7 @@ namespace Squeal
   struct PinRings
   {
     unsigned int number  = 0;
-    double       grading = 1.; ///< width of a ring relative to the next outer one
+    double       grading = 1.; ///< width of a ring relative to the next outer ring
   };
 
   /// Mesh inside the outline of a pin.
@@ -25,18 +25,20 @@ namespace Squeal
   };
 
   /**
-   * Fills a closed polygon of 6 k nodes, counter-clockwise, with three blocks of k x k quadrilaterals around its centre: 3 k (k + 1) + 1
-   * nodes in total. The first node and every 2 k-th after it are at the end of a spoke. Appends the new nodes to @p points.
+   * Fills a closed, counter-clockwise polygon of 6 k nodes with three blocks of k x k quadrilaterals around its centre: 3 k (k + 1) + 1
+   * nodes in total. The first node and every 2 k-th node after it are the ends of the spokes between the blocks. Appends the new nodes to
+   * @p points.
    */
   std::vector<Plan::Face> fill_with_o_grid(const std::vector<unsigned int> &loop, std::vector<Plan::Point> &points);
 
   /**
    * Fills a polygon with rings of 6 k quadrilaterals each between the outline and the blocks; each ring adds 6 k nodes.
    *
-   * On a round outline each block has a flat outer corner: its two edges meet at 180 - 60 / k degrees, and at 180 degrees if elements
-   * follow the circle. Stresses are also singular there, at the clamped end of the pin. Rings have right angles at the outline. All rings
-   * except the innermost lie between outlines scaled towards the centre, down to 0.8; the innermost one ends at a triangle with curved
-   * sides, halfway between the arcs and the chords from corner to corner, so that the corners of the blocks have less than 130 degrees.
+   * Without rings, each block has a flat corner on a round outline: its two edges meet at 180 - 60 / k degrees, and at 180 degrees if
+   * elements follow the circle. In addition, stresses at the clamped end of the pin are singular on the outline. Rings have right angles at
+   * the outline. All rings except the innermost lie between outlines scaled towards the centre, down to 0.8; the innermost one ends at a
+   * triangle with curved sides, halfway between the arcs and the chords from corner to corner, so that the angles of the blocks are below
+   * 130 degrees.
    */
   PinGrid fill_pin(const std::vector<unsigned int> &outline, const PinRings &rings, std::vector<Plan::Point> &points);
 } // namespace Squeal

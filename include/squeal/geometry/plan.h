@@ -19,8 +19,8 @@ namespace Squeal
 
   /**
    * Plan view of disc and pins: quadrilaterals that cover the annulus, the faces under each pin, and the named parts of the boundary of the
-   * annulus. A face may be under a top and a bottom pin, even if these are not exactly opposite: both are then displaced from a common
-   * position in the plan.
+   * annulus. A face may be under a top and a bottom pin, even if the pins are not exactly opposite: both pins are then displaced from a
+   * common position in the plan.
    */
   struct Plan
   {
@@ -40,7 +40,7 @@ namespace Squeal
       Side                      side = Side::top;
       std::vector<unsigned int> faces;              ///< indices into Plan::faces, ascending
       Point                     displacement;       ///< from the position in the plan to the position on the disc [m]
-      bool                      is_round   = false; ///< filled by fill_pin(): may rotate about its centre
+      bool                      is_round   = false; ///< true for a pin filled by fill_pin(), which may rotate about its centre
       std::vector<unsigned int> ring_nodes = {};    ///< nodes of the rings inside the outline; not moved by smoothing
     };
 
@@ -62,28 +62,28 @@ namespace Squeal
    * Plan from a meshed two-dimensional model with these physical groups:
    *
    * - surface `disc`: the annulus, with or without the faces under the pins;
-   * - surfaces `pin_top*`, `pin_bottom*`: the faces under that pin;
+   * - surfaces `pin_top*`, `pin_bottom*`: the faces under the pin of this name;
    * - curves `pin_top*`, `pin_bottom*`: a closed curve around a hole of the
    *   surfaces, which is filled by fill_pin();
    * - points `pin_top*`, `pin_bottom*`: centre of the pin of this name on its side of the disc, if it is not the centre of its curve;
-   * - other curves: parts of the annulus' boundary.
+   * - other curves: parts of the boundary of the annulus.
    *
-   * Throws MeshError, naming @p where, for other names and for inconsistent plans: elements other than four-node quadrilaterals,
+   * Throws a MeshError that names @p where for other names and for inconsistent plans: elements other than four-node quadrilaterals,
    * disconnected surfaces, open curves, touching pins on one side, a named curve inside the annulus, no pin.
    */
   Plan make_plan(const GmshMesh &mesh, const PinRings &rings, const std::string &where);
 
   /**
-   * Moves the nodes of round outlines outwards until the polygon has the area of the circle: by √(π r² / A), A the polygon's area with its
-   * nodes on the circle. For n equal sides, θ = 2π/n, the polar moment of area then exceeds the circle's by only θ⁴/180 (4e-4 for 12
-   * sides), and the second moments by as much, while with nodes on the circle area and moments are too small by θ²/6 and θ²/3.
+   * Moves the nodes of round outlines outwards until the polygon has the area of the circle: by the factor √(π r² / A), where A is the area
+   * of the polygon with nodes on the circle. For n equal sides, θ = 2π/n, the polar and second moments of area then exceed the values of
+   * the circle by only θ⁴/180 (4e-4 for 12 sides). With nodes on the circle, the area would be too small by θ²/6, and the moments by θ²/3.
    *
-   * Round outlines are those of pins, or closed named curves of the plan, with all nodes on one circle. The inner nodes of a pin move with
-   * its outline.
+   * Round outlines are outlines of pins and closed named curves of the plan with all nodes on one circle. The inner nodes of a pin move
+   * with its outline.
    */
   void enlarge_to_true_area(Plan &plan);
 
-  /// Edges that belong to only one of the given faces, oriented like that face.
+  /// Edges that belong to only one of the given faces, oriented as in this face.
   std::vector<Plan::Edge> boundary_edges(const std::vector<Plan::Face> &faces);
 
   /// Nodes of faces or edges.
@@ -96,7 +96,7 @@ namespace Squeal
     return nodes;
   }
 
-  /// Edges from a corner of a face to the next corner and to the one before.
+  /// Edges from a corner of a face to the next and to the previous corner.
   struct Corner
   {
     Corner(const Plan::Face &face, unsigned int v, const std::vector<Plan::Point> &points);
@@ -107,7 +107,7 @@ namespace Squeal
 
   /**
    * Extrudes the plan: the disc from z = -thickness/2 to +thickness/2, each pin outwards from the face of its side. Pins have their own
-   * nodes, coincident with those of the disc.
+   * nodes, which coincide with nodes of the disc.
    *
    * Volumes: disc, then the pins in the order of the plan. Surfaces: disc_contact, pin_contact, pin_clamp, pin_side, then one for each
    * curve of the plan.

@@ -9,14 +9,14 @@
 namespace Squeal
 {
   /**
-   * Moves nodes inside the disc and inside the pins until no badly shaped face improves by moving one of its nodes. Nodes on the boundary
-   * of the annulus and on the outlines of pins and their rings are fixed.
+   * Moves nodes inside the disc and inside the pins until no move of a single node improves a badly shaped face. Nodes on the boundary of
+   * the annulus and on the outlines of pins and their rings are fixed.
    *
    * The shape quality at the corner between edges a and b is 2 a x b / (a² + b²): 1 for a square, 0 for a flat corner or an edge of length
    * 0, negative if inverted. A node moves to maximise the smallest quality of the adjacent faces.
    *
-   * Needed because Gmsh halves elements after meshing and then moves new nodes of round outlines onto the circle: with few nodes on a
-   * circle and a close neighbour, the elements in between would be flat or inverted.
+   * Smoothing is necessary because Gmsh halves elements after meshing and then moves new nodes of round outlines onto the circle. If a
+   * circle has few nodes and a close neighbour, the elements in between would be flat or inverted.
    */
   void smooth(Plan &plan);
 
@@ -26,7 +26,7 @@ namespace Squeal
    */
   std::vector<Plan::Point> points_on_side(const Plan &plan, const Plan::Side side);
 
-  /// Nodes that move as a rigid body about a centre: those of a pin.
+  /// Nodes of a pin, which rotate as a rigid body about its centre.
   struct TurningPart
   {
     std::vector<unsigned int> nodes;
@@ -39,12 +39,12 @@ namespace Squeal
    *
    *   Σ (a² + b²) / χ(a × b),  χ(D) = (D + √(ε² + D²)) / 2
    *
-   * for the edges a, b of a corner; ε decreases, so that inverted corners, initially with finite energy, are turned over and cannot invert
-   * again (V. Garanzha, I. Kaporin, L. Kudryavtseva, F. Protais, N. Ray, D. Sokolov, ACM Trans. Graph. 40 (2021) 154).
+   * for the edges a, b of a corner. While ε is large, inverted corners have a finite energy and can be turned over; as ε decreases, they
+   * cannot invert again (V. Garanzha, I. Kaporin, L. Kudryavtseva, F. Protais, N. Ray, D. Sokolov, ACM Trans. Graph. 40 (2021) 154).
    *
-   * Points are unchanged, to the last bit, if no face is bad or bad faces cannot be avoided.
+   * Points are not changed if no face is bad or if bad faces cannot be avoided.
    *
-   * @param fixed nodes that move only with their part
+   * @param fixed nodes that do not move individually
    */
   void untangle(const std::vector<Plan::Face>  &faces,
                 const std::vector<bool>        &fixed,

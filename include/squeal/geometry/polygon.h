@@ -27,7 +27,7 @@ namespace Squeal
     return twice / 2.;
   }
 
-  /// Mean of points, given by their indices, of which there must be at least one [m].
+  /// Mean of points that are given by one or more indices [m].
   dealii::Point<2> mean_point(const std::vector<unsigned int> &nodes, const std::vector<dealii::Point<2>> &points);
 
   struct Circle
@@ -36,7 +36,7 @@ namespace Squeal
     double           radius; ///< [m]
   };
 
-  /// Circle through all points within 1e-6 of its radius, in any unit of length, by linear least squares, x² + y² = 2 a x + 2 b y + c.
-  /// Nothing if there is none, or for fewer than six different points, because four corners of a square also lie on a circle.
+  /// Circle from which all points deviate by at most 1e-6 of its radius, by linear least squares, x² + y² = 2 a x + 2 b y + c. Nothing if
+  /// there is no such circle, or for fewer than six different points, because the four corners of a square also lie on a circle.
   std::optional<Circle> circle_through(const std::vector<dealii::Point<2>> &points);
 } // namespace Squeal

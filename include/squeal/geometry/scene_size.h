@@ -13,14 +13,14 @@
 
 namespace Squeal
 {
-  /// Approximate size of a model; real numbers, because requested sizes may exceed every integer.
+  /// Approximate size of a model. Numbers are real because requested sizes may exceed the largest integer.
   struct ProblemSize
   {
     double cells, dofs, contact_nodes;
     double row_length = 65.; ///< entries of K per dof
 
-    /// Memory of the model up to the computation of modes [byte]: program, matrix entries, factors, columns of K_c^-1 A if kept (one per
-    /// contact node), and modes.
+    /// Memory of the program and the model up to the computation of modes [byte]: matrices, factors, modes, and columns of K_c^-1 A (one
+    /// per contact node) if they are kept.
     double memory(double n_modes) const;
   };
 
@@ -33,14 +33,14 @@ namespace Squeal
   /// Size of a mesh with elements of this degree.
   ProblemSize expected_size(const Mesh &mesh, unsigned int degree);
 
-  /// Throws MeshError with these numbers if the memory exceeds what is available on the machines of the processes.
+  /// Throws a MeshError with these numbers if the memory exceeds the available memory of the machines that run the processes.
   void check_memory(const ProblemSize &size, double n_modes, const std::string &where, MPI_Comm communicator = MPI_COMM_SELF);
 
-  /// True if at least half of the disc's lateral surface is a surface of revolution about z, n·(e_z × x) ≈ 0. Throws MeshError, naming @p
-  /// where, if clearly more of it is one about another axis, found from the second moments of the surface.
+  /// True if at least half of the disc's surface is a surface of revolution about z, n·(e_z × x) ≈ 0. Throws a MeshError that names @p
+  /// where if a clearly larger part is a surface of revolution about another axis, which is found from the second moments of the surface.
   bool is_round_about_z(const Mesh &mesh, const std::string &where);
 
-  /// Throws ParameterError if an element of this @p degree is so long that a shear wave at @p largest_circular_frequency [rad/s] has less
-  /// than one nodal spacing per wavelength: modes at the end of the band would be artefacts of the mesh.
+  /// Throws ParameterError if the nodal spacing of an element of this @p degree exceeds the wavelength of a shear wave at @p
+  /// largest_circular_frequency [rad/s]: modes at the end of the band would be artefacts of the mesh.
   void check_wave_resolution(const Mesh &mesh, const MaterialParameters &materials, unsigned int degree, double largest_circular_frequency);
 } // namespace Squeal

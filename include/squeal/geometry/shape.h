@@ -22,11 +22,11 @@ namespace Squeal
     hexahedron
   };
 
-  /// Corners, edges and faces of a shape, with the numbering of Gmsh. Reference coordinates are those of deal.II: unit triangle and
+  /// Corners, edges and faces of a shape, numbered as in Gmsh. Reference coordinates are the same as in deal.II: unit triangle and
   /// tetrahedron, unit square and cube, wedge = triangle × [0, 1], pyramid on [−1, 1]² with its apex at (0, 0, 1).
   struct Topology
   {
-    const char                          *name; ///< plural
+    const char                          *name; ///< name of the shape, plural
     unsigned int                         dimension;
     std::vector<dealii::Point<3>>        corners;
     std::vector<std::array<unsigned, 2>> edges;
@@ -42,13 +42,13 @@ namespace Squeal
     return n_corners == 3 ? Shape::triangle : Shape::quadrilateral;
   }
 
-  /// Nodes of a Lagrange element of degree 1 or 2: corners; in degree 2 then the middles of edges, centres of quadrilateral faces and of a
-  /// hexahedron.
+  /// Nodes of a Lagrange element of degree 1 or 2: corners; in degree 2 also the middles of edges, then the centres of quadrilateral faces
+  /// and of a hexahedron.
   std::vector<dealii::Point<3>> reference_nodes(Shape shape, unsigned int degree);
 
   inline constexpr unsigned int most_nodes = 27;
 
-  /// Indices of the nodes of a face among those of its cell, in the order of the face's own shape.
+  /// Indices of the nodes of a face in the node list of its cell, in the order of reference_nodes() of the face.
   const std::vector<unsigned int> &nodes_of_face(Shape cell, unsigned int degree, unsigned int face);
 
   /**

@@ -14,11 +14,11 @@ namespace Squeal
   using FaceVector = Eigen::Matrix<double, most_face_nodes, 1>;
   using FaceMatrix = Eigen::Matrix<double, most_face_nodes, most_face_nodes>;
 
-  /// Integrals over the part of a slave element that is opposite the master; entries beyond the nodes are zero.
+  /// Integrals over the part of a slave element that is opposite the master; unused entries are zero.
   struct ElementOverlap
   {
     FaceMatrix                                       mass = FaceMatrix::Zero(); ///< ∫ N_i N_j [m²]
-    std::vector<std::pair<unsigned int, FaceMatrix>> coupling;                  ///< ∫ N_i N_l with each master element [m²]
+    std::vector<std::pair<unsigned int, FaceMatrix>> coupling;                  ///< master elements with ∫ N_i N_l [m²]
 
     double area() const
     {
@@ -28,15 +28,15 @@ namespace Squeal
 
   struct SurfaceOverlap
   {
-    std::vector<ElementOverlap> elements;    ///< of the slave
-    double                      mean_cosine; ///< between the normals of both surfaces, area-weighted; −1 without overlap
+    std::vector<ElementOverlap> elements;    ///< integrals of each slave element
+    double                      mean_cosine; ///< area-weighted mean cosine between the normals of both surfaces; −1 without overlap
     double                      coarseness;  ///< see Mortar
     double                      largest_gap; ///< see Mortar
   };
 
-  /// Sums over segments: intersections of slave and master elements, projected onto the plane of the slave element. Elements of degree 2
-  /// are first divided into four by their nodes. Quadrature points are mapped to both elements along the normal of that plane. Throws
-  /// MeshError if the reference coordinates of a point cannot be found.
+  /// Computes the integrals as sums over segments: intersections of slave and master elements, projected onto the plane of the slave
+  /// element. Elements of degree 2 are first divided into four by their nodes. Quadrature points are mapped to both elements along the
+  /// normal of this plane. Throws MeshError if the reference coordinates of a point cannot be found.
   SurfaceOverlap overlap(const SurfacePatch &slave, const SurfacePatch &master, double search_distance);
 
   /// Integrals over a whole element.

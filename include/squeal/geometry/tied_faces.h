@@ -10,18 +10,19 @@
 
 namespace Squeal
 {
-  /// Nodes on a face that is bonded to another one: their displacements follow from those of other nodes.
+  /// Tied nodes, on faces that are bonded to other faces: their displacements are combinations of displacements of other nodes.
   struct TiedNodes
   {
-    SlaveRows                masters; ///< nodes of the mesh; the coefficients of a row sum to one
+    SlaveRows                masters; ///< rows by node of the mesh; the coefficients of a row sum to one
     std::vector<std::string> notes;   ///< notes on the coupling of the faces, for the user
   };
 
   /**
    * Tied nodes on the first surface of each pair in Mesh::tied: u_j = (Σ_l W_jl u_l − Σ_{i≠j} B_ji u_i) / B_jj in all directions, with W
-   * and B of mortar(). On flat faces linear displacements and constant stresses are transferred exactly. Nodes beyond the overlap are free.
+   * and B from mortar(). On flat faces linear displacements and constant stresses are transferred exactly. Nodes beyond the overlap are
+   * free.
    *
-   * Throws MeshError as mortar() does, for nodes that are tied twice or circularly, and if less than a fifth of a surface overlaps.
+   * Throws MeshError if mortar() fails, for nodes that are tied twice or circularly, and if less than a fifth of a surface overlaps.
    */
   TiedNodes tied_nodes(const Mesh &mesh);
 } // namespace Squeal
