@@ -9,7 +9,7 @@ namespace Squeal
 {
   namespace
   {
-    /// A function of an optional library; null if it is not loaded. The reference BLAS of Debian lacks some.
+    /// A function of an optional library; null if it does not exist: Debian's reference BLAS lacks functions of OpenBLAS.
     template <typename Function>
     Function *loaded(const char *name)
     {

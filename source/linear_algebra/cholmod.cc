@@ -16,10 +16,11 @@ namespace Squeal
 {
   namespace
   {
-    /// Matrix size below which minimum degree is faster overall than nested dissection.
+    /// Matrix size below which the total time is shorter with minimum degree than with nested dissection.
     constexpr int rows_for_dissection = 2000;
 
-    /// Number of right-hand sides in a task, which reads the factor once: enough tasks for all threads, within limits.
+    /// Number of right-hand sides of a task: enough tasks for all threads, but several columns for each, because a task reads the whole
+    /// factor.
     int columns_of_task(const int n_columns)
     {
       constexpr int fewest = 4, most = 32;
@@ -89,7 +90,7 @@ namespace Squeal
       }
 
     private:
-      /// Y from X by a system of equations of the factors, such as CHOLMOD_A or CHOLMOD_Lt.
+      /// Solves a system of equations with the factors for Y; @p system: CHOLMOD_A, CHOLMOD_Lt or CHOLMOD_Pt.
       void solve(const int system, const MultiVector &X, MultiVector &Y) const
       {
         run_parts(X.n_columns(), columns_of_task(X.n_columns()), [&](const int first, const int n) {
@@ -109,7 +110,7 @@ namespace Squeal
         });
       }
 
-      /// CHOLMOD's view of some columns, which it only reads.
+      /// View of columns for CHOLMOD, which does not change them.
       static cholmod_dense columns(const MultiVector &X, const int first, const int n)
       {
         cholmod_dense view = {};
@@ -122,7 +123,7 @@ namespace Squeal
         return view;
       }
 
-      /// Lower triangle by columns, stored as the rows of the upper one.
+      /// Lower triangle in column-major form: the rows of the upper triangle of a symmetric matrix.
       struct Triangle
       {
         explicit Triangle(const SparseMatrix &A)

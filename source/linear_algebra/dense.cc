@@ -20,7 +20,7 @@ namespace Squeal
 
   namespace
   {
-    /// A X, block by block between zero rows.
+    /// A X by blocks of adjacent nonzero rows of X.
     DenseMatrix multiply_sparing_rows(const DenseMatrix &A, const DenseMatrix &X)
     {
       DenseMatrix result  = DenseMatrix::Zero(A.rows(), X.cols());

@@ -58,7 +58,7 @@ namespace Squeal
     SingularValues result{std::vector<double>(k), DenseMatrix::Identity(n, n)};
     if (k == 0)
       return result;
-    // All of V; of the left vectors only as many as needed
+    // Compute all of V, but few left vectors, which are not used
     const bool  is_tall = m >= n;
     DenseMatrix left(m, is_tall ? n : m);
     check_lapack(LAPACKE_dgesdd(LAPACK_COL_MAJOR, is_tall ? 'S' : 'A', m, n, A.data(), m, result.values.data(), left.data(), m,
@@ -75,11 +75,11 @@ namespace Squeal
     if (n == 0)
       return pairs;
 
-    // A = D Q T Qᵀ D⁻¹ by the steps of dgeev, but with vectors of T only for selected values
+    // A = D Q T Qᵀ D⁻¹ by the steps of dgeev, but with eigenvectors only for selected values
     std::vector<double> scale(n), tau(std::max(n - 1, 1)), real(n), imaginary(n);
     lapack_int          low = 0, high = 0;
     check_lapack(LAPACKE_dgebal(LAPACK_COL_MAJOR, 'B', n, A.data(), n, &low, &high, scale.data()), "dgebal");
-    if (high > low) // a single row is in Hessenberg form; LAPACK 3.12 asks for too small a workspace then
+    if (high > low) // skip a single row, which is in Hessenberg form: LAPACK 3.12 requests a workspace that is too small
       check_lapack(LAPACKE_dgehrd(LAPACK_COL_MAJOR, n, low, high, A.data(), n, tau.data()), "dgehrd");
     DenseMatrix Q = A;
     check_lapack(LAPACKE_dorghr(LAPACK_COL_MAJOR, n, low, high, Q.data(), n, tau.data()), "dorghr");
@@ -92,7 +92,7 @@ namespace Squeal
     std::vector<std::complex<double>> of_vectors;
     for (int j = 0; j < n; ++j)
       {
-        const int last = j + (imaginary[j] > 0. ? 1 : 0); // of a conjugate pair
+        const int last = j + (imaginary[j] > 0. ? 1 : 0); // second member of a conjugate pair, or j
         if (is_wanted(pairs.values[j]) || is_wanted(pairs.values[last]))
           {
             selected[j] = 1;
@@ -108,7 +108,7 @@ namespace Squeal
     lapack_int m = 0;
     if (k == 0)
       return pairs;
-    DenseMatrix right = DenseMatrix::Zero(n, k), left = right; // initialised, because LAPACKE checks for NaN
+    DenseMatrix right = DenseMatrix::Zero(n, k), left = right; // initialised because LAPACKE checks its arguments for NaN
     check_lapack(LAPACKE_dtrevc(LAPACK_COL_MAJOR, 'B', 'S', selected.data(), n, A.data(), n, left.data(), n, right.data(), n, k, &m),
                  "dtrevc");
     const auto of_matrix = [&](const DenseMatrix &of_triangle, const char side) {

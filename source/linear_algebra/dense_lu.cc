@@ -11,9 +11,9 @@ namespace Squeal
 {
   namespace
   {
-    /// Reciprocal condition number below which a matrix is singular; singular matrices have 10⁻¹⁷ to 10⁻¹⁵ [-].
+    /// Reciprocal condition number below which a matrix counts as singular; exactly singular matrices have 10⁻¹⁷ to 10⁻¹⁵ [-].
     constexpr double singular_condition = 1e-14;
-    /// The same for Q(λ), which is nearly singular close to an eigenvalue [-].
+    /// Smaller limit for Q(λ), which is nearly singular close to an eigenvalue [-].
     constexpr double singular_complex_condition = 1e-16;
   } // namespace
 
@@ -21,7 +21,7 @@ namespace Squeal
   DenseLU<Matrix>::DenseLU(const Matrix &A)
     : norm(A.size() == 0 ? 0. : A.cwiseAbs().colwise().sum().template maxCoeff<Eigen::PropagateNaN>())
   {
-    // LAPACK's factors of non-finite matrices are undefined
+    // LU factors of matrices with non-finite entries are undefined
     if (!std::isfinite(norm))
       return;
     factors.compute(A);
@@ -51,7 +51,7 @@ namespace Squeal
     return {modulus, std::remainder(argument, 2. * M_PI)};
   }
 
-  // Eigen's own solve accesses the first entry, which a matrix without columns lacks
+  // Eigen's solve() accesses the first entry, which does not exist in a matrix without columns
   template <typename Matrix>
   Matrix DenseLU<Matrix>::solve(const Matrix &B) const
   {
@@ -78,7 +78,7 @@ namespace Squeal
 
   ComplexDenseMatrix balanced(ComplexDenseMatrix A)
   {
-    // A few sweeps suffice; the exact minimum is not needed
+    // Few sweeps are sufficient because the exact minimum is not needed
     for (int sweep = 0; sweep < 5; ++sweep)
       for (Eigen::Index k = 0; k < A.rows(); ++k)
         {

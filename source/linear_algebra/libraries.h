@@ -9,9 +9,9 @@
 
 namespace Squeal
 {
-  // One function per library; only factorization.cc chooses between them
+  // Factorisations of each library; only factorization.cc chooses the library
 
-  /// Supernodal LLᵀ; one process.
+  /// CHOLMOD's supernodal LLᵀ on one process.
   std::unique_ptr<Factorization> cholmod_factorization(const SparseMatrix &A, const std::string &what);
 
   /// MUMPS's LDLᵀ without numerical pivoting (positive definite) or LU (general).

@@ -43,14 +43,14 @@ namespace Squeal
       return pairs.vectors * as_column(pairs.values).cwiseSqrt().cwiseInverse().asDiagonal() * pairs.vectors.transpose();
     }
 
-    /// Whether columns are scaled to unit norm before directions are computed.
+    /// Scaling of the columns before principal axes are computed.
     enum class Scaling
     {
       none,
       unit_norm
     };
 
-    /// Largest ‖WᵀMW − I‖ after which one symmetric orthonormalisation is accurate to rounding [-].
+    /// Largest ‖WᵀMW − I‖ for which one symmetric orthonormalisation is accurate to rounding [-].
     constexpr double nearly_orthonormal = 1e-3;
 
     /// W ← W (WᵀMW)^(-1/2), the orthonormal vectors closest to W; true if W was close enough for one pass.
@@ -68,7 +68,7 @@ namespace Squeal
       return values.front() > 0. ? values.back() / values.front() : std::numeric_limits<double>::infinity();
     }
 
-    /// Nonzero columns of X, scaled, and the @p pairs of their Gram matrix; nothing if all are zero.
+    /// Nonzero columns of X, scaled; nothing if all are zero. @p pairs receives the eigenpairs of their Gram matrix.
     std::optional<MultiVector> scaled_columns(const SparseMatrix &M, MultiVector X, const Scaling scaling, RealPairs &pairs)
     {
       const DenseMatrix   G = weighted_gram(X, M);
@@ -103,8 +103,8 @@ namespace Squeal
                                                 const FirstProjection projection,
                                                 PrincipalAxes        *axes)
     {
-      // A Gram matrix resolves directions down to the square root of the machine precision; with this ratio per pass they are still
-      // accurate
+      // A Gram matrix resolves directions down to the square root of the machine precision. Directions above this ratio of squared norms
+      // are accurate
       const double   resolved     = 1e-10;
       const MPI_Comm communicator = X.communicator(); // before X is moved
 
@@ -117,7 +117,7 @@ namespace Squeal
       };
 
       // Tolerances are relative to the largest direction of the scaled columns
-      RealPairs                  pairs; // of the remaining directions
+      RealPairs                  pairs; // eigenpairs of the Gram matrix of the remaining columns
       std::optional<MultiVector> remaining = scaled_columns(M, std::move(X), scaling, pairs);
       if (!remaining)
         return {};
@@ -126,7 +126,7 @@ namespace Squeal
         *axes = {{}, condition_number(pairs.values)};
       const double smallest = tolerance * tolerance * largest;
 
-      // One projection leaves components of the size of rounding errors, the second none
+      // Project twice: the second projection removes rounding errors of the first
       const auto project_remaining = [&] {
         project(*remaining);
         project(*remaining);
@@ -161,7 +161,7 @@ namespace Squeal
             }
           kept.push_back(std::move(W));
 
-          // Rounding in V leaves traces of the kept directions in the others: project them out
+          // Rounding errors of the eigenvectors leave components of the kept directions in the others: project them out
           if (n_rest > 0)
             {
               remaining.emplace(*remaining * pairs.vectors.leftCols(n_rest));

@@ -26,7 +26,7 @@ namespace Squeal
     /// Memory per row or column, even without entries [byte].
     constexpr double bytes_of_row = 32.;
 
-    /// Words of a text, line by line; errors quote the line.
+    /// Reads a text line by line as words; error messages quote the line.
     class WordReader
     {
     public:
@@ -45,7 +45,7 @@ namespace Squeal
         throw FileError(what, text("file ", path, n_lines > 0 ? text(", line ", n_lines) : ""), change);
       }
 
-      /// The words of the next line that is neither empty nor a comment; nothing at the end.
+      /// The words of the next line that is neither empty nor a comment; no words at the end of the file.
       const std::vector<std::string> &next(const bool with_comments = false)
       {
         words.clear();

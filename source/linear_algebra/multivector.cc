@@ -26,13 +26,13 @@ namespace Squeal
       require(X.n_local_rows() == Y.n_local_rows() && X.n_columns() == Y.n_columns(), operation);
     }
 
-    /// Number of rows in a task; independent of the number of threads, so that sums do not depend on it.
+    /// Number of rows in a task; constant, so that rounding errors of sums do not depend on the number of threads.
     constexpr int rows_together = 8192;
 
-    /// Number of columns copied together.
+    /// Number of columns that are copied together.
     constexpr int columns_of_copy = 8;
 
-    /// Y = X with several threads for large blocks: writing to new memory takes longer than reading.
+    /// Y = X with several threads for large blocks, because the first write to new memory is slow.
     void copy(const Eigen::Ref<const DenseMatrix> &X, Eigen::Ref<DenseMatrix> Y)
     {
       run_parts(static_cast<int>(X.cols()), columns_of_copy,
@@ -266,7 +266,7 @@ namespace Squeal
     const std::vector<double> norms = column_norms(X);
     std::vector<int>          result;
     for (int j = 0; j < X.n_columns(); ++j)
-      if (norms[j] != 0.) // also for NaN
+      if (norms[j] != 0.) // true for NaN
         result.push_back(j);
     return result;
   }
@@ -304,7 +304,7 @@ namespace Squeal
 
   namespace
   {
-    /// Delivery between process 0, which holds all rows, and their owners.
+    /// Delivery between process 0, which has all rows, and their owners.
     RowDelivery from_root(const RowMap &map)
     {
       std::vector<int> numbers(map.rank() == 0 ? map.n() : 0);
@@ -330,7 +330,7 @@ namespace Squeal
 
   DenseMatrix gather(const MultiVector &X)
   {
-    if (is_alone(X.communicator())) // any thread may call gather() then
+    if (is_alone(X.communicator())) // avoids MPI, so that any thread may call gather() in a serial run
       return X.local();
     DenseMatrix whole(X.map().rank() == 0 ? X.map().n() : 0, X.n_columns());
     from_root(X.map()).fetch(X.local(), whole);

@@ -28,11 +28,11 @@ namespace Squeal
       symmetric         = 2
     };
 
-    /// Whether factors are stored; without them the memory is a fraction.
+    /// Selects whether factors are stored; without them, MUMPS uses much less memory.
     enum class Factors
     {
       kept,
-      counted ///< only numbers and signs of pivots
+      counted ///< only numbers and signs of pivots are determined
     };
 
     /// An instance of MUMPS with the factors of one matrix.
@@ -82,7 +82,7 @@ namespace Squeal
 
       double n_factor_entries() const
       {
-        // Negative numbers are in millions
+        // MUMPS reports large numbers as negative millions
         return id.infog[28] >= 0 ? id.infog[28] : -1e6 * id.infog[28];
       }
 
@@ -92,21 +92,21 @@ namespace Squeal
         for (int first = 0; first < X.n_columns(); first += block_size)
           {
             const int n_columns = std::min(block_size, X.n_columns() - first);
-            // Solution rows are distributed like the pivots
+            // MUMPS distributes the rows of the solution like the pivots
             solution.resize(n_solved() * static_cast<std::size_t>(n_columns));
             solved_rows.resize(n_solved());
             id.nrhs      = n_columns;
             id.icntl[8]  = transpose ? 0 : 1;
-            id.icntl[19] = 10; // right-hand sides distributed by rows ...
+            id.icntl[19] = 10; // right-hand sides are distributed by rows
             id.nloc_rhs  = static_cast<int>(own_rows.size());
             id.lrhs_loc  = std::max(1, id.nloc_rhs);
             id.irhs_loc  = address(own_rows);
-            id.rhs_loc   = id.nloc_rhs > 0 ? const_cast<double *>(X.col(first).data()) : &nothing; // MUMPS only reads it
-            id.icntl[20] = 1;                                                                      // ... and so are the solutions
+            id.rhs_loc   = id.nloc_rhs > 0 ? const_cast<double *>(X.col(first).data()) : &nothing; // MUMPS does not change it
+            id.icntl[20] = 1;                                                                      // solutions are distributed by rows
             id.lsol_loc  = std::max(1, n_solved());
             id.isol_loc  = address(solved_rows);
             id.sol_loc   = solution.empty() ? &nothing : solution.data();
-            id.icntl[26] = 32; // columns per block in the solution
+            id.icntl[26] = 32; // number of columns per block in the solution phase
             run(3);
             check("solution");
             for (int &number : solved_rows)
@@ -122,10 +122,10 @@ namespace Squeal
         for (int output : {0, 1, 2})
           id.icntl[output] = -1;
         id.icntl[3]  = 0;
-        id.icntl[17] = 3;     // distributed matrix entries
+        id.icntl[17] = 3;     // matrix entries are distributed
         id.icntl[12] = 1;     // no dense parallel root, which would hide signs of pivots
-        id.icntl[23] = 1;     // report null pivots instead of dividing by them ...
-        id.cntl[2]   = 1e-14; // ... if below this, relative to the scaled matrix
+        id.icntl[23] = 1;     // report null pivots instead of dividing by them
+        id.cntl[2]   = 1e-14; // threshold of null pivots, relative to the scaled matrix
         id.icntl[10] = 0;
         id.icntl[30] = factors == Factors::kept ? 0 : 1;
 
@@ -152,7 +152,7 @@ namespace Squeal
 
         run(1);
         check("analysis");
-        // Pivoting may need more memory than the analysis estimated: increase it and try again
+        // Pivoting may need more memory than the analysis has estimated: increase the memory and try again
         for (int attempt = 0; attempt < 6; ++attempt)
           {
             const ThreadsOfFactorization threads(id.n);
@@ -199,9 +199,9 @@ namespace Squeal
 
       const std::string   what;
       const RowMap        map;
-      std::vector<int>    own_rows, solved_rows; ///< numbered from 1
+      std::vector<int>    own_rows, solved_rows; ///< row numbers, which start at 1
       std::vector<double> solution;              ///< n_solved() × columns of a block
-      double              nothing = 0.;          ///< target of pointers to no rows
+      double              nothing = 0.;          ///< target of pointers on processes without rows
       DMUMPS_STRUC_C      id      = {};
     };
 

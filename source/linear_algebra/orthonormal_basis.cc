@@ -11,11 +11,12 @@ namespace Squeal
 {
   namespace
   {
-    /// Norm of the remainder of a dependent unit vector after Gram-Schmidt [-].
+    /// A unit vector is linearly dependent if its remainder after Gram-Schmidt is below this norm [-].
     constexpr double dependent = 1e-13;
 
-    /// CholeskyQR2: Cholesky factors of XᴴX, twice (T. Fukaya et al., 2014), in a few block products. Nothing if a column has less than
-    /// 10⁻³ of its norm outside the span of the previous ones: squares of such parts are lost in rounding errors.
+    /// CholeskyQR2: Cholesky factors of XᴴX, twice (T. Fukaya et al., 2014), which takes only a few block products. Nothing if the
+    /// component of a column outside the span of the previous columns is below 10⁻³ of its norm, because squares of such components are
+    /// lost in rounding errors.
     std::optional<OrthonormalBasis> basis_by_cholesky(const ComplexDenseMatrix &X)
     {
       constexpr double least_part = 1e-3;
@@ -52,7 +53,7 @@ namespace Squeal
     for (Eigen::Index j = 0; j < X.cols(); ++j)
       {
         const double before = Q.col(j).norm();
-        // Twice is enough (W. Kahan, B. Parlett)
+        // Orthogonalise twice, which is sufficient (W. Kahan, B. Parlett)
         for (int pass = 0; pass < 2 && j > 0; ++pass)
           {
             const ComplexDenseMatrix c = Q.leftCols(j).adjoint() * Q.col(j);

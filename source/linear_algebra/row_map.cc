@@ -42,7 +42,7 @@ namespace Squeal
 
   namespace
   {
-    /// Number of columns sent together: a compromise between the size of the buffers and the number of messages.
+    /// Number of columns in a message: a compromise between the size of the buffers and the number of messages.
     constexpr Eigen::Index columns_at_a_time = 16;
   } // namespace
 

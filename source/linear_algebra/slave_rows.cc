@@ -6,7 +6,7 @@ namespace Squeal
 {
   bool resolve(SlaveRows &rows)
   {
-    constexpr int most_passes = 20; // chains are short unless circular
+    constexpr int most_passes = 20; // chains of slaves are short unless they are circular
     for (int pass = 0; pass < most_passes; ++pass)
       {
         bool is_done = true;

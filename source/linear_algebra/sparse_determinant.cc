@@ -18,7 +18,7 @@ namespace Squeal
   {
     const char *const what = "the determinant of a sparse matrix";
 
-    /// Entries of A at the positions of a pattern that includes its own.
+    /// Entries of A at the positions of a pattern that contains the pattern of A.
     std::vector<double> on_pattern(const SparseRows &pattern, const SparseMatrix &A)
     {
       std::vector<double> values(pattern.nonZeros(), 0.);
@@ -27,7 +27,7 @@ namespace Squeal
           const int *place = pattern.innerIndexPtr() + pattern.outerIndexPtr()[i];
           for (SparseRows::InnerIterator entry(A.by_place(), i); entry; ++entry)
             {
-              // Columns ascend in both
+              // Columns are ascending in both
               while (*place != entry.col())
                 ++place;
               values[place - pattern.innerIndexPtr()] = entry.value();
@@ -36,7 +36,7 @@ namespace Squeal
       return values;
     }
 
-    /// Union of the patterns of all matrices; add() keeps cancelling entries.
+    /// Union of the patterns of all matrices; add() also keeps entries that cancel.
     std::shared_ptr<SparseMatrix> union_pattern(const SparseMatrix &M, const SparseMatrix *C, const SparseMatrix &K)
     {
       auto result = add(1., M, 1., K);
@@ -97,7 +97,7 @@ namespace Squeal
         imaginary[k] = entry.imag();
       }
 
-    // UMFPACK expects columns and gets rows: the determinant is the same
+    // UMFPACK expects columns but receives rows: the determinant of the transpose is the same
     void     *numeric = nullptr;
     const int status  = umfpack_zi_numeric(pattern.outerIndexPtr(), pattern.innerIndexPtr(), real.data(), imaginary.data(),
                                            implementation->symbolic, &numeric, implementation->control.data(), nullptr);

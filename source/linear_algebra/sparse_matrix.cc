@@ -21,8 +21,8 @@ namespace Squeal
   struct SparseMatrix::Halo
   {
     std::vector<int> numbers;   ///< global numbers of the columns, ascending
-    RowDelivery      delivery;  ///< between their owners and this process
-    long long        n_entries; ///< on all processes
+    RowDelivery      delivery;  ///< delivery between the owners of these columns and this process
+    long long        n_entries; ///< number of entries on all processes
 
     int index(const int number) const
     {
@@ -32,7 +32,7 @@ namespace Squeal
 
   namespace
   {
-    /// Rows from unordered entries; duplicates are added.
+    /// Rows from unordered entries; duplicate entries are added.
     SparseRows filled(const int n_rows, const int n_columns, const std::function<void(int, SparseMatrix::Row &)> &fill)
     {
       SparseRows        result(n_rows, n_columns);
@@ -102,7 +102,7 @@ namespace Squeal
     /// Entries by destination process.
     using EntriesOfProcesses = std::map<unsigned int, std::vector<Entry>>;
 
-    /// Sends entries; returns those received by this process.
+    /// Sends entries to other processes and returns the entries received by this process.
     std::vector<Entry> delivered(const MPI_Comm communicator, EntriesOfProcesses sent)
     {
       std::vector<Entry> result;
@@ -118,7 +118,7 @@ namespace Squeal
       return result;
     }
 
-    /// Rows of B referenced by the columns of A, in the order of A's local columns.
+    /// Rows of B that correspond to the local columns of A, in the order of these columns.
     SparseRows rows_for(const SparseMatrix &A, const SparseMatrix &B)
     {
       std::map<unsigned int, std::vector<int>> wanted;
@@ -151,7 +151,7 @@ namespace Squeal
     : row_map(rows)
     , column_map(columns)
   {
-    local.swap(by_number); // Eigen 3.4 copies instead of moving
+    local.swap(by_number); // swap, because a move in Eigen 3.4 copies
     local.makeCompressed();
     local.data().squeeze();
     if (is_alone(rows.communicator()))
@@ -201,7 +201,7 @@ namespace Squeal
         return;
       }
 
-    // Local rows of X or Aᵀ X; halo rows follow the own ones
+    // Local rows of X or Aᵀ X, followed by halo rows
     const RowDelivery &delivery = columns_elsewhere->delivery;
     const int          n_own    = columns().n_local();
     DenseMatrix        here(local.cols(), X.n_columns());

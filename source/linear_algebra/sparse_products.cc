@@ -11,7 +11,7 @@ namespace Squeal
     /// Number of rows in a task.
     constexpr int rows_of_task = 2048;
 
-    /// Computes at most @p width columns of A X in row-major storage, so that each entry of A is read once.
+    /// Computes at most @p width columns of A X in row-major storage, so that each entry of A is read only once.
     template <int width>
     void multiply_columns(const SparseRows &A, const Eigen::Ref<const DenseMatrix> &X, Eigen::Ref<DenseMatrix> Y)
     {
@@ -27,7 +27,7 @@ namespace Squeal
 
   void multiply_rows(const SparseRows &A, const Eigen::Ref<const DenseMatrix> &X, Eigen::Ref<DenseMatrix> Y)
   {
-    // Interleaving rows of X would cost more than the product
+    // Copying X to row-major storage would cost more than the product
     if (X.cols() == 1 || A.nonZeros() < X.rows())
       {
         run_parts(A.rows(), rows_of_task, [&](const int first, const int n) { Y.middleRows(first, n) = A.middleRows(first, n) * X; });

@@ -14,7 +14,7 @@ namespace Squeal
 
   namespace
   {
-    /// A free dof of an element, or of masters of its tied nodes, and its local row; -1 for rows of other processes.
+    /// A free dof of an element, or of a master of its tied nodes, with its local row; -1 for rows of other processes.
     struct FreeDof
     {
       unsigned int in_element;
@@ -26,11 +26,11 @@ namespace Squeal
     struct Contribution
     {
       const NodalElement  *element;
-      std::vector<FreeDof> dofs; ///< clamped dofs are not integrated
+      std::vector<FreeDof> dofs; ///< free dofs of the element; clamped dofs are omitted
     };
 
-    /// Elements with at least one local row. Elements at partition boundaries are integrated by several processes, so that no matrix
-    /// entries are sent.
+    /// Elements with one or more local rows. Several processes integrate the elements at partition boundaries, so that no matrix entries
+    /// are sent.
     std::vector<Contribution> contributions(const Model &model, const std::vector<const NodalElement *> &elements)
     {
       std::vector<Contribution> result;
@@ -66,11 +66,11 @@ namespace Squeal
       pattern.copy_from(rows);
     }
 
-    /// Number of elements per thread task, and number of element matrices stored until they are added.
+    /// Number of elements in a task, and number of element matrices that are stored before they are added.
     constexpr int elements_of_task = 256, elements_together = 8 * elements_of_task;
 
-    /// Sums over all elements, in blocks: threads first integrate different elements, then add to different matrices, always in the order
-    /// of the elements.
+    /// Integrates and assembles blocks of elements: threads first integrate different elements, then add element matrices to different
+    /// matrices, always in the order of the elements.
     void integrate_and_add(const Model                               &model,
                            const std::vector<Contribution>           &contributions,
                            const std::vector<ElementIntegral>        &integrals,
@@ -124,7 +124,7 @@ namespace Squeal
     std::vector<std::shared_ptr<const SparseMatrix>> result(matrices.size());
     const auto                                       convert = [&](const int k) {
       result[k] = std::make_shared<SparseMatrix>(map, map, [&matrix = matrices[k]](const int i, SparseMatrix::Row &row) {
-        // Omit directions without coupling in a mass, and the diagonal that deal.II adds in rows of other bodies
+        // Omit zeros: directions that are not coupled in a mass matrix, and the diagonal that deal.II adds to rows of other bodies
         for (auto entry = matrix.begin(i); entry != matrix.end(i); ++entry)
           if (entry->value() != 0.)
             row.emplace_back(entry->column(), entry->value());
@@ -138,7 +138,7 @@ namespace Squeal
       run_tasks(n, convert);
     else
       for (int k = 0; k < n; ++k)
-        convert(k); // collective
+        convert(k); // collective, therefore not in tasks
     return result;
   }
 } // namespace Squeal

@@ -13,7 +13,7 @@ namespace Squeal
   {
     constexpr unsigned int n_modes = 9;
 
-    /// A displacement field with a single component.
+    /// A displacement field in a single direction.
     struct Displacement
     {
       unsigned int component;
@@ -80,7 +80,7 @@ namespace Squeal
           for (unsigned int j = 0; j < m; ++j)
             modes(i, j) = full(n + i, n + j);
         }
-      // L⁻¹ K_αu: its square is exactly symmetric
+      // L⁻¹ K_αu: the product of its transpose with itself is exactly symmetric
       const DenseMatrix half = modes.llt().matrixL().solve(coupling);
       for (unsigned int i = 0; i < n; ++i)
         for (unsigned int j = 0; j <= i; ++j)

@@ -16,7 +16,7 @@ namespace Squeal
 
   namespace
   {
-    /// Rejects an inverted element, which curved edges may cause even if straight ones do not.
+    /// Rejects an inverted element. Curved edges may invert an element that is correct with straight edges.
     void check_orientation(const ElementValues &values, const std::string &volume)
     {
       Point<3> centre;
@@ -168,7 +168,7 @@ namespace Squeal
     for (unsigned int volume = 0; volume < model.volume_names().size(); ++volume)
       for (Term &term : volume_terms(model, volume, materials.of(model.volume_names()[volume])))
         bodies.terms.push_back(std::move(term));
-    std::map<std::pair<std::string, int>, Matrix> matrices; // springs and dashpots of a surface share their matrix
+    std::map<std::pair<std::string, int>, Matrix> matrices; // by surface and direction: springs and dashpots use the same matrix
     for (const MountParameter &mount : mount_parameters(materials))
       {
         auto &matrix = matrices[{mount.surface, mount.direction}];

@@ -188,7 +188,7 @@ namespace Squeal
         SparsityTools::partition(pattern, n_processes, process_of_cell);
       }
 
-      /// Numbers nodes in the order of the cells; a node belongs to the first process that has a cell with it.
+      /// Numbers nodes in the order of the cells; a node belongs to the first process that has a cell with this node.
       void number_nodes()
       {
         constexpr unsigned int nobody = -1;

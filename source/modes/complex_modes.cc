@@ -71,7 +71,7 @@ namespace Squeal
     if (k == 0)
       return;
 
-    // Ascending frequency; for equal frequencies the stable mode first
+    // Ascending frequency; for equal frequencies, the mode with the smaller growth rate first
     std::vector<int> order(k);
     std::iota(order.begin(), order.end(), 0);
     constexpr double equal = 1e-9;
@@ -100,7 +100,7 @@ namespace Squeal
     if (modes.left_real_part)
       normalize(*system.mass, *modes.left_real_part, *modes.left_imaginary_part);
 
-    // Residuals of a few modes at a time: all of them would dominate the memory
+    // Compute residuals of a few modes at a time to limit the memory
     constexpr int modes_together = 16;
     modes.residuals.resize(k);
     modes.energy_residuals.resize(k);

@@ -22,7 +22,7 @@ namespace Squeal
     /// Number of terms above which the series counts as divergent.
     constexpr int most_terms = 400;
 
-    /// (1 − r) / (1 + r) and r of the series at λ.
+    /// u = (1 − r) / (1 + r) and r of the series at λ.
     struct Ratio
     {
       Ratio(const Complex lambda, const double deflation_square, const double shift)
@@ -33,7 +33,7 @@ namespace Squeal
       Complex r, u;
     };
 
-    /// The diagonal of diag(d); ones without weights.
+    /// d of a term; ones if the term has no weights.
     DenseMatrix weights_of(const Term &term, const ParameterValues &values)
     {
       return term.weighted(DenseMatrix(DenseMatrix::Ones(term.right->rank(), 1)), values);
@@ -48,7 +48,7 @@ namespace Squeal
                              [](const int n, const LowRankFactor *factor) { return n + factor->rank(); });
     }
 
-    /// Calls @p action with blocks of columns of E and the index of their first column.
+    /// Calls @p action for blocks of columns of E, with the index of their first column.
     void for_chunks(const Factors &factors, const std::function<void(const MultiVector &, int)> &action)
     {
       int offset = 0;
@@ -73,11 +73,11 @@ namespace Squeal
       return result;
     }
 
-    /// P (K + s M)⁻¹ for sets of vectors, P the M-orthogonal projection onto the complement of the modes Φ, if there are any.
+    /// The operator P (K + s M)⁻¹, where P is the M-orthogonal projection onto the complement of the modes Φ.
     struct ComplementInverse
     {
       const LinearOperator      &inverse;
-      const MultiVector         *modes;            ///< Φ; null for none
+      const MultiVector         *modes;            ///< Φ; null if there are no modes
       std::optional<MultiVector> mass_times_modes; ///< M Φ
 
       MultiVector operator*(const MultiVector &F) const
@@ -137,7 +137,7 @@ namespace Squeal
     if (Phi != nullptr && n_rows > 0)
       modes_forces = transpose_times(factors, *Phi).transpose().cast<Complex>();
 
-    // Norms, and number of terms
+    // Norms and number of terms
     for (Block &block : blocks)
       block.norm = max_norm(weights_of(*block.term, system.values)) *
                    norm_on_complement({block.term->right.get()}, complement_inverse, M.communicator());
@@ -150,7 +150,7 @@ namespace Squeal
         throw SolverError("a series of " + std::to_string(most_terms) + " terms does not reach the tolerance",
                           "determinant condensed to the contact nodes", "use more real modes");
 
-    // Moments: T_{k+1} = 2 (2 w H − I) T_k − T_{k−1}. H amplifies rounding errors in the modes: they are projected out in every step
+    // Moments: T_{k+1} = 2 (2 w H − I) T_k − T_{k−1}. Project in every step, because H amplifies rounding errors in the modes
     for (Block &block : blocks)
       block.moments.assign(n_moments, DenseMatrix(block.term->right->rank(), n_rows));
     const double w = deflation_square + shift;
@@ -229,7 +229,7 @@ namespace Squeal
   double CondensedDeterminant::truncation(const Complex lambda, const double mu) const
   {
     const ParameterValues values = system.at(mu);
-    // Σ_{k ≥ n} 2 |u|ᵏ / |r|
+    // Sum of the omitted terms, Σ_{k ≥ n} 2 |u|ᵏ / |r|
     const Ratio  ratio(lambda, deflation_square, shift);
     const double u = std::abs(ratio.u), tail = 2. * std::pow(u, n_moments) / (1. - u) / std::abs(ratio.r);
     double       rows = 0.;

@@ -21,14 +21,14 @@ namespace Squeal
 
     const char *const place = "count of complex modes by the argument principle";
 
-    /// Largest ‖ΔN N⁻¹‖ at the points; between them N⁻¹ may be twice as large [-].
+    /// Largest ‖ΔN N⁻¹‖ at the points of the contour; between the points, N⁻¹ may be twice as large [-].
     constexpr double largest_truncation = 0.25;
 
     /// First and smallest bound of the truncation error of N; the latter is limited by rounding [-].
     constexpr double first_tolerance = 1e-7, least_tolerance = 1e-13;
 
-    /// Shorter steps, relative to ω_high, mean that a zero lies on the contour; also the smallest distance of a real mode from its ends
-    /// [-].
+    /// Shorter steps, relative to ω_high, indicate that a zero lies on the contour. Also the smallest distance of a real mode from ω_low
+    /// and ω_high [-].
     constexpr double shortest_step = 1e-9;
 
     /// Corners of the contour, counterclockwise, and number of its repetitions by symmetry.
@@ -110,7 +110,7 @@ namespace Squeal
       return whole;
     }
 
-    /// Number of real modes inside, by inertia.
+    /// Number of real modes inside the contour, by inertia.
     int n_frictionless_modes(const CoupledSystem &system, const Contour &contour)
     {
       const auto below = [&](const double omega) {
@@ -119,7 +119,7 @@ namespace Squeal
       return below(contour.high) - below(contour.low);
     }
 
-    /// Checks that no real mode is on the contour, and that as many are inside as counted by inertia.
+    /// Checks that no real mode is on the contour, and that the number of real modes inside equals the count by inertia.
     void check_real_modes(const SymmetricModes &modes, const Contour &contour, const int n_frictionless)
     {
       int n_inside = 0;
@@ -144,7 +144,7 @@ namespace Squeal
     {
       const SparseMatrix &K = *system.stiffness, &M = *system.mass;
 
-      // Real modes, and the inverse for them and for the series
+      // Real modes, and the inverse that is used for them and for the series
       progress.update("real modes beyond the band");
       SymmetricModesOptions real = options.real_modes;
       if (real.what == SymmetricModesOptions().what)

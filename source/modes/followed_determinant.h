@@ -21,12 +21,12 @@ namespace Squeal
   /// An attempted step to another point of the contour.
   struct Step
   {
-    double size;               ///< acceptable up to 1; approximately proportional to the length
-    double phase;              ///< of the determinant [rad]
-    double largest_phase = 0.; ///< largest phase of its factors [rad]
+    double size;               ///< size of the step: acceptable up to 1, approximately proportional to the length
+    double phase;              ///< change of the determinant's phase [rad]
+    double largest_phase = 0.; ///< largest change of phase of a factor of the determinant [rad]
   };
 
-  /// A determinant followed along the contour.
+  /// A determinant whose phase is followed along the contour.
   class FollowedDeterminant
   {
   public:
@@ -38,7 +38,7 @@ namespace Squeal
     /// Moves to the point of the last attempt.
     virtual void accept() = 0;
 
-    /// Largest permitted step, regardless of Step::size [rad/s].
+    /// Upper limit of the next step in addition to Step::size [rad/s].
     virtual double longest_step(const std::complex<double>) const
     {
       return std::numeric_limits<double>::infinity();
@@ -47,14 +47,14 @@ namespace Squeal
     int n_points = 0;
   };
 
-  /// Limit for ‖F‖_F of a step. Between its ends F may be larger, but must stay below 1 [-].
+  /// Limit for ‖F‖_F of a step. Within the step, F may be larger but must be below 1 [-].
   constexpr double largest_change = 0.5;
 
-  /// Determinant of a small matrix.
+  /// Follows the determinant of a small matrix.
   class FollowedDense : public FollowedDeterminant
   {
   public:
-    /// The matrix A at a point and, for an error bound, factors of its inverse.
+    /// The matrix A at a point, with the coefficients of an error bound.
     struct Sample
     {
       ComplexDenseMatrix                matrix;
@@ -64,7 +64,7 @@ namespace Squeal
     };
     using Function = std::function<Sample(std::complex<double>)>;
 
-    /// @param poles of the matrix on the positive imaginary axis; steps are limited near them
+    /// @param poles poles ω of the matrix on the positive imaginary axis; steps are limited near them
     FollowedDense(Function function, std::vector<double> poles, const double largest_phase_step, MPI_Comm comm)
       : function(std::move(function))
       , poles(std::move(poles))
@@ -87,7 +87,7 @@ namespace Squeal
       F                         = current.factors->solve(F);
       F.diagonal().array() -= 1.;
       const std::complex<double> trace = F.trace();
-      // A NaN must not reach LAPACK
+      // Balance finite matrices only: a NaN must not reach LAPACK
       const double norm         = F.norm();
       const auto [size, phase]  = agreed_pair(std::isfinite(norm) ? std::min(norm, balanced(F).norm()) : norm, trace.imag());
       constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -99,7 +99,7 @@ namespace Squeal
       step.phase = next.argument - current.argument;
       step.phase += 2. * M_PI * std::round((phase - step.phase) / (2. * M_PI));
       step.largest_phase = std::abs(step.phase);
-      // Phase differs from the trace by more than the bound: one of them has a large rounding error
+      // If the phase differs from the trace by more than the bound, one of them has a large rounding error
       if (!(std::abs(step.phase - phase) <= -std::log(1. - size) - size + 1e-6))
         return {infinity, 0.};
       step.size = std::max(step.size, step.largest_phase / largest_phase_step);
@@ -114,13 +114,13 @@ namespace Squeal
 
     double longest_step(const std::complex<double> lambda) const override
     {
-      double distance = std::numeric_limits<double>::infinity(); // to the nearest pole ±iω
+      double distance = std::numeric_limits<double>::infinity(); // distance to the nearest pole ±iω
       for (const double omega : poles)
         distance = std::min(distance, std::hypot(lambda.real(), std::abs(lambda.imag()) - omega));
       return 0.5 * distance;
     }
 
-    double error = 0.; ///< largest bound so far
+    double error = 0.; ///< largest error bound of all accepted points
 
   private:
     struct Point
@@ -138,7 +138,7 @@ namespace Squeal
       std::tie(next.argument, next.error) = agreed_pair(next.factors->log_determinant().imag(), sample.offset + sample.factor * norm);
     }
 
-    /// All processes compute the same; steps are decided by the values of process 0.
+    /// Values of process 0: all processes perform the same computation, but must take identical steps in spite of rounding errors.
     std::pair<double, double> agreed_pair(const double first, const double second) const
     {
       const std::vector<double> values = agreed(comm, {{first, second}, {}}).values;

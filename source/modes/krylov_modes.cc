@@ -14,7 +14,7 @@ namespace Squeal
 {
   namespace
   {
-    /// All terms with a power of λ, applied individually: their sum would be another matrix of the size of K.
+    /// Sum of all terms with one power of λ, which are applied individually: a matrix of the sum would need as much memory as K.
     struct SumOfTerms : LinearOperator
     {
       SumOfTerms(const CoupledSystem &system, const ParameterValues &values, const int power)
@@ -38,7 +38,7 @@ namespace Squeal
       const int              power;
     };
 
-    /// True if the symmetric factor of UpdatedInverse, for the values of the system, equals Q(s) at other values except for friction.
+    /// True if UpdatedInverse, whose factor is for the values of the system, also gives Q(s)⁻¹ at these values.
     bool is_in_factor(const CoupledSystem &system, const ParameterValues &values, const double shift)
     {
       return std::all_of(system.terms.begin(), system.terms.end(), [&](const Term &term) {
@@ -47,7 +47,7 @@ namespace Squeal
       });
     }
 
-    /// Modes at the friction coefficient @p mu, with Q(s)⁻¹ from @p inverse if it covers all terms, else from LU factors.
+    /// Modes at the friction coefficient @p mu, with Q(s)⁻¹ from @p inverse if it includes all terms, else from LU factors.
     ComplexModes attempt(const CoupledSystem         &system,
                          const std::vector<Term>     &sparse,
                          const ParameterValues       &values,
@@ -107,7 +107,7 @@ namespace Squeal
     options.expected                   = n_expected;
     options.close_vectors              = real_modes;
     options.tolerance                  = parameters.complex_tolerance;
-    // Without damping, modes of equal frequency on all pins remain a cluster, which a narrower block finds only in parts
+    // Without damping, modes of equal frequency on all pins form a cluster, which a narrower block might not find completely
     options.block_size     = pencil.damping ? 8 : 12;
     options.stiffness_norm = norm_bound(sparse, values, 0);
     options.damping_norm   = norm_bound(sparse, values, 1);
@@ -120,8 +120,8 @@ namespace Squeal
       }
     catch (const SolverError &)
       {
-        // Close to the friction coefficient of a static instability K̃ is almost singular, and its inverse amplifies rounding errors: a
-        // shift helps. For another reason, the next attempt reports it
+        // Close to a static instability, K̃ is almost singular, and its inverse amplifies rounding errors: try a shift. If there is another
+        // reason, the next attempt throws
         if (shift != 0. || has_full_terms)
           throw;
         options.shift = band.end / band_per_stabilizing_shift;

@@ -12,7 +12,7 @@ namespace Squeal
   {
     using Complex = std::complex<double>;
 
-    /// Re(uᴴ A u) over the dofs of each component; zeros without a matrix.
+    /// Re(uᴴ A u) over the dofs of each component; zeros if A is null.
     std::vector<double> forms(const Model                               &model,
                               const std::shared_ptr<const SparseMatrix> &A,
                               const MultiVector                         &re,
@@ -30,7 +30,7 @@ namespace Squeal
       return result;
     }
 
-    /// Displacements of one side of the contact nodes, 3 × n_c, on every process.
+    /// Complex displacements of one side of the contact nodes, 3 × n_c, on every process.
     Eigen::Matrix3Xcd displacements(const ContactInterface &interface,
                                     const WeightedNodes ContactNode::*const side,
                                     const MultiVector                      &re,
@@ -95,7 +95,7 @@ namespace Squeal
     const auto   reactions          = normal_reactions(coupled, {lambda}, real_part, imaginary_part);
     const double speed              = std::norm(lambda); // |λ|²
     const double energy  = (speed * total(forms(model, bodies.mass, re, im)) + total(forms(model, bodies.stiffness, re, im))) / 4.;
-    const double to_rate = 1. / (2. * lambda.imag() * energy); // converts a power to a contribution to ξ
+    const double to_rate = 1. / (2. * lambda.imag() * energy); // converts a power into a contribution to ξ
 
     PowerBalance result;
     result.bodies = forms(model, bodies.damping, re, im);

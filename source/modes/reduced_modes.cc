@@ -15,10 +15,10 @@ namespace Squeal
   {
     using Complex = std::complex<double>;
 
-    /// |Im λ| relative to the end of the band, up to which λ is real: rounding splits a multiple real λ into pairs [-].
+    /// λ is real up to this |Im λ| relative to the end of the band: rounding splits a multiple real λ into complex pairs [-].
     constexpr double real_in_band = 1e-7;
 
-    /// Smallest basis for which separating the modes of the band first pays off [vectors].
+    /// Smallest number of basis vectors for which separating the modes of the band saves time.
     constexpr int least_separated = 64;
 
     bool is_real(const Complex lambda, const double largest_circular_frequency)
@@ -26,7 +26,7 @@ namespace Squeal
       return !(std::abs(lambda.imag()) / largest_circular_frequency > real_in_band);
     }
 
-    /// |λ|² up to this is zero: rounding errors of K_c or of the stiffest basis vector [rad²/s²].
+    /// |λ|² up to this limit counts as zero: rounding errors of K_c or of the stiffest basis vector [rad²/s²].
     double hidden_square(const ReducedModel &model)
     {
       constexpr double rounding = 100. * std::numeric_limits<double>::epsilon();
@@ -34,12 +34,12 @@ namespace Squeal
       return std::max(model.full_order().hidden_square, rounding * stiffest);
     }
 
-    /// Keeps only oscillating modes: treats spurious real eigenvalues as zero, moves real ones to their list, and counts zeros of
-    /// rigid-body motions.
+    /// Keeps only oscillating modes: moves real eigenvalues to their list, and counts zeros of rigid-body motions and spurious real
+    /// eigenvalues.
     void separate_real(ReducedModes &modes, const ReducedModel &model, const double largest_circular_frequency)
     {
       const double hidden = hidden_square(model);
-      // An oscillating value and its conjugate are treated alike
+      // modes.lambda contains one eigenvalue of each conjugate pair: count both
       std::vector<int> others;
       for (std::size_t j = 0; j < modes.lambda.size(); ++j)
         if (const Complex l = modes.lambda[j]; !(std::norm(l) > hidden))
@@ -52,7 +52,7 @@ namespace Squeal
         modes = selected(modes, others);
 
       auto &values = modes.real_values;
-      // Real λ below a fraction of the band's end are creep motions: they count as zeros
+      // Real λ below zero_frequency times the end of the band are creep motions and count as zeros
       const auto end = std::remove_if(values.begin(), values.end(),
                                       [&](const double l) { return !(std::abs(l) / largest_circular_frequency > zero_frequency); });
       modes.n_zeros += static_cast<int>(values.end() - end);
@@ -78,7 +78,7 @@ namespace Squeal
       agree(communicator, modes.real_values.data(), counts[1]);
     }
 
-    /// Pencil of the model, without modes.
+    /// Result with the pencil of the model, but without modes.
     ReducedModes without_modes(const ReducedModel &model, const ParameterValues &values)
     {
       ReducedModes modes;
@@ -154,7 +154,7 @@ namespace Squeal
                                                   const ParameterValues &values,
                                                   const double           largest_circular_frequency)
   {
-    // With few vectors, or without a frequency limit, separation saves nothing
+    // With few vectors or without a frequency limit, separation does not save time
     if (model.size() < least_separated || !std::isfinite(largest_circular_frequency))
       return {};
     const ReducedModel::Modal &modal  = model.modal();

@@ -66,7 +66,7 @@ namespace Squeal
     SymmetricModesOptions options = real_modes_options(solvers, "real modes of the coupled system", shift);
     options.count                 = count;
     options.block_size            = block_size;
-    // The same factor is used, unless the shift includes damping in it
+    // Use the same factor, unless it includes damping because of the shift
     if (shift == 0. || !system.has_damping())
       options.inverse = result.inverse.get();
     result.real              = symmetric_modes(*system.stiffness, *system.mass, count.limit, options);
@@ -87,7 +87,7 @@ namespace Squeal
     ContourOptions options     = contour_of_band(band);
     options.method             = contour_method(system);
     options.real_modes         = real_modes_options(solvers, "real modes beyond the band", frictionless.shift);
-    options.real_modes.inverse = &frictionless.inverse->frictionless(); // of the undamped system
+    options.real_modes.inverse = &frictionless.inverse->frictionless(); // inverse of the undamped system
     return options;
   }
 } // namespace Squeal

@@ -5,9 +5,9 @@
 namespace Squeal
 {
   /**
-   * Sets the number of threads of dense kernels in this process if the BLAS library is OpenBLAS. Threads pay off only on idle cores: they
-   * made a factorisation 15 times slower while other processes used the cores. Returns the number reported by the library, 0 if it is not
-   * OpenBLAS.
+   * Sets the number of threads of dense kernels in this process if the BLAS library is OpenBLAS. More threads are faster only on idle
+   * cores: a factorisation was 15 times slower with several threads while other processes used the cores. Returns the number reported by
+   * the library, 0 if it is not OpenBLAS.
    */
   int set_blas_threads(int n_threads);
 
@@ -17,9 +17,9 @@ namespace Squeal
   /// Number of rows above which the fronts of a factorisation are large enough for several threads.
   constexpr int rows_of_large_matrices = 100000;
 
-  /// During its lifetime, BLAS uses the threads of tasks if the matrix to be factorised is large enough. Otherwise OpenMP regions started
-  /// by this thread are serial: CHOLMOD would use four threads for every front, regardless of OMP_NUM_THREADS, which spend more time
-  /// waiting than working.
+  /// Sets the threads of a factorisation during the lifetime of this object. If the matrix is large enough, BLAS uses as many threads as
+  /// tasks do. Otherwise OpenMP regions started by this thread are serial: CHOLMOD would use four threads for every front, regardless of
+  /// OMP_NUM_THREADS, and these would mostly wait.
   class ThreadsOfFactorization
   {
   public:
@@ -29,7 +29,7 @@ namespace Squeal
     ThreadsOfFactorization &operator=(const ThreadsOfFactorization &) = delete;
 
   private:
-    int blas_before   = 0;  ///< 0: unchanged
-    int levels_before = -1; ///< nesting levels of parallel regions; -1: unchanged
+    int blas_before   = 0;  ///< previous number of BLAS threads; 0: unchanged
+    int levels_before = -1; ///< previous nesting level of parallel regions; -1: unchanged
   };
 } // namespace Squeal

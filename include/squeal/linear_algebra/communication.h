@@ -16,7 +16,7 @@ namespace Squeal
   /// True if this is the only process. Needs no MPI call in a serial run, so that any thread may call it.
   bool is_alone(MPI_Comm communicator);
 
-  /// Replaces n numbers, double or int, by their sums, or minima, over the processes.
+  /// Replace n numbers (double or int) by their sums or minima over all processes.
   template <typename Number>
   void sum_over_processes(MPI_Comm communicator, Number *values, std::size_t n);
   template <typename Number>
@@ -28,8 +28,8 @@ namespace Squeal
   /// Broadcasts bytes from process 0.
   void copy_from_root(MPI_Comm communicator, void *bytes, std::size_t n);
 
-  /// Broadcasts n numbers from process 0. Identical computations may round differently on different processes; decisions must use the same
-  /// bits.
+  /// Broadcasts n numbers from process 0. Identical computations may round differently on different processes, but decisions must be based
+  /// on identical numbers.
   template <typename Number>
   void agree(const MPI_Comm communicator, Number *values, const std::size_t n)
   {

@@ -10,11 +10,11 @@
 
 namespace Squeal
 {
-  /// Small dense matrices, identical on every process: reduced quantities and contact nodes, never n × n.
+  /// Small dense matrices, identical on every process, for reduced models and contact nodes; never n × n.
   using DenseMatrix        = Eigen::MatrixXd;
   using ComplexDenseMatrix = Eigen::MatrixXcd;
 
-  /// Numbers as a column; a view.
+  /// View of numbers as a column.
   template <typename Number>
   Eigen::Map<const Eigen::Matrix<Number, Eigen::Dynamic, 1>> as_column(const std::vector<Number> &values)
   {
@@ -31,10 +31,10 @@ namespace Squeal
   /// Applies a linear operation to the nonzero columns of X only: the imaginary parts of neutral modes are zero.
   DenseMatrix sparing_zeros(const DenseMatrix &X, const std::function<DenseMatrix(const DenseMatrix &)> &operation);
 
-  /// A X without zero columns and rows: those of terms that vanish, and of a basis that has been extended since.
+  /// A X, omitting zero columns and rows of X: they occur for vanishing terms, and for a basis that has been extended.
   DenseMatrix multiply_sparing_zeros(const DenseMatrix &A, const DenseMatrix &X);
 
-  /// A X of a real and a complex matrix, as one real product with [Re X, Im X].
+  /// A X for a real A and a complex X, as one real product with [Re X, Im X].
   ComplexDenseMatrix multiply(const DenseMatrix &A, const ComplexDenseMatrix &X);
 
   /// [Re X, Im X].
@@ -43,13 +43,13 @@ namespace Squeal
   /// X from [Re X, Im X].
   ComplexDenseMatrix from_halves(const DenseMatrix &halves);
 
-  /// XᵀY, no conjugate, from [Re X, Im X]ᵀ [Re Y, Im Y].
+  /// XᵀY (without conjugation) from [Re X, Im X]ᵀ [Re Y, Im Y].
   ComplexDenseMatrix product_of_halves(const DenseMatrix &products);
 
   /// [X Y]; X may be empty.
   DenseMatrix append_columns(const DenseMatrix &X, const DenseMatrix &Y);
 
-  /// The matrix with zero rows appended, or its last rows removed.
+  /// The matrix with zero rows appended or its last rows removed.
   template <typename Derived>
   typename Derived::PlainObject with_rows(const Eigen::MatrixBase<Derived> &A, const Eigen::Index n_rows)
   {

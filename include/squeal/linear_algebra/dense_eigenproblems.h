@@ -26,17 +26,17 @@ namespace Squeal
   /// Singular values and right singular vectors of an m × n matrix.
   struct SingularValues
   {
-    std::vector<double> values; ///< min(m, n) of them, descending
+    std::vector<double> values; ///< min(m, n) singular values, descending
     DenseMatrix         right;  ///< V, n × n: its last n − rank columns span the kernel
   };
   SingularValues singular_values(DenseMatrix A);
 
-  /// Eigenvalues of a real square matrix A, and right and left eigenvectors of norm one for selected ones: A x = λ x, yᴴ A = λ yᴴ. The
-  /// conjugate of a selected value is selected, too.
+  /// Eigenvalues of a real square matrix A, and right and left eigenvectors of norm one for selected eigenvalues: A x = λ x, yᴴ A = λ yᴴ.
+  /// If an eigenvalue is selected, its conjugate is selected, too.
   struct DenseEigenpairs
   {
     std::vector<std::complex<double>> values;      ///< all eigenvalues
-    std::vector<int>                  numbers;     ///< of the values with vectors, ascending
+    std::vector<int>                  numbers;     ///< indices of the values with vectors, ascending
     ComplexDenseMatrix                right, left; ///< one column for each entry of numbers
   };
   DenseEigenpairs eigenpairs(

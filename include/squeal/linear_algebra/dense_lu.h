@@ -15,7 +15,7 @@ namespace Squeal
   public:
     explicit DenseLU(const Matrix &A);
 
-    /// A⁻¹ B and A⁻ᵀ B; only if the reciprocal condition is nonzero. B may have no columns.
+    /// A⁻¹ B and A⁻ᵀ B; defined only if the reciprocal condition is nonzero. B may have no columns.
     [[nodiscard]] Matrix solve(const Matrix &B) const;
     [[nodiscard]] Matrix solve_transposed(const Matrix &B) const;
 
@@ -39,9 +39,9 @@ namespace Squeal
   using RealLU    = DenseLU<DenseMatrix>;
   using ComplexLU = DenseLU<ComplexDenseMatrix>;
 
-  /// LU factors of a regular matrix. Throws SolverError naming @p what if it is singular to working precision.
+  /// LU factors of a regular matrix. Throws a SolverError that names @p what if the matrix is singular to working precision.
   RealLU regular_lu(const DenseMatrix &A, const char *what);
 
-  /// S⁻¹ A S with a positive diagonal S that reduces its norm: equal norms of row i and column i (Osborne).
+  /// S⁻¹ A S with a positive diagonal S that reduces the norm by making the norms of row i and column i equal (Osborne).
   ComplexDenseMatrix balanced(ComplexDenseMatrix A);
 } // namespace Squeal

@@ -18,8 +18,8 @@ namespace Squeal
     /// Y = A⁻ᵀ X.
     virtual void apply_transpose(const MultiVector &X, MultiVector &Y) const = 0;
 
-    /// Y = Pᵀ L⁻ᵀ X from factors A = Pᵀ L Lᵀ P: with independent random entries of X, columns of Y have the covariance A⁻¹. False if the
-    /// library cannot.
+    /// Y = Pᵀ L⁻ᵀ X from factors A = Pᵀ L Lᵀ P: if the entries of X are independent random numbers of unit variance, the columns of Y have
+    /// the covariance A⁻¹. Returns false if the library does not support this.
     virtual bool half_solve(const MultiVector &, MultiVector &) const
     {
       return false;
@@ -30,19 +30,20 @@ namespace Squeal
   };
 
   /**
-   * Cholesky (CHOLMOD) or LDLᵀ (MUMPS) factors of a symmetric positive definite matrix; only one triangle is read. Throws SolverError
-   * naming @p what if the matrix is not positive definite to working precision (a pivot is negative, or a rounding error of its diagonal
-   * entry) or if the library cannot be used.
+   * Cholesky (CHOLMOD) or LDLᵀ (MUMPS) factors of a symmetric positive definite matrix; only one triangle is read. Throws a SolverError
+   * that names @p what if the matrix is not positive definite to working precision (a pivot is negative, or only a rounding error of the
+   * diagonal entry) or if the library cannot be used.
    */
   std::unique_ptr<Factorization> factorize_positive_definite(const SparseMatrix &A, FactorizationLibrary library, const std::string &what);
 
-  /// LU factors of a square nonsymmetric matrix (MUMPS). Throws SolverError naming @p what if it is singular to working precision.
+  /// LU factors of a square nonsymmetric matrix (MUMPS). Throws a SolverError that names @p what if the matrix is singular to working
+  /// precision.
   std::unique_ptr<Factorization> factorize_general(const SparseMatrix &A, const std::string &what);
 
   /**
-   * Number of negative eigenvalues of a symmetric matrix by Sylvester's law of inertia: negative pivots of LDLᵀ with 2 × 2 pivoting
-   * (MUMPS). @p n_null receives the number of pivots that vanish to working precision; if it is null, such pivots throw SolverError naming
-   * @p what.
+   * Number of negative eigenvalues of a symmetric matrix by Sylvester's law of inertia: the number of negative pivots of LDLᵀ with 2 × 2
+   * pivoting (MUMPS). @p n_null receives the number of pivots that vanish to working precision; if it is null, such pivots cause a
+   * SolverError that names @p what.
    */
   int count_negative_eigenvalues(const SparseMatrix &A, const std::string &what, int *n_null = nullptr);
 } // namespace Squeal

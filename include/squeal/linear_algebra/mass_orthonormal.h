@@ -9,14 +9,14 @@
 
 namespace Squeal
 {
-  /// Principal axes of a set of vectors: norms and conditioning.
+  /// Norms of the principal axes of a set of vectors, and their condition number.
   struct PrincipalAxes
   {
     std::vector<double> norms;          ///< M-norms of the kept axes (singular values of the columns), largest first
-    double              condition = 1.; ///< of the Gram matrix of all columns, scaled or not; infinite if rounding makes it indefinite
+    double              condition = 1.; ///< condition number of the Gram matrix of all columns; infinite if rounding makes it indefinite
   };
 
-  /// Whether vectors must still be projected against the given orthonormal vectors.
+  /// Selects whether vectors must still be projected against given orthonormal vectors.
   enum class FirstProjection
   {
     wanted,
@@ -27,14 +27,14 @@ namespace Squeal
    * Orthonormalises the columns of @p X in the inner product of the symmetric positive definite @p M, against the M-orthonormal columns of
    * @p Q (may be null) and among each other, to about 1e-14.
    *
-   * The columns are first scaled to unit M-norm and projected to the complement of Q, unless @p projection says that this is done. The
-   * result is resolved into principal axes, largest first; those whose M-norm is below @p tolerance times the largest M-norm of a direction
-   * in X before the projection are dropped. The axes are computed in passes of five orders of magnitude each, because a Gram matrix squares
-   * the condition number; the smallest useful tolerance is 1e-13.
+   * The columns are scaled to unit M-norm and projected onto the complement of Q, unless @p projection is `done`. The result is resolved
+   * into principal axes, largest first; axes whose M-norm is below @p tolerance times the largest M-norm of a direction in X before the
+   * projection are dropped. The axes are computed in passes of five orders of magnitude each, because a Gram matrix squares the condition
+   * number; the smallest useful tolerance is 1e-13.
    *
-   * With std::move() X is overwritten by the result; it is copied only if some axes need another pass.
+   * With std::move(), the result overwrites X; X is copied only if some axes require another pass.
    *
-   * Returns the kept directions, or nothing if none is left. @p axes, if not null, receives norms and condition number.
+   * Returns the kept directions, or nothing if none remains. @p axes, if not null, receives norms and condition number.
    */
   std::optional<MultiVector> orthonormalize_if_any(const SparseMatrix &M,
                                                    const MultiVector  *Q,
@@ -43,12 +43,13 @@ namespace Squeal
                                                    PrincipalAxes      *axes       = nullptr,
                                                    FirstProjection     projection = FirstProjection::wanted);
 
-  /// orthonormalize_if_any() that throws SolverError if no direction is left.
+  /// Calls orthonormalize_if_any(); throws SolverError if no direction remains.
   MultiVector orthonormalize(const SparseMatrix &M, const MultiVector *Q, MultiVector X, double tolerance, PrincipalAxes *axes = nullptr);
 
   /**
    * Proper orthogonal decomposition: M-orthonormal principal axes of the unscaled columns of X, largest first. Axes with an M-norm above @p
-   * tolerance times the largest are kept, at most @p maximum. Computed in passes as above. Throws SolverError if all columns are zero.
+   * tolerance times the largest are kept, at most @p maximum. They are computed in passes as in orthonormalize_if_any(). Throws SolverError
+   * if all columns are zero.
    */
   MultiVector principal_axes(const SparseMatrix &M, const MultiVector &X, double tolerance, int maximum, PrincipalAxes *axes = nullptr);
 

@@ -10,9 +10,9 @@ namespace Squeal
 {
   /**
    * All entries of a matrix from a Matrix Market file: coordinate or array, real or integer, general, symmetric or skew-symmetric (both
-   * triangles are returned); duplicate entries are added. Stricter than CHOLMOD's reader, which reads 1.5D2 as 1.5.
+   * triangles are returned); duplicate entries are added. This reader is stricter than CHOLMOD's, which reads 1.5D2 as 1.5.
    *
-   * Throws FileError with file and line.
+   * Throws a FileError with file and line.
    */
   SparseRows read_matrix_market(const std::string &path);
 
@@ -23,7 +23,7 @@ namespace Squeal
     symmetric ///< the lower triangle is listed
   };
 
-  /// A in Matrix Market coordinate form with 17 significant digits, which are read back exactly: the whole text on process 0, empty on the
-  /// others. Collective.
+  /// Text of A in Matrix Market coordinate form with 17 significant digits, so that exactly the same numbers are read back. Process 0
+  /// returns the whole text, the other processes an empty text. Collective.
   std::string matrix_market(const SparseMatrix &A, MatrixMarketSymmetry symmetry = MatrixMarketSymmetry::general);
 } // namespace Squeal

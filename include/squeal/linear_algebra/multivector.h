@@ -10,15 +10,15 @@
 
 namespace Squeal
 {
-  /// A block of vectors: n × k, distributed by rows, stored by columns. A view refers to columns of another block; a copy of a view owns
-  /// its columns, and an assignment to a view changes the original.
+  /// A block of k vectors, n × k, distributed by rows and stored by columns. A view refers to columns of another block. A copy of a view
+  /// owns its columns; an assignment to a view changes the original block.
   class MultiVector
   {
   public:
     using Local      = Eigen::Map<DenseMatrix>;
     using ConstLocal = Eigen::Map<const DenseMatrix>;
 
-    /// @param zero initialise the entries with zeros; else uninitialised
+    /// @param zero true: initialise the entries with zeros; false: leave them uninitialised
     MultiVector(const RowMap &map, int n_columns, bool zero = true);
 
     /// A view of external data, n_local × k.
@@ -88,10 +88,10 @@ namespace Squeal
     MultiVector &operator-=(const MultiVector &X);
     MultiVector &operator*=(double factor);
 
-    /// Appends the columns of X. Large blocks grow without copying. Invalidates views of this block.
+    /// Appends the columns of X; large blocks grow without copying. Views of this block become invalid.
     void append(const MultiVector &X);
 
-    /// View of columns [first, first + n), n ≥ 0; this block must outlive it.
+    /// View of columns [first, first + n), n ≥ 0; X must outlive the view.
     friend MultiVector view(const MultiVector &X, int first, int n);
 
   private:
@@ -102,15 +102,15 @@ namespace Squeal
 
     RowMap      row_map;
     int         n_rows, k;
-    DenseMatrix own; ///< empty for a view
+    DenseMatrix own; ///< entries owned by this block; empty for a view
     double     *values;
   };
 
-  /// XᵀY, k_X × k_Y, the same on every process.
+  /// XᵀY, k_X × k_Y, identical on every process.
   DenseMatrix gram(const MultiVector &X, const MultiVector &Y);
 
-  /// The small dense result of process 0, on all processes. The same LAPACK call may round differently on different processes, for example
-  /// by the alignment of memory; eigenvectors of a multiple eigenvalue then differ completely.
+  /// Broadcasts the result of process 0. The same LAPACK call may round differently on different processes, for example because of the
+  /// alignment of memory; eigenvectors of a multiple eigenvalue may then be completely different.
   RealPairs agreed(MPI_Comm communicator, RealPairs pairs);
 
   /// Y = alpha X S + beta Y; X and Y must not share memory.
@@ -127,7 +127,7 @@ namespace Squeal
   MultiVector view(const MultiVector &X, int first, int n);
   MultiVector view(const MultiVector &&, int, int) = delete; ///< a view of a temporary would dangle
 
-  /// [X Y ...]: the columns of all, copied.
+  /// [X Y ...]: copies of the columns of all parts.
   MultiVector join(const std::vector<const MultiVector *> &parts);
   MultiVector join_all(const std::vector<MultiVector> &parts);
 
@@ -149,7 +149,7 @@ namespace Squeal
   /// Deterministic pseudo-random entries in [-1, 1], independent of the distribution of the rows.
   MultiVector random_vectors(const RowMap &map, int n_vectors, unsigned int seed = 1);
 
-  /// A linear operator on distributed vectors, y = A x, applied to many vectors at once.
+  /// A linear operator on distributed vectors, Y = A X, applied to blocks of vectors.
   class LinearOperator
   {
   public:
@@ -165,10 +165,10 @@ namespace Squeal
   /// All rows of a short distributed X (contact nodes, not dofs) on every process.
   DenseMatrix replicate(const MultiVector &X);
 
-  /// Rows of a replicated matrix that this process owns by @p map.
+  /// Distributes a replicated matrix: each process keeps the rows that it owns in @p map.
   MultiVector distribute(const DenseMatrix &X, const RowMap &map);
 
-  /// All rows of X on process 0, by row number; no rows on the others.
+  /// All rows of X on process 0, by row number; no rows on the other processes.
   DenseMatrix gather(const MultiVector &X);
 
   /// Distributes the rows of a matrix on process 0; @p X is ignored on the other processes.

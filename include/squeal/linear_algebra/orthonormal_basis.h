@@ -9,12 +9,12 @@ namespace Squeal
   /// Orthonormal basis of the span of the columns of X, which must be nonzero and linearly independent, by Householder reflections.
   DenseMatrix orthonormal_columns(const DenseMatrix &X);
 
-  /// X = Q R with orthonormal columns of Q, except zero columns where a column of X is dependent up to rounding: there R_jj = 0.
+  /// X = Q R with orthonormal columns of Q. If column j of X is linearly dependent up to rounding, column j of Q and R_jj are zero.
   struct OrthonormalBasis
   {
     ComplexDenseMatrix Q, R;
   };
 
-  /// Uses Cholesky factors if that is safe, else the Gram-Schmidt process.
+  /// Computes X = Q R by Cholesky factors if X is well conditioned, else by the Gram-Schmidt process.
   OrthonormalBasis orthonormal_basis(const ComplexDenseMatrix &X);
 } // namespace Squeal

@@ -11,18 +11,18 @@
 
 namespace Squeal
 {
-  /// Distribution of rows over the processes: contiguous ranges, beginning with process 0. A row has a global number and a local index on
-  /// its process.
+  /// Distribution of rows over the processes: each has a contiguous range, in the order of the ranks. A row has a global number and a local
+  /// index on its process.
   class RowMap
   {
   public:
-    /// No rows.
+    /// Map without rows.
     RowMap() = default;
 
-    /// @p n_local rows on this process. Collective.
+    /// Map with @p n_local rows on this process. Collective.
     RowMap(int n_local, MPI_Comm communicator);
 
-    /// @p n rows in ranges of nearly equal size.
+    /// Map of @p n rows in ranges of nearly equal size.
     static RowMap even(int n, MPI_Comm communicator);
 
     /// Global number of rows.
@@ -74,7 +74,7 @@ namespace Squeal
       return static_cast<int>(starts.size()) - 1;
     }
 
-    /// True if all processes have the same rows.
+    /// True if both maps give all processes the same rows.
     bool operator==(const RowMap &other) const
     {
       return starts == other.starts;
@@ -90,7 +90,7 @@ namespace Squeal
   class RowDelivery
   {
   public:
-    /// @param numbers of the local rows, in their order; several processes may have the same row
+    /// @param numbers numbers of the local rows, in their order; several processes may have the same row
     RowDelivery(const std::vector<int> &numbers, const RowMap &owners);
 
     /// True if no process has a row.
@@ -105,7 +105,7 @@ namespace Squeal
       exchange(places_here, here, places_owned, own, false);
     }
 
-    /// Adds the rows to those of their owners, process after process.
+    /// Adds the rows to the rows of their owners, in the order of the processes.
     void add(const Eigen::Ref<const DenseMatrix> &here, Eigen::Ref<DenseMatrix> own) const
     {
       exchange(places_here, here, places_owned, own, true);

@@ -8,9 +8,9 @@
 
 namespace Squeal
 {
-  /// u_slave = Σ coefficient u_master: (master, coefficient) for each slave, numbered by dof or otherwise.
+  /// Constraints u_slave = Σ coefficient u_master: pairs (master, coefficient) for each slave. The numbers are those of dofs or nodes.
   using SlaveRows = std::map<int, std::vector<std::pair<int, double>>>;
 
-  /// Replaces masters that are slaves of other rows by their masters. Returns false if slaves depend on each other circularly.
+  /// Replaces masters that are slaves in other rows by the masters of these rows. Returns false if slaves depend on each other circularly.
   bool resolve(SlaveRows &rows);
 } // namespace Squeal

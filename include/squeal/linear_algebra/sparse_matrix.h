@@ -18,11 +18,11 @@ namespace Squeal
   /// Rows of a sparse matrix on one process, with ascending columns.
   using SparseRows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
-  /// A sparse matrix, distributed by rows, immutable.
+  /// An immutable sparse matrix, distributed by rows.
   class SparseMatrix : public LinearOperator
   {
   public:
-    /// Entries of one row: number of the column, value.
+    /// Entries of a row: column number and value.
     using Row = std::vector<std::pair<int, double>>;
 
     /**
@@ -32,19 +32,19 @@ namespace Squeal
      */
     SparseMatrix(const RowMap &rows, const RowMap &columns, const std::function<void(int place, Row &row)> &fill);
 
-    /// From the rows of this process, with global column numbers. Collective.
+    /// Constructs a matrix from the rows of this process, with global column numbers. Collective.
     SparseMatrix(const RowMap &rows, const RowMap &columns, SparseRows by_number);
 
     /// Columns that occur in the local rows but belong to other processes.
     struct Halo;
 
-    /// For linear_algebra/ only: local rows, local column indices; halo columns follow the own ones.
+    /// Local rows with local column indices; halo columns follow the columns of this process. For use in linear_algebra/ only.
     const SparseRows &by_place() const
     {
       return local;
     }
 
-    /// For linear_algebra/ only: null if one process has the whole matrix.
+    /// The halo; null if one process has the whole matrix. For use in linear_algebra/ only.
     const Halo *halo() const
     {
       return columns_elsewhere.get();
@@ -116,7 +116,7 @@ namespace Squeal
   /// Aᵀ X.
   MultiVector transpose_times(const SparseMatrix &A, const MultiVector &X);
 
-  /// op(A) op(B), op = transpose if requested; rows are distributed like those of op(A).
+  /// op(A) op(B), where op is the transpose if requested; distributed like the rows of op(A).
   std::shared_ptr<SparseMatrix> multiply(const SparseMatrix &A, const SparseMatrix &B, bool transpose_A = false, bool transpose_B = false);
 
   /// Aᵀ.
@@ -134,7 +134,7 @@ namespace Squeal
   /// alpha A + beta B for matrices of the same shape and distribution; the patterns may differ.
   std::shared_ptr<SparseMatrix> add(double alpha, const SparseMatrix &A, double beta, const SparseMatrix &B);
 
-  /// Σ factor A of at least one matrix, all of the same shape and distribution.
+  /// Σ factor A for one or more matrices of the same shape and distribution.
   std::shared_ptr<SparseMatrix> linear_combination(const std::vector<std::pair<double, const SparseMatrix *>> &summands);
 
   /// Largest absolute entry.
@@ -143,19 +143,19 @@ namespace Squeal
   /// Largest sum of absolute entries of a row.
   double row_sum_norm(const SparseMatrix &A);
 
-  /// A copy as a dense matrix, the same on every process: for small matrices only.
+  /// Dense copy, identical on every process; for small matrices only.
   DenseMatrix to_dense(const SparseMatrix &A);
 
   /// Rows of this process with global column numbers.
   SparseRows local_rows(const SparseMatrix &A);
 
-  /// Xᵀ A Y, with A applied to a few columns of Y at a time: all of A Y would take as much memory as Y.
+  /// Xᵀ A Y. A is applied to a few columns of Y at a time, because A Y would need as much memory as Y.
   DenseMatrix weighted_gram(const MultiVector &X, const SparseMatrix &A, const MultiVector &Y);
 
   /// Xᵀ A X for a symmetric A; only one half is computed.
   DenseMatrix weighted_gram(const MultiVector &X, const SparseMatrix &A);
 
-  /// Calls f(first, n) for blocks of columns narrow enough to copy.
+  /// Calls f(first, n) for blocks of few columns, which can be copied without using much memory.
   template <typename Function>
   void for_column_blocks(const int n_columns, const Function &f)
   {
@@ -172,8 +172,8 @@ namespace Squeal
    *
    *   100 ε ρ,   ρ: geometric mean over the rows, weighted by mass, of Σ_j |K_ij| / Σ_j |M_ij|.
    *
-   * φᵀKφ of a nearly rigid motion is a sum of cancelling terms of size ρ φᵀMφ, with an error of at most about ε ρ φᵀMφ. The mean is that of
-   * the heavy bodies: light stiff ones do not determine such a motion. Collective.
+   * φᵀKφ of a nearly rigid motion is a sum of cancelling terms of size ρ φᵀMφ, with an error of at most about ε ρ φᵀMφ. The weights
+   * emphasise heavy bodies, which determine such a motion, rather than light and stiff bodies. Collective.
    */
   double unresolved_square(const SparseMatrix &K, const SparseMatrix &M);
 } // namespace Squeal

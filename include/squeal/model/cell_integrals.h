@@ -13,10 +13,11 @@
 
 namespace Squeal
 {
-  /// Adds an element integral to the matrix of a cell or face; dofs of node i are 3 i, 3 i + 1, 3 i + 2. Called by several threads.
+  /// Adds an element integral to the matrix of a cell or face; the dofs of node i are 3 i, 3 i + 1, 3 i + 2. Several threads may call it at
+  /// the same time.
   using ElementIntegral = std::function<void(const ElementValues &, dealii::FullMatrix<double> &)>;
 
-  /// Assembled matrices on the free dofs, one for each integral, over the given elements of this process.
+  /// Assembles one matrix on the free dofs for each integral over the given elements of this process.
   std::vector<std::shared_ptr<const SparseMatrix>> assemble(const Model                             &model,
                                                             const std::vector<const NodalElement *> &elements,
                                                             const std::vector<ElementIntegral>      &integrals);

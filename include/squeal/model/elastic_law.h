@@ -26,7 +26,7 @@ namespace Squeal
     Stiffness at(const dealii::Point<3> &x) const;
 
   private:
-    Stiffness stiffness; ///< in the axes of the material if they are cylindrical, else in x, y and z
+    Stiffness stiffness; ///< C/E in the axes of the material if these are cylindrical, else in x, y and z
     bool      is_cylindrical = false;
   };
 } // namespace Squeal

@@ -18,7 +18,7 @@ namespace Squeal
   /// Names of the parameters of body_terms() and add_rotation().
   namespace BodyParameter
   {
-    std::string young_modulus(const std::string &volume);  ///< E [Pa]; if orthotropic E_1, and all moduli scale with it
+    std::string young_modulus(const std::string &volume);  ///< E [Pa]; for orthotropic materials E_1, with which all moduli scale
     std::string density(const std::string &volume);        ///< ρ [kg/m³]
     std::string rayleigh_alpha(const std::string &volume); ///< α [1/s]
     std::string rayleigh_beta(const std::string &volume);  ///< β [s]
@@ -26,14 +26,14 @@ namespace Squeal
     inline constexpr const char *angular_velocity = "angular velocity of the disc"; ///< Ω [rad/s], positive about e_z
   }                                                                                 // namespace BodyParameter
 
-  /// A nonzero coefficient of a mount in a direction about the disc's axis: a parameter of its term.
+  /// A nonzero coefficient of a mount in a direction relative to the disc's axis; it is the parameter of a term.
   struct MountParameter
   {
-    std::string name;  ///< among ParameterValues
+    std::string name;  ///< name in ParameterValues
     std::string path;  ///< name in parameter files: "Mounts/Elastic mounts: disc_bore radial"
-    const char *unit;  ///< per unit area
+    const char *unit;  ///< unit, per unit area
     double      value; ///< k [N/m³] of springs, c [N s/m³] of dashpots, m [kg/m²] of masses
-    int         power; ///< power of λ in its term
+    int         power; ///< power of λ in the term
     std::string surface;
     int         direction; ///< 0 radial, 1 tangential, 2 axial, 3 all
   };
@@ -42,7 +42,7 @@ namespace Squeal
 
   /**
    * Terms of every volume and mount on the free dofs, sparse and symmetric, at unit coefficients; E, ρ, α and β are parameters of each
-   * volume, such as "density, pin_top_1":
+   * volume ("density, pin_top_1"):
    *
    *   E K_b,   K_b,ij = ∫ ε(φ_i) : C/E : ε(φ_j) dV; C/E depends on Poisson's ratios, and on ratios of moduli if orthotropic
    *   k K_e,   K_e,ij = ∫_mount (e·φ_i) (e·φ_j) dA, e the radial, tangential or axial direction about the z axis, k [N/m³]
@@ -50,13 +50,13 @@ namespace Squeal
    *   λ β E K_b + λ α ρ M_b
    *   λ² ρ M_b,  M_b,ij = ∫ φ_i · φ_j dV
    *
-   * Elements with incompatible modes use K_b of add_stiffness(). Integrated at the points of quadrature().
+   * K_b of elements with incompatible modes is that of add_stiffness(). Integrals use the points of quadrature().
    *
    * Throws MeshError if a mounted surface does not exist or an element is inverted.
    */
   BodyTerms body_terms(const Model &model, const MaterialParameters &materials);
 
-  /// Terms of a volume: stiffness, mass, stiffness- and mass-proportional damping.
+  /// Terms of a volume: stiffness, mass, and damping proportional to each of them.
   std::vector<Term> volume_terms(const Model &model, unsigned int volume, const Material &material);
 
   /// Values of the parameters of body_terms(), except zero stiffnesses.

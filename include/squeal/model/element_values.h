@@ -17,7 +17,7 @@ namespace Squeal
       : ElementValues(model, model.degree())
     {}
 
-    /// @param degree of the quadrature rule, see quadrature()
+    /// @param degree degree of the quadrature rule, see quadrature()
     ElementValues(const Model &model, unsigned int degree);
 
     /// Evaluates an element of the model at the points of quadrature().
@@ -73,13 +73,13 @@ namespace Squeal
       return now->points[q].x;
     }
 
-    /// Element of the last reinit().
+    /// Current element, from the last call of reinit().
     const NodalElement &element() const
     {
       return *current;
     }
 
-    /// Position of a node of that element [m].
+    /// Position of a node of the current element [m].
     dealii::Point<3> node(unsigned int i) const;
 
   private:
@@ -89,13 +89,13 @@ namespace Squeal
       unsigned int                      n_nodes = 0;
       std::vector<QuadraturePoint>      points;
       std::vector<double>               values;
-      std::vector<dealii::Tensor<1, 3>> gradients; ///< with respect to reference coordinates
+      std::vector<dealii::Tensor<1, 3>> gradients; ///< gradients with respect to reference coordinates
     };
 
     const Table &table(Shape shape);
 
     const Model                      &model;
-    unsigned int                      degree; ///< of the quadrature rule
+    unsigned int                      degree; ///< degree of the quadrature rule
     std::array<Table, 6>              tables;
     const Table                      *now     = nullptr;
     const NodalElement               *current = nullptr;

@@ -38,8 +38,8 @@ namespace Squeal
     std::array<int, 3>        dofs;      ///< free dof numbers; -1: clamped or tied
     unsigned int              component; ///< 0: the disc; k ≥ 1: pin k
     std::int64_t              number;    ///< unique over all processes; ascends in the order of the cells
-    bool                      is_own;    ///< owned by this process, which also owns the rows of its dofs; every node has one owner
-    std::vector<WeightedDofs> masters;   ///< of a tied node: u = Σ weight u_master; empty for others
+    bool                      is_own;    ///< true if owned by this process, which then owns the rows of its dofs; every node has one owner
+    std::vector<WeightedDofs> masters;   ///< masters of a tied node, u = Σ weight u_master; empty for other nodes
 
     bool is_clamped() const
     {
@@ -69,9 +69,9 @@ namespace Squeal
   {
     Shape        shape;
     Mesh::Nodes  nodes;     ///< indices into the nodes of the model
-    unsigned int component; ///< as in Node
+    unsigned int component; ///< see Node::component
     std::int64_t number;    ///< unique over all processes; ascends in the order of the cells
-    bool         is_own;    ///< owned by this process; every element has one owner
+    bool         is_own;    ///< true if owned by this process; every element has one owner
   };
 
   struct Cell : NodalElement
@@ -82,21 +82,22 @@ namespace Squeal
   /// A face of only one cell, outwards by the right-hand rule.
   struct Face : NodalElement
   {
-    std::vector<unsigned int> surfaces; ///< named surfaces that contain it: indices into the surface names
+    std::vector<unsigned int> surfaces; ///< indices of the named surfaces that contain the face
   };
 
   /**
-   * The discretised bodies: isoparametric cells and outer faces, with nodal displacement dofs. Clamped and tied dofs have no number and do
-   * not enter the matrices.
+   * The discretised bodies: isoparametric cells and outer faces, with nodal displacement dofs. Clamped and tied dofs have no number and no
+   * rows in the matrices.
    *
-   * Distributed: a process has its own cells and all cells at nodes that it owns, with their faces. Process 0 partitions the mesh.
+   * The model is distributed: a process has the cells that it owns and all cells at nodes that it owns, with their faces. Process 0
+   * partitions the mesh.
    */
   class Model
   {
   public:
     /**
-     * @param mesh         with named parts; processes other than 0 need only the names
-     * @param element      for degree 2, the mesh is extended by second_order()
+     * @param mesh         mesh with named parts; processes other than 0 need only the names
+     * @param element      finite element; for degree 2, the mesh is extended by second_order()
      * @param communicator processes that share the work
      */
     Model(const Mesh &mesh, Element element, MPI_Comm communicator);
@@ -117,7 +118,7 @@ namespace Squeal
       return processes;
     }
 
-    /// Names of the bodies, the disc's first.
+    /// Names of the bodies, the disc first.
     const std::vector<std::string> &component_names() const
     {
       return components;
@@ -148,10 +149,10 @@ namespace Squeal
       return face_table;
     }
 
-    /// Faces of a named surface; throws MeshError with all known surfaces if the name is unknown.
+    /// Faces of a named surface; throws a MeshError that lists all surfaces if there is none of this name.
     std::vector<const Face *> faces_of(const std::string &surface) const;
 
-    /// Nodes of all processes in the order of their numbers, on process 0: for output files of small models.
+    /// Nodes of all processes in the order of their numbers, on process 0 only; used for output files of small models.
     std::vector<Node> gathered_nodes() const;
 
     /// Distribution of the free dofs.
@@ -160,7 +161,7 @@ namespace Squeal
       return map;
     }
 
-    /// Number of all dofs, including clamped and tied ones.
+    /// Number of all dofs, including clamped and tied dofs.
     unsigned int n_dofs() const
     {
       return n_all_dofs;

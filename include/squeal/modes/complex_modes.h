@@ -14,24 +14,24 @@
 namespace Squeal
 {
   /// Eigenvalues of the coupled system with friction in a band, from any solver: the complex modes in the Band, ascending in frequency,
-  /// with coupled displacements φ_c, φᴴ M_c φ = 1; and the real eigenvalues up to the same radius.
+  /// with coupled displacements φ_c, φᴴ M_c φ = 1, and the real eigenvalues within the radius of the band.
   struct ComplexModes
   {
-    std::vector<std::complex<double>> lambda;                    ///< [rad/s]
+    std::vector<std::complex<double>> lambda;                    ///< λ of the complex modes [rad/s]
     std::shared_ptr<MultiVector>      real_part, imaginary_part; ///< φ_c, n × k
     std::shared_ptr<MultiVector> left_real_part, left_imaginary_part; ///< ψ, ψᵀQ(λ) = 0, ψᴴM_cψ = 1; null if the method does not compute it
     std::vector<double>          residuals;                           ///< ‖Q(λ)φ‖ / ‖Kφ‖ [-]
     std::vector<double>          energy_residuals;                    ///< ε_res, eq. (16) of the paper [-]
     std::vector<double>          estimated_errors;                    ///< |δλ| / |λ| [-]; empty if the method gives no estimates
-    int                          n_rigid_body = 0;                    ///< modes with λ = 0
+    int                          n_rigid_body = 0;                    ///< number of rigid-body modes, λ = 0
     std::vector<double>          real_values;                         ///< real λ ≠ 0, |λ| ≤ the band's radius, ascending [1/s]
-    std::string                  summary;                             ///< method and its cost, one phrase
+    std::string                  summary;                             ///< method and its cost, for messages
   };
 
-  /// Re xᴴy of each pair of complex vectors; columns 0 ... k-1 are real, k ... 2k-1 imaginary parts.
+  /// Re xᴴy of each pair of complex vectors; columns 0 ... k-1 are real parts, k ... 2k-1 imaginary parts.
   std::vector<double> complex_products(const MultiVector &X, const MultiVector &Y);
 
-  /// Force residuals Q(λ) φ (or Q(λ)ᵀ φ) of complex vectors, stored in the same way.
+  /// Force residuals Q(λ) φ (or Q(λ)ᵀ φ) of complex vectors, stored as for complex_products().
   MultiVector force_residuals(const CoupledSystem                     &system,
                               const ParameterValues                   &values,
                               const std::vector<std::complex<double>> &lambda,
@@ -41,7 +41,7 @@ namespace Squeal
 
   /**
    * Normalises right and left modes to φᴴ M_c φ = 1 with the entry of largest modulus real (fix_phase()), sorts them by frequency, and
-   * computes both residuals:
+   * computes two residuals:
    *
    *   ‖Q(λ)φ‖₂ / ‖K_c φ‖₂  and  ε_res = |R_Uᴴ R_F| / (φᴴ K φ),  R_F = Q(λ)φ,  R_U = K_c⁻¹ R_F
    *
@@ -49,13 +49,13 @@ namespace Squeal
    */
   void finish_modes(const CoupledSystem &system, const ParameterValues &values, const UpdatedInverse &inverse, ComplexModes &modes);
 
-  /// Growth of a mode. Tables list a neutral mode as stable.
+  /// Verdict on the growth of a mode. Tables list a neutral mode as stable.
   enum class Verdict
   {
-    stable, ///< decays
+    stable, ///< the mode decays
     unstable,
-    undecided, ///< cannot be decided at the accuracy of λ
-    neutral    ///< neither grows nor decays, up to rounding errors
+    undecided, ///< the accuracy of λ is insufficient for a verdict
+    neutral    ///< the mode neither grows nor decays, up to rounding errors
   };
 
   template <>
@@ -64,23 +64,23 @@ namespace Squeal
                                                               {Verdict::undecided, "undecided"},
                                                               {Verdict::neutral, "stable"}};
 
-  /// Divergence rates |ξ| up to this are rounding errors of a neutral mode [-].
+  /// Divergence rates |ξ| up to this limit are rounding errors of neutral modes [-].
   inline constexpr double negligible_divergence = 1e-8;
 
   /// Safety factor: an estimated error of λ may be too small by this factor [-].
   inline constexpr double error_safety = 3.;
 
   /**
-   * Verdict on a mode with λ = R + iω, ω ≥ 0, known up to @p error [rad/s]. With u = 3 error and ε = 10⁻⁸ it is
+   * Verdict on a mode λ = R + iω, ω ≥ 0, whose estimated error is @p error [rad/s]. With u = 3 error and ε = 10⁻⁸, the mode is
    *
    *   unstable   if R − u > ε ω,
-   * stable     if R + u ≤ ε ω, and neutral if also |R| ≤ ε ω,
+   *   stable     if R + u ≤ ε ω, and neutral if also |R| ≤ ε ω,
    *   undecided  otherwise, and if λ or the error is NaN.
    *
-   * Without an error, only rounding decides, as along a branch: R = ± ε ω is still neutral.
+   * An error of zero, as for branches of a sweep, allows only for rounding errors: R = ± ε ω is still neutral.
    *
-   * @param growth_needs_coalescence without damping, −λ̄ is an eigenvalue as well as λ: R = 0 remains zero, whatever the error of ω, unless
-   * two modes coalesce. If no coalescence is within reach, u is not applied to R ≤ ε ω.
+   * @param growth_needs_coalescence true without damping if no coalescence is possible within the errors: −λ̄ is an eigenvalue as well as
+   * λ, so that R = 0 is exact for any error of ω unless two modes coalesce. In this case, u is not applied to R ≤ ε ω.
    */
   Verdict verdict_of(const std::complex<double> &lambda, double error = 0., bool growth_needs_coalescence = false);
 } // namespace Squeal

@@ -14,19 +14,19 @@ namespace Squeal
   /// Range of λ and accuracy of a CondensedDeterminant.
   struct CondensedDeterminantRequest
   {
-    std::vector<std::complex<double>> lambda; ///< points farthest from the origin and from the real axis [rad/s]
+    std::vector<std::complex<double>> lambda; ///< points of the range with the largest truncation errors: its corners [rad/s]
     double                            largest_friction_coefficient = 0.;
     double                            tolerance                    = 1e-6; ///< largest spectral norm of the truncation error of N [-]
   };
 
   /**
-   * The pencil with friction, Q(λ) = S(λ) + E G(λ) with S = K_c + λ² M_c, condensed to the low-rank terms θ λ^p L diag(d) Rᵀ, mainly those
-   * of the contact:
+   * The determinant of the pencil with friction, Q(λ) = S(λ) + E G(λ) with S = K_c + λ² M_c, condensed to the low-rank terms θ λ^p L
+   * diag(d) Rᵀ, which are mainly contact terms:
    *
    *   det Q(λ) = det S(λ) det N(λ),   N(λ) = I + G(λ) S(λ)⁻¹ E
    *
-   * E has the factors L as columns; G has for each of them the rows Σ θ λ^p diag(d) Rᵀ of its terms. For A, friction gives the rows −μ (V_K
-   * + λ² V_M).
+   * The columns of E are the factors L; the corresponding rows of G are Σ θ λ^p diag(d) Rᵀ, summed over the terms with this L. For L = A,
+   * friction gives the rows −μ (V_K + λ² V_M).
    *
    * S(λ)⁻¹ is summed over the real modes up to ω_d, Φ with Φᵀ S Φ = D = diag(ω_j² + λ²); on their M-orthogonal complement it is a Chebyshev
    * series in H = (K_c + s M_c)⁻¹ M_c, whose eigenvalues there are at most 1 / w, w = ω_d² + s:
@@ -34,13 +34,13 @@ namespace Squeal
    *   S⁻¹ = Φ D⁻¹ Φᵀ + S_⊥⁻¹,   S_⊥⁻¹ = Σ_k c_k T_k(2 w H − I) P (K_c + s M_c)⁻¹
    *   c_k = (2 − δ_k0) ((1 − r) / (1 + r))ᵏ / r,   r = √((ω_d² + λ²) / w),   Re r > 0
    *
-   * The determinant is thus a product of N_⊥, which varies little in the band, and of W, a small matrix with poles at the real modes, λ =
-   * ±iω_j:
+   * The determinant is thus a product of det N_⊥, which varies little in the band, and det W, where W is a small matrix with poles at the
+   * real modes, λ = ±iω_j:
    *
    *   det N = det N_⊥ det W,   N_⊥ = I + G S_⊥⁻¹ E,   W = I + D⁻¹ Φᵀ E N_⊥⁻¹ G Φ
    *
-   * The series converges for all λ except ±iω, ω ≥ ω_d. The matrices V_K T_k ... E are small and independent of μ. Because |T_k| ≤ 1 in the
-   * inner product of K_c + s M_c, the truncation error of N after m terms is bounded by
+   * The series converges for all λ except ±iω, ω ≥ ω_d. The moments Rᵀ T_k ... E are small matrices that do not depend on μ. Because |T_k|
+   * ≤ 1 in the inner product of K_c + s M_c, the truncation error of N after m terms is bounded by
    *
    *   ‖G (K_c + s M_c)^−½‖ Σ_{k > m} |c_k| ‖(K_c + s M_c)^−½ E‖   on the complement.
    */
@@ -53,7 +53,7 @@ namespace Squeal
      * @param inverse        (K_c + s M_c)⁻¹
      * @param shift          s ≥ 0 [rad²/s²]
      *
-     * Throws SolverError if there are sparse terms other than K_c and M_c, such as damping of the bodies. The system must outlive the
+     * Throws SolverError if there are sparse terms other than K_c and M_c, for example damping of the bodies. The system must outlive this
      * object.
      */
     CondensedDeterminant(const CoupledSystem               &system,
@@ -69,8 +69,8 @@ namespace Squeal
     /// W(λ), and bounds for the inverse of N.
     struct OnModes
     {
-      ComplexDenseMatrix                matrix;             ///< W, size: number of modes
-      std::vector<std::complex<double>> resonances;         ///< D⁻¹
+      ComplexDenseMatrix                matrix;             ///< W; its size is the number of modes
+      std::vector<std::complex<double>> resonances;         ///< diagonal of D⁻¹
       double                            complement_inverse; ///< bound of ‖N_⊥⁻¹‖
       double                            gain;               ///< ‖N⁻¹‖ ≤ ‖N_⊥⁻¹‖ + gain ‖W⁻¹ D⁻¹‖
     };
@@ -79,8 +79,8 @@ namespace Squeal
     /// Bound of the spectral norm of the truncation error of N(λ) [-].
     double truncation(std::complex<double> lambda, double mu) const;
 
-    std::vector<double> frequencies;   ///< ω_j of the summed modes [rad/s], 0 for rigid-body modes
-    int                 n_moments = 0; ///< terms of the series
+    std::vector<double> frequencies;   ///< ω_j of the modes in Φ, 0 for rigid-body modes [rad/s]
+    int                 n_moments = 0; ///< number of terms of the series
 
   private:
     /// Rows of G from one term.
@@ -90,7 +90,7 @@ namespace Squeal
       int                      first_row; ///< row index in N
       DenseMatrix              on_modes;  ///< RᵀΦ
       std::vector<DenseMatrix> moments;   ///< Rᵀ T_k P (K + s M)⁻¹ E
-      double                   norm;      ///< of diag(d) Rᵀ (K + s M)^−½ on the complement
+      double                   norm;      ///< norm of diag(d) Rᵀ (K + s M)^−½ on the complement
     };
 
     const CoupledSystem &system;

@@ -12,21 +12,21 @@ namespace Squeal
 {
   /**
    * Energy balance of a mode λ = R + iω: contribution of each contact node and body to the divergence rate ξ = R / ω [-]. Positive
-   * contributions feed the mode, negative ones dissipate.
+   * contributions feed energy into the mode, negative contributions dissipate energy.
    *
-   * The motion Re(φ e^{iωt}) has the mean energy W = ¼ (|λ|² φᴴ M φ + φᴴ K φ), and a force f acting on the velocity λ φ has the mean power
-   * P = ½ Re((λφ)ᴴ f). Multiplying the eigenproblem by λ̄ φᴴ shows that all powers sum to 2 R W, as for an energy that grows as e^{2Rt}.
-   * The contribution of a force to ξ is therefore P / (2 ω W):
+   * The motion Re(φ e^{iωt}) has the mean energy W = ¼ (|λ|² φᴴ M φ + φᴴ K φ), and a force f has the mean power P = ½ Re((λφ)ᴴ f).
+   * Multiplying the eigenproblem by λ̄ φᴴ shows that the sum of all powers is 2 R W, as for an energy that grows as e^{2Rt}. The
+   * contribution of a force to ξ is therefore P / (2 ω W):
    *
-   * friction at a node     ½ μ Re((λ v)* r_n),   v = t·(u_D − u_P): the disc's part is that of t·u_D, the pin's that of −t·u_P
+   *   friction at a node     ½ μ Re((λ v)* r_n),   v = f t·(u_D − u_P); f t·u_D gives the disc's part, −f t·u_P the pin's part
    *   damping at a node      −½ c_b |λ b·(u_D − u_P)|²  and  −½ c_t |λ v|²
-   * damping of a body      −½ Re((λu)ᴴ λ C u) over its dofs; gyroscopic forces do no work
-   * modal damping          −½ |λ|² φᴴ C_m φ, not attributed to a body
+   *   damping of a body      −½ Re((λu)ᴴ λ C u) over its dofs; gyroscopic forces do no work
+   *   modal damping          −½ |λ|² φᴴ C_m φ, not attributed to a body
    */
   struct PowerBalance
   {
-    std::vector<double> into_disc, into_pins;            ///< from friction at each contact node [-]
-    std::vector<double> radial_damping, sliding_damping; ///< at each contact node [-]
+    std::vector<double> into_disc, into_pins;            ///< friction at each contact node [-]
+    std::vector<double> radial_damping, sliding_damping; ///< contact damping at each contact node [-]
     std::vector<double> bodies;                          ///< damping of each component, the disc first [-]
     double              modal_damping = 0.;              ///< [-]
 
@@ -43,8 +43,8 @@ namespace Squeal
   /**
    * @param bodies    M, C and K of the uncoupled bodies
    * @param coupled   system of the mode
-   * @param interface closed pairs, with the coefficients @p damping
-   * @param real_part, imaginary_part of φ in coupled coordinates, n × 1; collective
+   * @param interface closed contact nodes, with the coefficients @p damping
+   * @param real_part, imaginary_part φ in coupled coordinates, n × 1
    */
   PowerBalance power_balance(const SecondOrderSystem    &bodies,
                              const Model                &model,

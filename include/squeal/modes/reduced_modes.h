@@ -15,12 +15,12 @@ namespace Squeal
   struct ReducedModes
   {
     ParameterValues values;          ///< parameter values of the system
-    ReducedPencil   pencil;          ///< at these values
+    ReducedPencil   pencil;          ///< reduced pencil at these values
     DenseMatrix     mass, stiffness; ///< TᵀM_cT and TᵀK_cT, for the norms
 
     std::vector<std::complex<double>> lambda; ///< Im λ > 0, ascending by Im, then Re [rad/s]
     ComplexDenseMatrix                right;  ///< φ_r, r × k
-    ComplexDenseMatrix                left;   ///< ψ_r, r × k: ψ_rᵀ Q_r(λ) = 0, no conjugate
+    ComplexDenseMatrix                left;   ///< ψ_r, r × k: ψ_rᵀ Q_r(λ) = 0 (without conjugation)
 
     std::vector<double> real_values; ///< real λ ≠ 0, ascending [1/s]
     int                 n_zeros = 0; ///< number of λ = 0: two for each rigid-body mode without damping
@@ -30,38 +30,37 @@ namespace Squeal
   enum class BandEnd
   {
     cut,
-    open ///< all reduced modes are kept: they may be counterparts of reference modes
+    open ///< all reduced modes are kept, because they may be counterparts of reference modes
   };
 
   /// All modes of @p model at the friction coefficient @p mu. Real λ and zeros of rigid-body motions are separated from oscillating modes
   /// by thresholds relative to @p largest_circular_frequency [rad/s], the end of the band.
   ReducedModes reduced_modes(const ReducedModel &model, double mu, double largest_circular_frequency, BandEnd end = BandEnd::cut);
 
-  /// Modes at any values of the parameters, on this process only: vectors of a multiple eigenvalue may differ from those on another
-  /// process.
+  /// Modes at any parameter values, on this process only: vectors of a multiple eigenvalue may differ between processes.
   ReducedModes local_reduced_modes(const ReducedModel    &model,
                                    const ParameterValues &values,
                                    double                 largest_circular_frequency,
                                    BandEnd                end = BandEnd::cut);
 
-  /// local_reduced_modes() by the QR algorithm on all modes, without separating the band first.
+  /// Computes local_reduced_modes() by the QR algorithm for all modes, without separating the band first.
   ReducedModes local_reduced_modes_by_qr(const ReducedModel    &model,
                                          const ParameterValues &values,
                                          double                 largest_circular_frequency,
                                          BandEnd                end = BandEnd::cut);
 
-  /// Modes of the band with vectors and matrices in the coordinates of ReducedModel::modal(); nothing if the band cannot be separated.
+  /// Modes of the band, with vectors and matrices in the coordinates of ReducedModel::modal(); nothing if the band cannot be separated.
   std::optional<ReducedModes> modal_modes_of_band(const ReducedModel    &model,
                                                   const ParameterValues &values,
                                                   double                 largest_circular_frequency);
 
-  /// Nonzero real eigenvalues of @p model in the band, with their vectors: static divergence and overdamped motions. Without damping only λ
-  /// > 0 of each pair ±λ.
+  /// Nonzero real eigenvalues of @p model in the band, with their vectors: static divergence and overdamped motions. Without damping, only
+  /// λ > 0 of each pair ±λ is included.
   ReducedModes real_eigenvalue_modes(const ReducedModel &model, double mu, const Band &band);
 
   /// Modes without friction and damping, λ = iω and ψ = φ, from the symmetric eigenproblem of TᵀK_cT and TᵀM_cT.
   ReducedModes reduced_real_modes(const ReducedModel &model, double largest_circular_frequency, BandEnd end = BandEnd::cut);
 
-  /// Some of the modes, in the order of @p chosen.
+  /// The modes with the indices @p chosen, in this order.
   ReducedModes selected(const ReducedModes &modes, const std::vector<int> &chosen);
 } // namespace Squeal

@@ -17,13 +17,13 @@ namespace Squeal
   /// Modes of a coupled system without friction, and the inverse for every μ; computed from terms, without a mesh.
   struct SystemModes
   {
-    double                          shift = 0.; ///< of the inverse [rad/s]; positive if a body has rigid-body motions
+    double                          shift = 0.; ///< shift of the inverse [rad/s]; positive if a body has rigid-body motions
     std::shared_ptr<UpdatedInverse> inverse;
-    SymmetricModes                  real;                    ///< in the band and its margin
-    Cost                            factorisation, solution; ///< of the inverse, and of the real modes
+    SymmetricModes                  real;                    ///< real modes in the band and its margin
+    Cost                            factorisation, solution; ///< cost of the inverse and of the real modes
   };
 
-  /// Solver options for the real modes of @p what, with @p shift [rad/s] if bodies have rigid-body motions.
+  /// Solver options for the real modes of @p what; @p shift [rad/s] is positive if bodies have rigid-body motions.
   SymmetricModesOptions real_modes_options(const SolverParameters &solvers, const std::string &what, double shift);
 
   /// Counts the modes of the band by one factorisation, as a step of @p progress. Throws ParameterError if there are more than the
@@ -62,11 +62,11 @@ namespace Squeal
    *
    * @param inverse    factor and attachment modes of the frictionless system at @p shift
    * @param n_expected number of real modes in the band, an estimate of the number of complex modes
-   * @param real_modes these modes, as starting vectors; null: none
+   * @param real_modes these real modes, as starting vectors; null: none
    *
    * If the stiffness with friction is almost singular, it is factorised with a shift for this μ.
    *
-   * Throws SolverError if a mode misses the tolerance, or if there is modal damping and the shift is not zero.
+   * Throws SolverError if a mode does not meet the tolerance, or if there is modal damping and the shift is not zero.
    */
   ComplexModes krylov_modes(const CoupledSystem    &system,
                             UpdatedInverse         &inverse,
