@@ -17,10 +17,10 @@ namespace Squeal
   {
     using Complex = std::complex<double>;
 
-    /// Smallest relative distance of times in a list of modes, and smallest distance from time zero [Hz].
+    /// Smallest relative distance of times in a list of modes [-], and smallest distance from time zero [Hz].
     constexpr double least_relative_step = 1e-6, least_step = 1e-6;
 
-    /// Resolution of fields: steps per largest displacement, or per radian.
+    /// Resolution of fields: number of steps per largest displacement or per radian.
     constexpr double steps_of_fields = 65536., steps_of_animations = 4096.;
 
     /// Rounds to multiples of 1 / @p n for better compression.
@@ -29,7 +29,7 @@ namespace Squeal
       return std::round(n * value) / n + 0.;
     }
 
-    /// Largest |u| over the dofs of all processes, for scaling fields; one if nothing moves.
+    /// Largest |u| over the dofs of all processes, for scaling fields; one if all displacements are zero.
     template <typename Number>
     double largest_modulus(const std::vector<Number> &displacement, const MPI_Comm communicator)
     {
@@ -42,7 +42,7 @@ namespace Squeal
 
     using Partitioner = dealii::Utilities::MPI::Partitioner;
 
-    /// Own dofs, and ghost dofs of the nodes of this process.
+    /// Dofs owned by this process, and ghost dofs of its nodes.
     std::shared_ptr<const Partitioner> dofs_of(const std::vector<Node> &nodes, const RowMap &map)
     {
       std::vector<dealii::types::global_dof_index> dofs;
@@ -52,7 +52,7 @@ namespace Squeal
       std::sort(dofs.begin(), dofs.end());
       dealii::IndexSet own(map.n()), relevant(map.n());
       if (map.n_local() > 0)
-        own.add_range(map.number(0), map.number(0) + map.n_local()); // ownership is contiguous
+        own.add_range(map.number(0), map.number(0) + map.n_local()); // each process owns a contiguous range
       relevant.add_indices(dofs.begin(), dofs.end());
       return std::make_shared<Partitioner>(own, relevant, map.communicator());
     }
@@ -60,7 +60,7 @@ namespace Squeal
     template <typename Number>
     using Vectors = std::vector<std::array<Number, 3>>;
 
-    /// Displacements of the vertices, zero if clamped, from local rows of the free dofs. Collective.
+    /// Displacements of the vertices from local rows of the free dofs; zero for clamped dofs. Collective.
     template <typename Number>
     Vectors<Number> vertex_values(const FieldMesh                          &mesh,
                                   const std::shared_ptr<const Partitioner> &dofs,
@@ -76,7 +76,7 @@ namespace Squeal
       return result;
     }
 
-    /// value(u) for each displacement of the vertices.
+    /// Vector field of value(u) for each displacement component u of the vertices.
     template <typename Number, typename Function>
     VertexField vector_field(const std::string &name, const Vectors<Number> &displacement, const Function &value)
     {
@@ -235,7 +235,7 @@ namespace Squeal
         for (std::size_t j = 0; j < modes.size(); ++j)
           {
             const double growth = options.grows ? 2. * M_PI * modes[j].lambda.real() / modes[j].lambda.imag() : 0.; // per period
-            // Scaling to the time of the largest amplitude avoids overflow
+            // Scale by the amplitude at the time when it is largest, to avoid overflow
             const double  largest_at = growth > 0. ? options.periods : 0.;
             const Complex turn       = std::polar(scales[j] * std::exp(growth * (periods - largest_at)), 2. * M_PI * periods);
             fields.push_back(
@@ -268,7 +268,7 @@ namespace Squeal
   {
     const Stage &stage  = bodies({});
     auto         values = vertex_values(stage.mesh, dofs, state.displacement);
-    // Clamped dofs follow their backplate
+    // Clamped dofs move with their backplate
     for (std::size_t i = 0; i < values.size(); ++i)
       for (int d = 0; d < 3; ++d)
         if (const Node &node = stage.mesh.nodes[i]; node.is_clamped())

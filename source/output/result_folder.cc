@@ -103,10 +103,10 @@ namespace Squeal
       throw FileError("the folder `" + shown + "` contains files that are not the results of a run", where,
                       "choose another name, or empty the folder");
     take_lock();
-    fs::remove_all(unfinished); // from a killed run
+    fs::remove_all(unfinished); // files of a killed run
     fs::create_directory(unfinished);
 
-    // Detect a full disk or too long names before the computation
+    // Detect a full disk, or a file system that forbids long names, before the computation
     constexpr std::size_t longest_name = 200, size = 4096;
     const fs::path        file    = unfinished / std::string(longest_name, 'x');
     const int             problem = write_file(file, std::string(size, ' '));
@@ -119,10 +119,10 @@ namespace Squeal
   void ResultFolder::take_lock()
   {
     lock = ::open(place.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (::flock(lock, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) // some file systems have no locks
+    if (::flock(lock, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) // other errors: some file systems have no locks
       return;
     ::close(lock);
-    lock = -1; // leave the files of the other run
+    lock = -1; // keeps remove_traces() from removing the files of the other run
     throw FileError("another run is writing to `" + shown + "`", "--output " + shown, "wait until it has ended, or choose another name");
   }
 
@@ -143,7 +143,7 @@ namespace Squeal
         lock = -1;
       }
     if (is_new)
-      fs::remove(place, ignored); // fails if it is not empty
+      fs::remove(place, ignored); // fails if the folder is not empty
   }
 
   void ResultFolder::write(const std::string &name, const std::function<void(std::ostream &)> &writer) const
@@ -168,7 +168,7 @@ namespace Squeal
     return written;
   }
 
-  /// Moves the files, the record last: a folder with a record is complete.
+  /// Moves the files, the record last, so that a folder with a record is complete.
   std::vector<std::string> ResultFolder::put_in_place() const
   {
     const FileSizes former = read_file_list(place / run_record).value_or(FileSizes());
@@ -179,7 +179,7 @@ namespace Squeal
           std::error_code ignored;
           fs::remove(place / name, ignored);
           for (fs::path folder = fs::path(name).parent_path(); !folder.empty(); folder = folder.parent_path())
-            fs::remove(place / folder, ignored); // fails if it is not empty
+            fs::remove(place / folder, ignored); // fails if the folder is not empty
         }
 
     std::vector<std::string> remarks;
@@ -240,7 +240,7 @@ namespace Squeal
 
     constexpr const char *file_list = "files [byte]";
 
-    /// Such as 2026-01-31T12:00:00Z.
+    /// Current time in the form 2026-01-31T12:00:00Z.
     std::string utc_time()
     {
       const std::time_t  now = std::time(nullptr);

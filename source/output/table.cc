@@ -27,7 +27,7 @@ namespace Squeal
       const auto *number = std::get_if<double>(&cell);
       if (number == nullptr)
         return "";
-      // No minus sign before zeros
+      // Remove the minus sign of zeros
       const std::string text = shown(*number);
       return text[0] == '-' && text.find_first_not_of("-0.") == std::string::npos ? text.substr(1) : text;
     }
@@ -35,7 +35,7 @@ namespace Squeal
     std::string csv_text(const Entry &cell)
     {
       const std::string text = text_of(cell, [](const double number) {
-        char       digits[significant_digits + 8]; // including sign, point, exponent
+        char       digits[significant_digits + 8]; // with space for sign, point and exponent
         const auto end = std::to_chars(digits, digits + sizeof(digits), number, std::chars_format::general, significant_digits);
         return std::string(digits, end.ptr);
       });
@@ -74,7 +74,7 @@ namespace Squeal
 
   void Table::print(std::ostream &stream) const
   {
-    // Pad every column to its width, header first
+    // Pad every column, including its header, to its width
     std::vector<std::vector<std::string>> texts;
     for (std::size_t c = 0; c < heads.size(); ++c)
       {

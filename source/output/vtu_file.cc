@@ -17,7 +17,7 @@ namespace Squeal
 {
   namespace
   {
-    /// zlib levels from 1 to 9: fields differ in every file, while a mesh is compressed only once.
+    /// zlib levels from 1 (fast) to 9: fields are compressed for every file, a mesh only once.
     constexpr int level_of_fields = 1, level_of_meshes = 9;
 
     template <typename Number>
@@ -35,14 +35,14 @@ namespace Squeal
       std::uint64_t head[4] = {1, size, 0, 0};
       if (compress2(reinterpret_cast<Bytef *>(result.data()) + sizeof(head), &length, static_cast<const Bytef *>(values), size, level) !=
           Z_OK)
-        throw std::bad_alloc(); // the only possible cause
+        throw std::bad_alloc(); // lack of memory is the only possible cause
       head[3] = length;
       result.replace(0, sizeof(head), reinterpret_cast<const char *>(head), sizeof(head));
       result.resize(sizeof(head) + length);
       return result;
     }
 
-    /// A text in the field data of a file, as character codes, which need no escapes.
+    /// Field data with a text as character codes, which need no escape sequences.
     std::string field_data(const std::string &text)
     {
       std::ostringstream stream;
@@ -60,7 +60,7 @@ namespace Squeal
       MPI_Send(text.data(), size, MPI_CHAR, 0, 0, communicator);
     }
 
-    /// Writes the text of process 0, then those received from the other processes.
+    /// Writes the text of process 0, then the texts received from the other processes.
     void write_all(std::ostream &stream, const std::string &own, const MPI_Comm communicator)
     {
       int n_processes;
@@ -176,7 +176,7 @@ namespace Squeal
       std::vector<unsigned int> nodes;
     };
 
-    /// Divides an element of degree 2: half-size cells at the corners, and the remainder.
+    /// Divides an element of degree 2 into half-size cells at the corners, and cells for the remainder.
     std::vector<Part> halves(const Shape shape)
     {
       const auto       &corners = topology(shape).corners;
@@ -193,7 +193,7 @@ namespace Squeal
       std::vector<Part> middle;
       if (shape == Shape::triangle)
         middle = {{shape, {3, 4, 5}}};
-      if (shape == Shape::tetrahedron) // an octahedron, divided about one diagonal
+      if (shape == Shape::tetrahedron) // the remainder is an octahedron, which is divided about one diagonal
         middle = {{shape, {4, 5, 6, 8}}, {shape, {4, 6, 7, 8}}, {shape, {4, 7, 9, 8}}, {shape, {4, 9, 5, 8}}};
       if (shape == Shape::wedge)
         middle = {{shape, {6, 9, 7, 15, 17, 16}}, {shape, {15, 17, 16, 12, 14, 13}}};
@@ -207,7 +207,8 @@ namespace Squeal
       return result;
     }
 
-    /// Linear cells of an element, corners in VTK order: that of Gmsh, except that the first triangle of a wedge faces outwards.
+    /// Linear cells of an element with corners in VTK's order, which is Gmsh's order except that the first triangle of a wedge faces
+    /// outwards.
     std::vector<Part> parts_of(const Shape shape, const unsigned int degree)
     {
       std::vector<Part> result = degree == 2 ? halves(shape) : std::vector<Part>{{shape, {}}};
@@ -226,12 +227,12 @@ namespace Squeal
     /// VTK cell types, in the order of the shapes.
     constexpr std::array<std::uint8_t, 6> vtk_types = {{5, 9, 10, 14, 13, 12}};
 
-    /// Elements of this process, sorted by angle about z, radius and height of their corner mean.
+    /// Elements owned by this process, sorted by angle about z, radius and height of the mean of their corners.
     template <typename Element>
     std::multimap<std::tuple<long, long, double>, const Element *> in_columns(const Model                        &model,
                                                                               const std::vector<const Element *> &elements)
     {
-      constexpr double                                               together = 1e-6; // [rad], [m]
+      constexpr double                                               together = 1e-6; // resolution of angles [rad] and radii [m]
       std::multimap<std::tuple<long, long, double>, const Element *> result;
       for (const Element *element : elements)
         if (element->is_own)
@@ -248,7 +249,7 @@ namespace Squeal
       return result;
     }
 
-    /// Elements of this process among cells or faces; numbers their vertices in order.
+    /// Mesh of those @p elements that this process owns; vertices are numbered in the order of the elements.
     template <typename Element>
     FieldMesh mesh_of(const Model &model, const std::vector<const Element *> &elements)
     {

@@ -17,19 +17,20 @@ namespace Squeal
 {
   namespace
   {
-    /// Tension of a closed node relative to the largest reaction, and overlap of an open one relative to the largest gap, that count as
-    /// rounding errors [-].
+    /// Tension of a closed node relative to the largest reaction, and overlap of an open node relative to the largest gap, count as
+    /// rounding errors up to this limit [-].
     constexpr double rounding_of_contact = 1e-13;
-    /// Difference between the balance and the gaps of the motions, relative to the gaps, below which it is rounding and the uniqueness
-    /// condition applies [-].
+    /// L = −Bᵀ, a condition of uniqueness, counts as satisfied if the difference relative to B is below this limit, the level of rounding
+    /// errors [-].
     constexpr double symmetric_motions = 1e-10;
-    /// Difference of the reactions of two solutions relative to the largest one, below which they are equal: nodes may just touch [-].
+    /// Two solutions are equal if the difference of their reactions relative to the largest reaction is below this limit: nodes may just
+    /// touch [-].
     constexpr double same_reactions = 1e-8;
 
-    /// Block steps without fewer violations before single nodes are toggled.
+    /// Number of block steps without a decrease of violations before single nodes are toggled.
     constexpr int patience = 8;
 
-    /// Number of friction coefficients from 0 to μ, and of random active sets, if a direct attempt fails.
+    /// Number of steps of the friction coefficient from 0 to μ, and of random active sets, that are tried if a direct attempt fails.
     constexpr int n_continuation_steps = 10;
     constexpr int n_random_starts      = 40;
 
@@ -38,10 +39,10 @@ namespace Squeal
     {
       ContactSolution  solution;
       std::vector<int> violated;      ///< closed nodes in tension, open nodes with overlap
-      double           pull, overlap; ///< largest of each [N], [m]
+      double           pull, overlap; ///< largest tension [N] and overlap [m]
     };
 
-    /// Solutions for given active sets of one problem.
+    /// Solves a problem for given active sets.
     class ActiveSetSolver
     {
     public:
@@ -56,7 +57,8 @@ namespace Squeal
       }
 
       /**
-       * Reactions, zero at open nodes, and motions below them, (n_c + n_z) × k, with zero gaps at closed nodes and motions in equilibrium.
+       * Reactions (zero at open nodes), followed by motions, (n_c + n_z) × k, for which gaps at closed nodes are zero and the equations of
+       * equilibrium hold.
        *
        * @param initial_gap n_c × k
        * @param forces      n_z × k
@@ -72,7 +74,7 @@ namespace Squeal
             nodes.push_back(c);
         const int n = nodes.size();
 
-        // [G_CC/unit  B_C; L_C  0] [r; z/unit] = [−g_0/unit; f], columns of B and rows of L scaled to entries of 1
+        // [G_CC/unit B_C; L_C 0] [r; z/unit] = [−g_0/unit; f]; columns of B and rows of L are scaled to a largest entry of 1
         DenseMatrix A = DenseMatrix::Zero(n + n_z, n + n_z), b(n + n_z, k);
         A << G(nodes, nodes) / unit, problem.motions(nodes, Eigen::placeholders::all) * motion_sizes.cwiseInverse().asDiagonal(),
           balance_sizes.cwiseInverse().asDiagonal() * problem.balance(Eigen::placeholders::all, nodes), DenseMatrix::Zero(n_z, n_z);
@@ -84,7 +86,7 @@ namespace Squeal
           }
         const RealLU lu = regular_lu(A, "steady sliding, equations of the closed contact nodes");
         DenseMatrix  x  = lu.solve(b);
-        // One step of refinement, so that the reactions balance the load to rounding
+        // One step of iterative refinement, so that the reactions balance the load up to rounding errors
         x += lu.solve(b - A * x);
 
         DenseMatrix result                      = DenseMatrix::Zero(G.rows() + n_z, k);
@@ -93,7 +95,7 @@ namespace Squeal
         return result;
       }
 
-      /// Throws SolverError if the closed nodes do not determine the reactions.
+      /// Solution for an active set; throws SolverError if the closed nodes do not determine the reactions.
       Iterate solve(std::vector<bool> closed) const
       {
         const DenseMatrix     x = reactions_and_motions(closed, as_column(problem.initial_gap), as_column(problem.forces));
@@ -107,7 +109,7 @@ namespace Squeal
         Iterate      result{{}, {}, 0., 0.};
         for (int c = 0; c < G.rows(); ++c)
           {
-            // Without any reaction or gap there is no violation: comparisons with NaN are false
+            // If all reactions or gaps are zero, the quotient is NaN and the comparison is false: no violation
             const bool pulls    = closed[c] && r[c] / largest_reaction > rounding_of_contact;
             const bool overlaps = !closed[c] && g[c] / largest_gap > rounding_of_contact;
             if (pulls || overlaps)
@@ -121,7 +123,7 @@ namespace Squeal
         return result;
       }
 
-      /// Closes the node nearest to the disc for a backplate without closed nodes.
+      /// Closes the node nearest to the disc for each backplate without closed nodes.
       void support_backplates(std::vector<bool> &closed, const std::vector<double> &gaps) const
       {
         for (int k = 0; k < problem.balance.rows(); ++k)
@@ -152,10 +154,10 @@ namespace Squeal
       const ContactProblem &problem;
       DenseMatrix           G;
       double                unit;                        ///< mean diagonal entry of G [m/N]
-      Eigen::VectorXd       motion_sizes, balance_sizes; ///< largest entries of columns of B, rows of L
+      Eigen::VectorXd       motion_sizes, balance_sizes; ///< largest entries of the columns of B and of the rows of L
     };
 
-    /// Best iterate of an attempt; a solution if it violates nothing.
+    /// Best iterate of an attempt, which is a solution if no node violates the conditions.
     using Attempt = std::optional<Iterate>;
 
     bool is_better(const Iterate &a, const Iterate &b, const double unit)
@@ -209,7 +211,7 @@ namespace Squeal
 
     std::vector<bool> random_set(std::mt19937 &generator, const std::size_t size)
     {
-      // Raw bits of the generator give the same sets with every standard library
+      // Use the raw bits of the generator, which are the same with every standard library
       const auto        threshold = generator();
       std::vector<bool> closed(size);
       for (std::size_t c = 0; c < size; ++c)
@@ -234,7 +236,7 @@ namespace Squeal
     if (succeeds(pivot(solver, all, problem.initial_gap)))
       return best->solution;
 
-    // From the solution without friction, in steps of μ
+    // Continuation from the solution without friction, in steps of μ
     std::vector<bool> closed = all;
     for (int step = 0; step <= n_continuation_steps; ++step)
       {
@@ -293,7 +295,7 @@ namespace Squeal
         const Attempt attempt = pivot(solver, random_set(generator, n), problem.initial_gap);
         if (attempt && attempt->violated.empty() && attempt->solution.closed != solution.closed)
           {
-            // Nodes that just touch may count as closed or open: only different reactions are another solution
+            // Nodes that just touch may count as closed or open: only solutions with different reactions differ
             const auto r       = as_column(solution.reactions);
             result.found_other = max_norm(as_column(attempt->solution.reactions) - r) / max_norm(r) > same_reactions;
             result.other       = attempt->solution;

@@ -16,17 +16,18 @@ namespace Squeal
 {
   namespace
   {
-    /// Energy of the sliding motion outside the free motions of the disc, below which it is one of them up to rounding [-].
+    /// The sliding motion is a free motion of the disc if its energy outside the span of the free motions is below this limit [-].
     constexpr double free_to_turn = 1e-6;
-    /// Slip due to a free motion, relative to its largest displacement, and relative force of a pressure on it, that count as rounding [-].
+    /// Slip due to a free motion, relative to its largest displacement, and relative force of a pressure on this motion, count as rounding
+    /// errors up to this limit [-].
     constexpr double no_slip = 1e-6;
-    /// Ratio of the smallest to the largest singular value of the gaps of all motions, below which a motion changes no gap; rounding gives
-    /// 1e-15 [-].
+    /// A combination of motions does not change the gaps if the ratio of the smallest to the largest singular value of B is below this
+    /// limit; rounding errors cause 1e-15 [-].
     constexpr double unchanged_gaps = 1e-8;
-    /// Difference relative to the sum of the loads on a floating disc, below which they are equal up to rounding [-].
+    /// Loads on a floating disc are equal up to rounding errors if their difference relative to their sum is below this limit [-].
     constexpr double equal_loads = 1e-10;
 
-    /// Motion of the disc with the sliding velocity, n × 1, with unit modal mass.
+    /// Rigid-body motion of the disc with the sliding velocity, n × 1, of unit modal mass.
     MultiVector sliding_motion(const Model &model, const SecondOrderSystem &system, const SlidingVelocity &velocity)
     {
       const auto rigid = velocity.rigid_motion();
@@ -37,8 +38,8 @@ namespace Squeal
       return motion * DenseMatrix::Constant(1, 1, 1. / std::sqrt(column_products(motion, *system.mass * motion)[0]));
     }
 
-    /// Free motions @p N of the disc without the sliding motion @p turning: the drive balances its moment even if it changes gaps, as on a
-    /// polygonal rim.
+    /// Free motions @p N of the disc without the sliding motion @p turning, which is excluded even if it changes gaps (polygonal rim),
+    /// because the drive balances its moment.
     std::optional<MultiVector> without_turning(const MultiVector &N, const MultiVector &turning, const SecondOrderSystem &system)
     {
       const DenseMatrix part = gram(N, *system.mass * turning);
@@ -50,7 +51,7 @@ namespace Squeal
       return N * DenseMatrix(Q.rightCols(N.n_columns() - 1));
     }
 
-    /// Throws SolverError if friction or pressure acts on @p motions of a body that change no gap.
+    /// Throws SolverError if friction or pressure does work on @p motions of a body, which do not change gaps.
     void refuse_forces_on(const MultiVector      &motions,
                           const ContactOperators &contact,
                           const std::string      &body,
@@ -73,8 +74,8 @@ namespace Squeal
         }
     }
 
-    /// Throws SolverError if loads or friction, with the work @p of_contact for unit reactions, do work on a motion @p y that changes no
-    /// gap.
+    /// Throws SolverError if loads or friction do work on a motion @p y that does not change gaps; @p of_contact is the work of unit
+    /// reactions.
     void refuse_unbalanced(const Eigen::VectorXd &y, const Eigen::VectorXd &forces, const DenseMatrix &of_contact)
     {
       if (max_norm(of_contact.transpose() * y) > no_slip * max_norm(of_contact.cwiseAbs().transpose() * y.cwiseAbs()))
@@ -136,7 +137,7 @@ namespace Squeal
         Eigen::Index held;
         y.tail(n - n_plates).cwiseAbs().maxCoeff(&held);
         held += n_plates;
-        // The row of its equilibrium is replaced by z = 0: it follows from the others
+        // Replace the equation of equilibrium of this motion, which follows from the others, by z = 0
         problem.motions.col(free[held]).setZero();
         problem.balance.row(free[held]).setZero();
         problem.held.push_back(free[held]);

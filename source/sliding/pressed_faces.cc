@@ -14,7 +14,7 @@ namespace Squeal
 {
   namespace
   {
-    /// |∫ n dA| relative to the area, below which a face has no direction of pressure [-].
+    /// A face has no direction of pressure if |∫ n dA| relative to its area is below this limit [-].
     constexpr double least_resultant = 0.1;
 
     Eigen::Vector3d as_vector(const dealii::Tensor<1, 3> &v)
@@ -22,7 +22,7 @@ namespace Squeal
       return {v[0], v[1], v[2]};
     }
 
-    /// Properties of a pressed face, the same on every process.
+    /// Properties of a pressed face, identical on every process.
     struct PressedFace
     {
       Eigen::Matrix3Xd area_normals;    ///< ∫ n dA of each component [m²]
@@ -96,7 +96,7 @@ namespace Squeal
         const PressedFace whole = pressed_face(model, name, contact_nodes);
         check_pressed(model, name, whole, directions);
         const double pressure = load_per_side / whole.area_normals.rowwise().sum().norm();
-        // Includes faces of other processes: each process adds to its own rows
+        // Include faces of other processes, because each process adds only to its own rows
         for (const Face *face : model.faces_of(name))
           {
             values.reinit(*face);

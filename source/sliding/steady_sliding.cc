@@ -37,8 +37,8 @@ namespace Squeal
       return centres;
     }
 
-    /// Distances of a node from the centre of its face [m]: along t, and outwards (along the axis for contact with a rim, along b if the
-    /// disc does not turn about z).
+    /// Distances of a node from the centre of its face [m]: along t, and outwards. The second distance is along the axis for contact with a
+    /// rim, and along b if the disc does not turn about z.
     std::pair<double, double> offsets(const ContactNode &node, const Eigen::Vector3d &centre, const Travel &travel)
     {
       return {node.sliding.dot(node.position - centre), !node.turns      ? node.radial.dot(node.position - centre) :
@@ -46,8 +46,8 @@ namespace Squeal
                                                                            node.axis_distance() - std::hypot(centre[0], centre[1])};
     }
 
-    /// Travel and backplate of each component, and the load on each backplate; no loads if the travel is prescribed or there are no
-    /// backplates.
+    /// Travel and backplate of each component, and the load of each backplate; the loads are empty if the travel is prescribed or if there
+    /// are no backplates.
     struct Backplates
     {
       std::vector<Travel> travels;
@@ -71,7 +71,7 @@ namespace Squeal
       if (!per_pin)
         return result;
 
-      // Pins share the load of their common backplate
+      // Divide the load of each side equally between its pins
       const std::vector<int> shared = backplate_numbers(result.travels, false);
       for (std::size_t pin = 0; pin < shared.size(); ++pin)
         if (const int number = result.of_pin[pin]; number >= 0)
@@ -86,8 +86,7 @@ namespace Squeal
       return result;
     }
 
-    /// Problem condensed to the contact nodes; free @p motions, if any, follow those of the backplates. @p pressing: forces of a pressure,
-    /// or null.
+    /// Problem condensed to the contact nodes. Free @p motions follow the motions of the backplates; @p pressing: forces of a pressure.
     ContactProblem contact_problem(const SlidingModel               &sliding,
                                    const Backplates                 &plates,
                                    const Eigen::VectorXd            &gaps,
@@ -115,13 +114,13 @@ namespace Squeal
               problem.balance(plates.of_pin[node.pin], c) = travel.force(node, mu);
             }
         }
-      if (pressing) // P_n K⁻¹ f_p from the normal attachment modes
+      if (pressing) // adds P_n K⁻¹ f_p, computed from the normal attachment modes
         Eigen::Map<Eigen::VectorXd>(problem.initial_gap.data(), n_c) += gram(sliding.normal, *pressing);
       if (motions)
         {
           const DenseMatrix B_n = replicate(P_n * *motions), B_t = replicate(*sliding.contact.tangential * *motions);
           problem.forces.resize(n_z, 0.);
-          // −L = (P_n + μ P_t) N: work of the contact forces in the motion
+          // −L is the transpose of (P_n + μ P_t) N: the work of unit contact forces on the motions
           problem.motions.rightCols(n_z - n_plates)  = B_n;
           problem.balance.bottomRows(n_z - n_plates) = -(B_n + mu * B_t).transpose();
           if (pressing)
@@ -132,13 +131,13 @@ namespace Squeal
       return problem;
     }
 
-    /// The contact problem and its data.
+    /// The contact problem and the data from which it was built.
     struct CondensedSliding
     {
       Backplates                 plates;
-      Eigen::VectorXd            gaps;     ///< along the travel [m]
-      std::optional<MultiVector> motions;  ///< of free bodies
-      std::optional<MultiVector> pressing; ///< f_p
+      Eigen::VectorXd            gaps;     ///< gaps along the travel [m]
+      std::optional<MultiVector> motions;  ///< free motions of the bodies
+      std::optional<MultiVector> pressing; ///< forces f_p of a pressure
       ContactProblem             problem;
     };
 
@@ -188,7 +187,7 @@ namespace Squeal
       forces.local() += mu * transpose_times(P_t, r).local();
       if (pressing)
         forces += *pressing;
-      if (const MultiVector *N = sliding.response.rigid_body_modes()) // moment balanced by the drive
+      if (const MultiVector *N = sliding.response.rigid_body_modes()) // subtracts the moment that the drive balances
         multiply_add(-1., *sliding.system.mass * *N, gram(*N, forces), 1., forces);
       MultiVector rest = K * u;
       rest.local() -= forces.local();
@@ -214,7 +213,7 @@ namespace Squeal
       result.overlap         = gap.maxCoeff() / travel;
       result.complementarity = max_norm(gap.cwiseProduct(reactions)) / (travel * load);
 
-      // Supports: for a rigid-body motion w of a component, K w has forces only at its mount or clamp
+      // Balance with the supports: for a rigid-body motion w of a component, K w has forces only at its mount or clamp
       for (unsigned int component = 0; component < sliding.model.component_names().size(); ++component)
         {
           const MultiVector     W     = rigid_motions(sliding.model, component);
@@ -269,7 +268,7 @@ namespace Squeal
   {
     const Backplates                 plates = backplates(model, interface, operation, parameters);
     const Eigen::VectorXd            gaps   = initial_gaps(model, interface, parameters);
-    std::vector<Eigen::AlignedBox1d> extents(model.component_names().size()); // along the travel
+    std::vector<Eigen::AlignedBox1d> extents(model.component_names().size()); // extents of the pins along their travel
     for (const Node &node : model.nodes())
       extents[node.component].extend(
         Eigen::Matrix<double, 1, 1>(plates.travels[node.component].direction.dot(Eigen::Vector3d::Map(node.position.data()))));
@@ -278,7 +277,7 @@ namespace Squeal
       heights.push_back(largest_of_processes(model.communicator(), extent.max()[0]) +
                         largest_of_processes(model.communicator(), -extent.min()[0]));
     if (parameters.control == BackplateControl::pressure)
-      pressing_forces(model, interface, parameters, operation.load_per_side); // rejects invalid faces
+      pressing_forces(model, interface, parameters, operation.load_per_side); // throws for invalid faces
     for (const PinLoad &load : parameters.pin_loads)
       pin_number(model.component_names(), load.pin, "Steady sliding/Loads");
 

@@ -18,7 +18,7 @@ namespace Squeal
   {
     using Complex = std::complex<double>;
 
-    /// |Re λ| / Im λ of modes with nearly equal λ, below which it is a rounding error [-].
+    /// |Re λ| / Im λ of modes with nearly equal λ up to this limit is a rounding error [-].
     constexpr double neutral_rate = 1e-11;
     /// Weight of the distance of λ relative to overlaps of vectors [-].
     constexpr double closeness_weight = 0.01;
@@ -29,11 +29,11 @@ namespace Squeal
       return !(std::abs(lambda.real()) / lambda.imag() > neutral_rate) ? 0 : lambda.real() > 0. ? 1 : -1;
     }
 
-    /// Vectors of the modes at a point; within a multiple λ those closest to the previous vectors of the branches.
+    /// Vectors of the modes at a point; for a multiple λ, the vectors closest to the previous vectors of the branches.
     struct Carried
     {
       ComplexDenseMatrix   right, left;
-      std::vector<Complex> lambda; ///< at the last point at which it was simple
+      std::vector<Complex> lambda; ///< λ at the last point at which it was simple
     };
 
     void begin_branch(TrackedModes &modes, const int k, const int mode)
@@ -75,7 +75,7 @@ namespace Squeal
             }
         }
 
-      // Link modes by vectors if these distinguish them, else by a smooth curve of λ
+      // Link modes by vectors if these distinguish the modes, else by the extrapolation of λ
       const int            r        = std::max(modes.points[k].right.rows(), modes.points[k + 1].right.rows());
       DenseMatrix          overlaps = DenseMatrix::Zero(n, n);
       std::vector<Complex> predicted;
@@ -92,7 +92,7 @@ namespace Squeal
       };
       add_overlaps(carried.right, modes.points[k + 1].right);
       add_overlaps(carried.left, modes.points[k + 1].left);
-      // Otherwise indistinguishable modes keep their growth, however slow
+      // Prefer modes with the same sign of growth, even if growth is slow, when nothing else distinguishes the modes
       const auto   grow_alike = [](const Complex &x, const Complex &y) { return growth_class(x) == growth_class(y); };
       const double weight     = block.resolved ? closeness_weight : 1.;
       return best_assignment(n, n, [&](const int i, const int j) {
@@ -110,7 +110,7 @@ namespace Squeal
                  ComplexDenseMatrix       &Y,
                  const std::vector<int>   &to)
     {
-      // Vectors in a smaller basis are extended by zeros
+      // Vectors from an earlier, smaller basis are extended by zeros
       const Eigen::Index       r = std::min(Q.rows(), X.rows());
       const ComplexDenseMatrix P = Q * (Q.topRows(r).adjoint() * X.topRows(r)(Eigen::placeholders::all, from));
       for (std::size_t j = 0; j < to.size(); ++j)
@@ -118,7 +118,7 @@ namespace Squeal
           Y.col(to[j]) = P.col(j) / norm;
     }
 
-    /// Carries vectors from point k to the next one.
+    /// Carries vectors from point k to the next point.
     void carry(const TrackedModes &modes, const int k, const std::vector<int> &image, Carried &carried)
     {
       const ChartPoint &next = modes.points[k + 1];
@@ -147,7 +147,7 @@ namespace Squeal
       carried = std::move(result);
     }
 
-    /// All multiple λ of a point.
+    /// All multiple λ of a point with their vectors.
     std::vector<MultipleModes> multiple_modes(const ChartPoint &point)
     {
       std::vector<MultipleModes> result;
@@ -161,7 +161,7 @@ namespace Squeal
       return result;
     }
 
-    /// Fraction of a step below which another one counts as half of it, up to rounding [-].
+    /// A step counts as half of another step up to this fraction, which allows for rounding [-].
     constexpr double half_width = 0.5 + 1e-6;
 
     void insert(TrackedModes &modes, const EvaluateChart &evaluate, const std::vector<double> &values, const bool refines)
@@ -214,7 +214,7 @@ namespace Squeal
       begin_branch(modes, 0, static_cast<int>(j));
     for (int k = 0; k + 1 < modes.n_points(); ++k)
       {
-        std::vector<int> image(modes.points[k].lambda.size(), -1); // for each mode at point k its mode at point k + 1
+        std::vector<int> image(modes.points[k].lambda.size(), -1); // for each mode at point k, its index at point k + 1
         for (const ModeBlock &block : modes.intervals[k].links->blocks)
           {
             const std::vector<int> match = match_in_block(modes, k, block, carried);

@@ -26,16 +26,16 @@ namespace Squeal
     /// Principal axes of vectors below this fraction of the largest are dropped [-].
     constexpr double least_axis = 1e-6;
 
-    /// Orthonormal basis of the span of a few columns of X.
+    /// Orthonormal basis of the span of X, which has few columns; negligible directions are dropped.
     DenseMatrix principal_columns(const DenseMatrix &X)
     {
       const auto [sizes, axes] = singular_values(X); // descending
       const auto n             = std::upper_bound(sizes.begin(), sizes.end(), least_axis * sizes.front(), std::greater<>()) - sizes.begin();
-      // Small principal axes have lost their orthogonality
+      // Orthonormalise again: small principal axes have lost their orthogonality
       return orthonormal_columns(X * axes.leftCols(n));
     }
 
-    /// λ of a mode, or the mean and (λ_1 − λ_2)² of two, which are smooth at a coalescence.
+    /// λ of a mode, or the mean and (λ_1 − λ_2)² of two modes, which are smooth functions of μ at a coalescence.
     struct LambdaPair
     {
       std::complex<double> mean, square;
@@ -55,7 +55,8 @@ namespace Squeal
         return {(1. - t) * mean + t * other.mean, (1. - t) * square + t * other.square};
       }
 
-      /// Moves the values closest to these to the front: a small basis has additional ones, which may be close to the mean.
+      /// Moves the values closest to the expected ones to the front: a small basis has additional eigenvalues, which may be close to the
+      /// mean.
       void bring_to_front(std::vector<std::complex<double>> &values) const
       {
         auto place = values.begin();
@@ -97,7 +98,7 @@ namespace Squeal
   ChartPoint ChartModel::evaluate(const OperatingPoint &point) const
   {
     const ParameterValues values = system.at(point.friction_coefficient, point.values);
-    // Vector products are the same in modal coordinates, where most matrices are diagonal
+    // Compute modes in modal coordinates, in which most matrices are diagonal; vector products do not change
     const double     end   = (1. + band_margin) * largest_circular_frequency;
     auto             modal = modal_modes_of_band(model, values, end);
     ReducedModes     modes = modal ? std::move(*modal) : local_reduced_modes_by_qr(model, values, end);
@@ -155,7 +156,7 @@ namespace Squeal
       ParameterValues others;
       for (const auto &[name, numbers] : first.values)
         {
-          std::vector<double> &between = others[name]; // also if the list is empty, which means zeros
+          std::vector<double> &between = others[name]; // adds the entry even if the list is empty, which means zeros
           for (std::size_t i = 0; i < numbers.size(); ++i)
             between.push_back((1. - t) * numbers[i] + t * second.values.at(name)[i]);
         }
@@ -178,7 +179,7 @@ namespace Squeal
     const double at_a = value(a), at_b = value(b);
     if (!(at_a * at_b < 0.))
       return {};
-    // NaN ends the search
+    // The search ends if a value is NaN
     constexpr double resolution = 1e-10;
     std::uintmax_t   n_steps    = 50;
     const auto       bracket    = boost::math::tools::toms748_solve(
@@ -206,7 +207,7 @@ namespace Squeal
 
   std::optional<MultiVector> ChartModel::new_vectors(const std::vector<ModesAt> &sets) const
   {
-    const int n_missing = system.map().n() - model.size(); // number of vectors missing to a complete basis
+    const int n_missing = system.map().n() - model.size(); // number of vectors by which the basis is incomplete
     if (n_missing <= 0)
       return {};
     std::vector<ProjectedResiduals::ModesAt> modes;
@@ -225,7 +226,7 @@ namespace Squeal
     std::optional<MultiVector> responses = residuals.principal_responses(model, modes, compression_tolerance);
     if (!responses)
       return {};
-    // First, so that the remainder is not compared with components in the basis
+    // Remove components in the basis first, so that the tolerance is relative to the remainder
     remove_basis(*system.mass, model, *responses);
     auto result =
       orthonormalize_if_any(*system.mass, &model.basis(), std::move(*responses), dependence_tolerance, nullptr, FirstProjection::done);
@@ -253,7 +254,7 @@ namespace Squeal
         }
     Y -= real_modes * (real_modes.transpose() * Y);
 
-    // Strain energy: K_r = V diag(w) Vᵀ, squared norms of Y are those of √w VᵀY
+    // Strain energy: with K_r = V diag(w) Vᵀ, the squared norms of Y are the squared norms of √w VᵀY
     const MPI_Comm communicator = inverse.map().communicator();
     const auto [w, V]           = agreed(communicator, symmetric_eigenpairs(model.stiffness() + shift * shift * model.mass()));
     const DenseMatrix Y_w       = as_column(w).cwiseSqrt().asDiagonal() * (V.transpose() * Y);

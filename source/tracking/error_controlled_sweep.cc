@@ -15,23 +15,25 @@ namespace Squeal
 {
   namespace
   {
-    /// Fraction of the tolerance at training points, so that points between them also meet it [-].
+    /// Fraction of the tolerance that is required at training points, so that points between them also meet the tolerance [-].
     constexpr double training_factor = 0.5;
 
-    /// Principal axes with squares below this times the tolerance are dropped from the basis, see compressed_basis() [-].
+    /// Principal axes whose squares are below compression_factor times the tolerance are dropped from the basis, see compressed_basis()
+    /// [-].
     constexpr double compression_factor = 10.;
 
-    /// Number of successive extensions without halving the error of their point, after which the error counts as rounding. An extension by
-    /// the residuals of the inaccurate modes normally divides their errors by ten or more.
+    /// Number of successive extensions that do not halve the error of a point, after which this error counts as a rounding error. An
+    /// extension by the residuals of the inaccurate modes normally divides their errors by ten or more.
     constexpr int max_growths_in_vain = 4;
 
-    /// Number of successive extensions that did not halve the error of their point, after one that changed it from @p before to @p after.
+    /// Updates the number of successive extensions that did not halve the error, after an extension that changed the error from @p before
+    /// to @p after.
     int in_vain(const int n_so_far, const double before, const double after)
     {
       return after < 0.5 * before ? 0 : n_so_far + 1;
     }
 
-    /// Extends the basis by the inaccurate modes of a point; returns the reason if it cannot, or nothing.
+    /// Extends the basis for the inaccurate modes of a point; returns the reason if this is impossible, else an empty text.
     std::string grow(ChartModel           &model,
                      const OperatingPoint &point,
                      const ChartPoint     &chart,
@@ -60,7 +62,7 @@ namespace Squeal
       bool                    may_grow  = true;
       int                     n_growths = 0, n_in_vain = 0;
       for (const int t : training)
-        for (double before = 0.;; ++n_growths) // error of this point before its last extension
+        for (double before = 0.;; ++n_growths) // before: error of this point before the last extension
           {
             ChartPoint   chart = evaluate(model, {points[t]}, communicator).front();
             const double error = model.largest_error(chart);
@@ -68,7 +70,7 @@ namespace Squeal
             if (before > 0.)
               n_in_vain = in_vain(n_in_vain, before, error);
             may_grow = may_grow && n_in_vain < max_growths_in_vain;
-            // Even if the basis cannot be extended further, more points may be evaluated
+            // If the basis cannot be extended further, continue with the next training point
             if (error <= tolerance || !may_grow)
               {
                 charts.push_back(std::move(chart));
@@ -89,7 +91,7 @@ namespace Squeal
   {
     const int n = dealii::Utilities::MPI::n_mpi_processes(communicator), me = dealii::Utilities::MPI::this_mpi_process(communicator);
     const int n_points = static_cast<int>(points.size());
-    // Several per thread, for load balancing
+    // Several points per thread, for load balancing
     constexpr int points_of_thread = 16;
     const int     n_at_once        = n * points_of_thread * static_cast<int>(dealii::Utilities::MPI::min(n_task_threads(), communicator));
     model.prepare();
@@ -119,7 +121,7 @@ namespace Squeal
     return [&model, at, communicator](const ZeroSearch &search) {
       const auto point = [&](const ModesAtPoint &modes) { return at(modes.point->friction_coefficient); };
       const auto zero  = model.predicted_zero(search, point(search.first), point(search.second));
-      // Rounding must not lead to different friction coefficients on different processes
+      // Use the value of process 0: rounding errors must not cause different friction coefficients on different processes
       const auto same = dealii::Utilities::MPI::broadcast(communicator, zero ? std::vector{*zero} : std::vector<double>(), 0);
       return same.empty() ? std::nullopt : std::optional(same.front());
     };
@@ -145,7 +147,7 @@ namespace Squeal
       result.n_growths = train(model, points, training, options, communicator, report);
     std::vector<int> left(points.size());
     std::iota(left.begin(), left.end(), 0);
-    int    grown        = -1; // point of the last extension
+    int    grown        = -1; // index of the point of the last extension
     int    n_in_vain    = 0;
     double error_before = 0.;
     for (;; ++result.n_growths)
@@ -153,7 +155,7 @@ namespace Squeal
         std::vector<OperatingPoint> points_left;
         for (const int i : left)
           points_left.push_back(points[i]);
-        // The first point with the largest error
+        // Find the first point with the largest error
         std::vector<int> missed;
         int              worst = -1;
         ChartPoint       worst_point;

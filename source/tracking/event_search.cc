@@ -12,10 +12,10 @@ namespace Squeal
   {
     using Complex = std::complex<double>;
 
-    /// |Re λ_1 + Re λ_2| and |Im λ_1 − Im λ_2| for ±R + iω, relative to R [-].
+    /// Largest |λ_1 + λ̄_2| / R of two modes ±R + iω: differences up to this limit are rounding errors [-].
     constexpr double mirror_tolerance = 1e-6;
 
-    /// δ² / |λ|² above which pairs are far enough from their coalescence for corrections [-].
+    /// Pairs with a larger δ² / |λ|² are far enough from their coalescence for the use of corrections [-].
     constexpr double separate = 1e-6;
 
     Complex square_difference(const Complex &x, const Complex &y)
@@ -36,7 +36,7 @@ namespace Squeal
                indistinguishable * std::abs(modes.lambda(search.branch, k));
     }
 
-    /// Branch with −R + iω if this one has R + iω; -1: none.
+    /// Branch with −R + iω if the given branch has R + iω; -1: none.
     int mirror_branch(const TrackedModes &modes, const int branch, const int k)
     {
       const Complex here = modes.lambda(branch, k);
@@ -53,7 +53,7 @@ namespace Squeal
       return best;
     }
 
-    /// Moves the interval of a threshold to the sign change of the function itself: growth is detected only above a negligible rate.
+    /// Moves the interval of a threshold to the sign change of its function, because growth is detected only above a negligible rate.
     void enclose(const TrackedModes &modes, EventSearch &search)
     {
       const int direction = search.upward ? -1 : 1;
@@ -94,7 +94,7 @@ namespace Squeal
       return search;
     }
 
-    /// ((λ_1 − λ_2)/2)² of neighbouring real values that replace a nearby mode.
+    /// ((λ_1 − λ_2)/2)² of the two adjacent real eigenvalues that replace the oscillating mode of a search.
     std::optional<double> real_pair(const TrackedModes &modes, const EventSearch &search, const int k)
     {
       const int                  seen   = search.upward ? search.interval + 1 : search.interval;
@@ -111,14 +111,15 @@ namespace Squeal
       return best;
     }
 
-    /// Zero of a search, and the remaining interval.
+    /// Zero of a search, and its uncertainty due to the remaining interval.
     std::pair<double, double> zero(const TrackedModes &modes, const EventSearch &search)
     {
       const int    k = search.interval;
       const double l = modes.mu(k), r = modes.mu(k + 1);
       if (search.at_once && grows_at_once(modes, search))
         return {l, 0.};
-      // The growth of a double mode exceeds rounding errors only here
+      // The growth of the double mode exceeds rounding errors only in this interval: the onset may be anywhere between the first point and
+      // here
       if (search.multiple)
         return {modes.mu(0), r - modes.mu(0)};
       if (modes.width(k) > modes.tolerance(k))
@@ -138,8 +139,8 @@ namespace Squeal
       return fl && fr ? std::abs(*fr - *fl) / (modes.mu(last) - modes.mu(first)) : 0.;
     }
 
-    /// Second-order effect of the corrections on Re λ (growth) or |Im λ|; at most the uncertainty of λ, which is used at the real axis and
-    /// without corrections.
+    /// Effect of the corrections, to second order, on Re λ (growth) or |Im λ|, at most the uncertainty of λ. At the real axis, and without
+    /// corrections, the result is the uncertainty of λ.
     double uncertainty_of_lambda(const TrackedModes &modes, const EventSearch &search)
     {
       double result = 0.;
@@ -173,7 +174,7 @@ namespace Squeal
       return std::abs(shift * (2. * (modes.points[k].lambda[i] - modes.points[k].lambda[j]) + shift) + 4. * D(i, j) * D(j, i));
     }
 
-    /// Shift of μ at a coalescence due to corrections at points on both sides at some distance.
+    /// Shift of μ at a coalescence due to corrections, evaluated at points on both sides at some distance.
     double shift_of_coalescence(const TrackedModes &modes, const EventSearch &search, const double threshold)
     {
       double result = 0.;
@@ -181,7 +182,7 @@ namespace Squeal
         {
           const int start = direction < 0 ? search.interval : search.interval + 1;
           int       best  = -1;
-          double    f     = 0.; // at the best point
+          double    f     = 0.; // value of the function at the best point
           for (int k = start; const auto here = search_value(modes, search, k); k += direction)
             {
               if (best >= 0 && (*here * f < 0. || std::abs(*here) < std::abs(f)))
@@ -195,7 +196,7 @@ namespace Squeal
             continue;
           const double distance = std::abs(modes.mu(best) - threshold), part = change_of_discriminant(modes, search, best) / std::abs(f);
           if (f != 0.)
-            // δ² ~ (μ − μ_0)² if a double mode grows at once, else linear
+            // δ² ~ (μ − μ_0)² if a double mode grows from the first point, else δ² ~ μ − μ_0
             result = std::max(result, distance * (search.at_once || search.multiple ? std::sqrt(part) : part));
         }
       return result;
@@ -206,12 +207,12 @@ namespace Squeal
       if (search.kind == EventSearch::coalescence)
         return error_safety * shift_of_coalescence(modes, search, threshold);
       double error = error_safety * uncertainty_of_lambda(modes, search);
-      // Im λ = √|f|: away from the axis, an error of it changes f by 2 √|f| times as much
+      // Im λ = √|f|: an error of Im λ changes f by 2 √|f| times this error
       if (search.kind == EventSearch::real_axis)
         error *= 2. * modes.lambda(search.branch, search.upward ? search.interval + 1 : search.interval).imag();
       if (error == 0.)
         return 0.;
-      // Without a slope, for example where a mode leaves zero, the change of the number of modes proves the event to be in the interval
+      // Without a slope, for example if a mode leaves zero, the uncertainty is the interval, in which the number of modes changes
       const double change = slope(modes, search);
       return change > 0. ? error / change : modes.width(search.interval);
     }
@@ -276,7 +277,7 @@ namespace Squeal
               if (const bool after = in_band(modes, b, k + 1); after != in_band(modes, b, k))
                 searches.push_back({EventSearch::end_of_band, k, b, -1, after});
             }
-        // A truncated list may lose modes beyond the band
+        // Ignore modes beyond the band, where the lists of modes are truncated
         const ModeLinks &links = *modes.intervals[k].links;
         const int        n_new = modes.points[k + 1].n_real() - modes.points[k].n_real();
         for (const int i : links.lost)

@@ -22,11 +22,11 @@ namespace Squeal
       return mode >= 0 && point.lambda[mode].imag() <= largest_circular_frequency && point.verdicts[mode] == Verdict::unstable;
     }
 
-    /// Fraction of the largest overlap above which a mode may continue a branch: both modes of a coalescence have nearly the same shape
-    /// [-].
+    /// A mode may continue a branch if its overlap exceeds this fraction of the largest overlap: both modes of a coalescence have nearly
+    /// the same shape [-].
     constexpr double alike = 0.9;
 
-    /// Mode between points k - 1 and k of the chart that continues a branch: the fastest growing one among the most similar ones.
+    /// Mode between points k - 1 and k of the chart that continues a branch: the fastest growing mode among the most similar modes.
     int mode_between(const StabilityChart &chart, const int branch, const int k, const ChartPoint &point)
     {
       const auto          n = static_cast<int>(point.lambda.size());
@@ -47,7 +47,7 @@ namespace Squeal
       return result;
     }
 
-    /// Friction coefficient of the point before point i; @p before for the first one.
+    /// Friction coefficient of the point before point i; @p before for the first point.
     double previous(const StabilityChart &chart, const int i, const double before)
     {
       return i > 0 ? chart.points[i - 1].friction_coefficient : before;
@@ -162,7 +162,7 @@ namespace Squeal
     const double     width    = bracket.second - bracket.first;
     const ChartPoint there    = at(bracket.second);
     const int        mode     = mode_at(there);
-    // Growth by √(μ − μ_c) or by its slope: across the bracket or a short step beyond it
+    // Slope from a finite difference across the bracket or a short step beyond it, because growth may begin as √(μ − μ_c)
     const double step      = std::max(width, 1e-3 * (right - left));
     const double far       = bracket.second + step <= right ? bracket.second + step : bracket.second - step;
     const double slope     = (value(far) - excess(there, mode)) / (far - bracket.second);

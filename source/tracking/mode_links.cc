@@ -20,13 +20,13 @@ namespace Squeal
     constexpr double weakest_overlap = 0.1;
     /// Smallest cos² of the largest angle between agreeing subspaces [-].
     constexpr double agreement = 0.6;
-    /// Largest parts T of a mode that are neglected: rotations by up to 30° [-].
+    /// Entries of T up to this limit are neglected: rotations by up to 30° [-].
     constexpr double negligible_part = 0.25;
     /// |φ_iᴴφ_j|² at one point above which two modes are about to coalesce [-].
     constexpr double parallel = 0.7;
-    /// Remainder of a unit vector after Gram-Schmidt below which it is a rounding error, as close to a coalescence [-].
+    /// The remainder of a unit vector after Gram-Schmidt is a rounding error below this limit, as occurs close to a coalescence [-].
     constexpr double defective = 1e-7;
-    /// |Im δ²| / |δ²| of the difference δ of two λ below which δ² is real, as for modes that may coalesce [-].
+    /// δ² of two λ counts as real, as for modes that may coalesce, if |Im δ²| / |δ²| is below this limit [-].
     constexpr double real_discriminant = 1e-6;
 
     /// Orthonormal basis without directions due to rounding errors.
@@ -40,7 +40,7 @@ namespace Squeal
       return basis.Q(Eigen::placeholders::all, kept);
     }
 
-    /// cos² of the largest angle between two subspaces; if vectors are parallel, between a smaller subspace and its image.
+    /// cos² of the largest angle between two subspaces; if one is smaller because its vectors are parallel, between it and its projection.
     double agreement_of(const ComplexDenseMatrix &first, const ComplexDenseMatrix &second)
     {
       const ComplexDenseMatrix C       = safe_basis(first).adjoint() * safe_basis(second);
@@ -48,7 +48,7 @@ namespace Squeal
       return squares.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff();
     }
 
-    /// |xᴴy|² of unit vectors; for several y with one λ the share of x in their span.
+    /// |xᴴy|² of unit vectors; for several y with the same λ, the share of x in their span.
     DenseMatrix shares(const ComplexDenseMatrix &X, const ComplexDenseMatrix &Y, const std::vector<int> &cluster)
     {
       DenseMatrix result = (X.adjoint() * Y).cwiseAbs2();
@@ -71,7 +71,7 @@ namespace Squeal
     struct Side
     {
       const ChartPoint  &point;
-      ComplexDenseMatrix right, left; ///< with as many rows as those of the other point
+      ComplexDenseMatrix right, left; ///< vectors with the same number of rows as at the other point
       std::vector<int>   cluster;
 
       Side(const ChartPoint &p, const int n_rows)
@@ -86,7 +86,7 @@ namespace Squeal
         return static_cast<int>(point.lambda.size());
       }
 
-      /// Indices in @p modes that belong together: multiple λ and, optionally, pairs about to coalesce.
+      /// Groups of indices in @p modes: multiple λ and, optionally, pairs about to coalesce.
       std::vector<std::vector<int>> groups(const std::vector<int> &modes, const bool join_parallel) const
       {
         return members_of(connected_groups(static_cast<int>(modes.size()), [&](const int i, const int j) {
@@ -130,7 +130,7 @@ namespace Squeal
             if (!first.empty())
               sort_block(first, second);
           }
-        // The number of modes of the band without counterpart must equal the change of the number of real pairs
+        // The number of modes in the band without counterpart must equal the change of the number of real pairs
         const int lost = in_band(a, links.lost), gained = in_band(b, links.gained);
         links.resolved = 2 * (lost - gained) == b.point.n_real() - a.point.n_real() && (lost == 0 || gained == 0);
         for (const ModeBlock &block : links.blocks)
@@ -145,7 +145,7 @@ namespace Squeal
           std::count_if(modes.begin(), modes.end(), [&](const int i) { return side.point.lambda[i].imag() <= limit; }));
       }
 
-      /// Reduces both sides to equal numbers of modes, the most similar ones.
+      /// Reduces both sides to the same number of modes by keeping the most similar modes.
       void trim(std::vector<int> &first, std::vector<int> &second)
       {
         const bool        swapped = first.size() > second.size();
@@ -175,7 +175,7 @@ namespace Squeal
           divide(first, second);
       }
 
-      /// Divides a block with agreeing subspaces as far as the vectors allow.
+      /// Divides a block with agreeing subspaces into the smallest blocks that the vectors can distinguish.
       void divide(const std::vector<int> &first, const std::vector<int> &second)
       {
         const int n = static_cast<int>(first.size());

@@ -15,20 +15,21 @@ namespace Squeal
 
     /// Largest |λ_1 − λ_2| / |λ_1| of modes that may coalesce within a step [-].
     constexpr double nearby = 0.1;
-    /// Largest remaining fraction of δ², or of Re λ, for an approach to be evaluated [-].
+    /// An approach to zero is evaluated if the predicted δ² or Re λ decreases below this fraction of its values at the ends of the step
+    /// [-].
     constexpr double remaining = 0.3;
     /// Two modes whose coupling changes λ_1 − λ_2 by less than this fraction do not interact [-].
     constexpr double interacting = 0.1;
-    /// |Re (λ_1 − λ_2)| / |Im (λ_1 − λ_2)| above which two modes do not coalesce because their growth rates differ [-].
+    /// Two modes with a larger |Re (λ_1 − λ_2)| / |Im (λ_1 − λ_2)| do not coalesce because their growth rates differ [-].
     constexpr double other_growth = 0.5;
     /// Fraction of a step within which several approaches share one evaluation [-].
     constexpr double one_look = 0.2;
     /// Number of steps of a search without halving before the interval is halved.
     constexpr int patience = 2;
-    /// Number of failed predictions in a search before the interval is halved; each has two values.
+    /// Number of failed predictions in a search before the interval is halved; each prediction has two values.
     constexpr int most_predictions = 5;
 
-    /// True if a step must be divided to distinguish a mode at its end from others.
+    /// True if a step must be divided before the mode of a branch can be distinguished from others.
     bool is_tangled(const TrackedModes &modes, const int k, const int branch)
     {
       if (modes.width(k) <= modes.options.smallest_step)
@@ -66,13 +67,13 @@ namespace Squeal
           if (q > l && q < r)
             x = q;
         }
-      // Slightly beyond the zero, seen from the nearer end: the interval closes, and no point lies exactly on a coalescence, where vectors
-      // are lost
+      // Choose a point slightly beyond the zero, as seen from the nearer end of the interval. The next interval is then short, and no point
+      // lies exactly on a coalescence, where eigenvectors coincide
       const double margin = 0.5 * std::min(modes.tolerance(k), r - l);
       return std::clamp(x + (x < middle ? 0.5 : -0.5) * margin, l + margin, r - margin);
     }
 
-    /// Points on both sides of the predicted zero, closer than the tolerance; nothing without a prediction.
+    /// Points on both sides of the predicted zero, at a distance smaller than the tolerance; empty without a prediction.
     std::vector<double> predictions(const TrackedModes &modes, const EventSearch &search, const PredictZero &predict)
     {
       const int k = search.interval;
@@ -116,7 +117,7 @@ namespace Squeal
       return result;
     }
 
-    /// True if two modes are beyond the band over the whole step, and thus not in the results.
+    /// True if two modes are beyond the band at both ends of a step, and thus not in the results.
     bool are_beyond(const TrackedModes &modes, const int k, const int p, const int q)
     {
       const double limit = modes.options.largest_circular_frequency;
@@ -128,9 +129,9 @@ namespace Squeal
     }
 
     /**
-     * Points at which branches that exchange their order in a step would coalesce if they interact. With λ_a diagonal and B = X Λ_b X⁻¹ for
-     * Φ_b = Φ_a X, the 2 × 2 problem is linear in between; where the frequencies are equal, at t, its δ² is (Re λ_1 − Re λ_2)² + 4 t² B_12
-     * B_21. Modes with different growth rates do not coalesce.
+     * Points at which branches that exchange their order in a step would coalesce if they interact. The 2 × 2 problem is interpolated
+     * linearly between the diagonal matrix Λ_a and B = X Λ_b X⁻¹ with Φ_b = Φ_a X. At the position t at which the frequencies are equal, δ²
+     * = (Re λ_1 − Re λ_2)² + 4 t² B_12 B_21. Modes with different growth rates do not coalesce.
      */
     std::vector<double> interactions(const TrackedModes &modes, const int k)
     {
@@ -158,7 +159,7 @@ namespace Squeal
             const double  gap          = std::sqrt(std::abs(discriminant));
             if (gap < interacting * std::abs((1. - t) * before.real() + t * after.real()))
               continue;
-            // Frequencies that only repel each other do so over a range of gap / slope
+            // Frequencies that only repel each other are close over a range of gap / slope: ignore ranges below the smallest step
             const bool repel =
               discriminant.real() < 0. && modes.verdict(p, k) == Verdict::neutral && modes.verdict(q, k) == Verdict::neutral;
             const double extent = gap * modes.width(k) / std::abs(after.imag() - before.imag());
@@ -182,7 +183,8 @@ namespace Squeal
       for (int point = k - 1; point <= k + 2; ++point)
         if (const auto y = search_value(modes, search, point))
           {
-            // Differences over much shorter steps are rounding errors here
+            // Skip points at which the function is larger than at the end of the step, and much shorter steps, whose differences are
+            // rounding errors
             if ((point < k && (modes.width(point) < 0.1 * modes.width(k) || *y > *search_value(modes, search, k))) ||
                 (point > k + 1 && (modes.width(point - 1) < 0.1 * modes.width(k) || *y > *search_value(modes, search, k + 1))))
               continue;
@@ -192,7 +194,7 @@ namespace Squeal
       if (x.size() < 3)
         return std::nullopt;
 
-      // Lagrange polynomial: sum over the coefficients of its products
+      // Coefficients of the products in the Lagrange polynomial
       for (std::size_t a = 0; a < x.size(); ++a)
         for (std::size_t b = 0; b < x.size(); ++b)
           if (a != b)
@@ -221,7 +223,7 @@ namespace Squeal
       return result;
     }
 
-    /// The middle value of each group of values within a distance of its first one.
+    /// The middle value of each group of values, which are within @p distance of the first value of the group.
     std::vector<double> one_of_each_cluster(std::vector<double> values, const double distance)
     {
       std::sort(values.begin(), values.end());
@@ -237,8 +239,8 @@ namespace Squeal
 
     /**
      * Points at which an event may be hidden inside a step: Re λ of a decaying mode, or δ² of two modes at some distance, is about to reach
-     * zero according to the polynomial through the surrounding points. Several approaches at one point, such as those of equal pins, share
-     * one evaluation; if that is not enough, the next round repeats it.
+     * zero according to the polynomial through the surrounding points. Several approaches close to each other, for example of equal pins,
+     * share one evaluation; if it is not sufficient, the next round adds another evaluation.
      */
     std::vector<double> approaches(const TrackedModes &modes, const int k)
     {
@@ -300,13 +302,13 @@ namespace Squeal
       wanted.insert(wanted.end(), values.begin(), values.end());
     std::sort(wanted.begin(), wanted.end());
 
-    // Two searches may request nearly the same point
+    // Merge nearly equal points requested by different searches
     std::vector<double> result;
     for (const double value : wanted)
       if (result.empty() || value - result.back() > 0.25 * modes.options.threshold_tolerance)
         result.push_back(value);
 
-    // Distribute the last evaluations over the range
+    // If fewer evaluations are left, distribute them over the range
     if (result.size() > left)
       {
         for (std::size_t i = 0; i < left; ++i)

@@ -15,7 +15,7 @@ namespace Squeal
   struct ChartInterval
   {
     std::optional<ModeLinks> links;
-    int                      stalls = 0; ///< number of successive shrinkages by less than half
+    int                      stalls = 0; ///< number of successive steps of the search that reduced the interval by less than half
   };
 
   /// Modes of a multiple λ, with orthonormal bases for their right and left vectors.
@@ -29,8 +29,8 @@ namespace Squeal
   struct TrackedModes
   {
     const ChartOptions                     &options;
-    std::vector<ChartPoint>                 points;   ///< ascending
-    std::vector<std::vector<MultipleModes>> multiple; ///< of each point
+    std::vector<ChartPoint>                 points;   ///< points in ascending order
+    std::vector<std::vector<MultipleModes>> multiple; ///< multiple λ of each point
     std::vector<bool>                       is_refinement;
     std::vector<ChartInterval>              intervals;
     std::vector<Branch>                     branches;
@@ -52,7 +52,7 @@ namespace Squeal
       return mu(k + 1) - mu(k);
     }
 
-    /// Index of the mode of a branch; -1 beyond the chart.
+    /// Index of the mode of a branch at a point; -1 beyond the chart.
     int mode(const int branch, const int k) const
     {
       return k < 0 || k >= n_points() ? -1 : branches[branch].modes[k];
@@ -70,7 +70,7 @@ namespace Squeal
       return std::max(options.threshold_tolerance, rounding * std::max(std::abs(mu(k)), std::abs(mu(k + 1))));
     }
 
-    /// Verdict on a branch at a point from λ alone: undecided by rounding counts as neutral.
+    /// Verdict on a branch at a point from λ without its uncertainty; growth within rounding errors counts as neutral.
     Verdict verdict(const int branch, const int k) const
     {
       return verdict_of(lambda(branch, k));
@@ -80,7 +80,7 @@ namespace Squeal
   /// Links the modes of all points to branches.
   void follow_branches(TrackedModes &modes);
 
-  /// A sign change of a function of the branches, to be located in a step.
+  /// Search for the sign change of a function of one or two branches in a step.
   struct EventSearch
   {
     enum Kind
@@ -88,20 +88,20 @@ namespace Squeal
       growth,      ///< Re λ
       coalescence, ///< δ²
       end_of_band, ///< Im λ − ω_max
-      real_axis    ///< ((λ − λ̄)/2)², then of real λ
+      real_axis    ///< ((λ − λ̄)/2)², continued by ((λ_1 − λ_2)/2)² of real λ
     };
     Kind kind;
     int  interval;
     int  branch, partner;
-    bool upward;           ///< onset, or entering the band
-    bool at_once  = false; ///< neutral at the first point of the chart
-    bool multiple = false; ///< two modes that are indistinguishable from the first point up to this interval
+    bool upward;           ///< true for an onset, or for a mode that enters the band
+    bool at_once  = false; ///< true if the modes are neutral at the first point of the chart
+    bool multiple = false; ///< true for two modes that are indistinguishable from the first point up to this interval
   };
 
   /// Steps with thresholds or band crossings.
   std::vector<EventSearch> find_events(const TrackedModes &modes);
 
-  /// Function of the search, where its branches exist.
+  /// Value of the function of a search at point k; nothing if its branches do not exist there.
   std::optional<double> search_value(const TrackedModes &modes, const EventSearch &search, int k);
 
   /// True if a branch that is neutral at the first point grows from there: Re λ ~ μ, or δ² ~ μ² for a double mode, with a factor that is
@@ -111,6 +111,6 @@ namespace Squeal
   /// Friction coefficients for further evaluations; @p predict may be empty.
   std::vector<double> refinement_requests(const TrackedModes &modes, const std::vector<EventSearch> &searches, const PredictZero &predict);
 
-  /// The final chart, with the results of the searches.
+  /// The final chart with the results of the searches.
   StabilityChart finished_chart(TrackedModes modes, const std::vector<EventSearch> &searches);
 } // namespace Squeal

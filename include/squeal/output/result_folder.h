@@ -19,18 +19,18 @@ namespace Squeal
   /// Names of files relative to a folder, and their sizes [byte].
   using FileSizes = std::map<std::string, std::uintmax_t>;
 
-  /// Metadata to repeat a run and to compare its cost.
+  /// Metadata for repeating a run and comparing its cost.
   struct RunRecord
   {
-    std::string                                 command;     ///< shell command that repeats it
-    int                                         n_processes; ///< of MPI
+    std::string                                 command;     ///< shell command that repeats the run
+    int                                         n_processes; ///< number of MPI processes
     unsigned int                                n_threads;
     int                                         blas_threads;
-    std::vector<std::pair<std::string, long>>   counts;               ///< elements, dofs, contact nodes, modes, ...
+    std::vector<std::pair<std::string, long>>   counts;               ///< numbers of elements, dofs, contact nodes, modes, ...
     std::vector<std::pair<std::string, double>> quantities;           ///< worst element quality, ...
-    std::vector<std::string>                    warnings;             ///< questionable input
+    std::vector<std::string>                    warnings;             ///< warnings about questionable input
     FileSizes                                   files    = {};        ///< files written by the run, except the record
-    std::string                                 revision = "unknown"; ///< of the program's sources
+    std::string                                 revision = "unknown"; ///< revision of the program's sources
   };
 
   /// Names and versions of the libraries in this build.
@@ -39,16 +39,16 @@ namespace Squeal
   /// Writes versions, revision, machine, counts, time and peak memory of each step, and files, as JSON.
   void write_run_record(std::ostream &stream, const RunRecord &record, const Progress &progress);
 
-  /// Files listed in a record; nothing if it lists none or cannot be read.
+  /// Files listed in a record; nothing if the record lists no files or cannot be read.
   std::optional<FileSizes> read_file_list(const std::filesystem::path &record);
 
   /**
    * Result folder of a run. Files are written to its subfolder `.unfinished` and moved to the folder when the run is complete, the run
-   * record last. A failed run leaves former results unchanged; after a killed run, the next one clears `.unfinished`. The folder is locked
-   * against a second run.
+   * record last. A failed run does not change former results; after a killed run, the next run clears `.unfinished`. The folder is locked
+   * against concurrent runs.
    *
-   * Former results that the record lists are replaced or removed; the user's own files are kept. A folder without a record but with other
-   * content is never written to.
+   * Former results that the record lists are replaced or removed; the user's own files are kept. The program never writes to a folder that
+   * contains other files but no record.
    */
   class ResultFolder
   {
@@ -71,22 +71,23 @@ namespace Squeal
     /// Writes a file on the root process; throws FileError with the cause if it cannot be written completely.
     void write(const std::string &name, const std::function<void(std::ostream &)> &writer) const;
 
-    /// Files written so far, with sizes, for the run record.
+    /// Files that have been written, with their sizes, for the run record.
     const FileSizes &files() const;
 
     /**
-     * Moves the files to the folder, unless one of them was removed or changed in the meantime. Returns notes for the user, one line each.
+     * Moves the files to the folder, unless one of them has been removed or changed in the meantime. Returns notes for the user, one line
+     * each.
      *
      * @param afterwards called on all processes once the results are in place
      *
-     * Throws FileError if files are missing or cannot be moved; in the latter case the message says where they are.
+     * Throws FileError if files are missing or cannot be moved; in the latter case, the message names the folder that contains them.
      */
     std::vector<std::string> commit(const std::function<void()> &afterwards = {});
 
     /// Name of the folder as given by the user.
     const std::string &name() const;
 
-    /// File that marks a folder as the result of a run, and lists its files; scripts add the pictures they draw.
+    /// File that marks a folder as the result of a run and lists its files; scripts add the pictures that they draw.
     static constexpr const char *run_record = "run.json";
 
   private:
@@ -98,8 +99,8 @@ namespace Squeal
     const std::string     shown; ///< name as given by the user
     const bool            is_root;
     std::filesystem::path place, unfinished;
-    bool                  is_new   = false; ///< made by this run
-    bool                  is_stuck = false; ///< complete, but could not be moved
+    bool                  is_new   = false; ///< true if this run has created the folder
+    bool                  is_stuck = false; ///< true if the results are complete but could not be moved
     int                   lock     = -1;    ///< descriptor of the locked folder
 
     mutable FileSizes written; ///< files written so far

@@ -42,25 +42,26 @@ namespace Squeal
     }
   };
 
-  /// A column of a table: a member of the row, or a function of it.
+  /// A column of a table: a member or a function of the row.
   template <typename Row>
   struct Column
   {
     std::string                       name;
-    std::string                       unit; ///< "-" for none; "" for text
+    std::string                       unit; ///< unit; "-" for a number without unit, "" for text
     std::function<Entry(const Row &)> value;
-    int                               digits     = 3; ///< on the screen: after the point, or significant if scientific
+    int                               digits     = 3; ///< on the screen: after the point, or significant digits in scientific notation
     bool                              scientific = false;
   };
 
   template <typename Row>
   using Columns = std::vector<Column<Row>>;
 
-  /// A table of results: comma-separated with 12 significant digits and a header "name [unit]" on disk, aligned on the screen.
+  /// A table of results: comma-separated values with 12 significant digits and a header "name [unit]" on disk, aligned columns on the
+  /// screen.
   class Table
   {
   public:
-    /// Builds a table of @p columns from @p rows, a range of Row; throws Error naming the column if a number is not finite.
+    /// Builds a table of @p columns from @p rows, a range of Row; throws an Error that names the column if a number is not finite.
     template <typename Row, typename Rows>
     Table(const Columns<Row> &columns, const Rows &rows)
     {
@@ -73,10 +74,10 @@ namespace Squeal
         }
     }
 
-    /// Comma-separated values with a header line.
+    /// Writes comma-separated values with a header line.
     void write_csv(std::ostream &stream) const;
 
-    /// Aligned columns; texts to the left, numbers to the right.
+    /// Prints aligned columns; texts are aligned to the left, numbers to the right.
     void print(std::ostream &stream) const;
 
   private:
@@ -88,10 +89,10 @@ namespace Squeal
       bool        scientific;
     };
 
-    /// @p cell after checking it as an entry of the last column.
+    /// Returns @p cell after checking it as an entry of the last column.
     Entry checked(const Entry &cell) const;
 
     std::vector<Head>               heads;
-    std::vector<std::vector<Entry>> cells; ///< by column
+    std::vector<std::vector<Entry>> cells; ///< entries of each column
   };
 } // namespace Squeal

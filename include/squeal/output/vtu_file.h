@@ -13,16 +13,16 @@
 
 namespace Squeal
 {
-  /// Cells of this process, or their faces, with shared vertices, for a field file. All nodes are vertices: elements of degree 2 are
-  /// divided into linear cells on their nodes. Normals of faces point out of the body.
+  /// Mesh of a field file on this process: cells or faces with shared vertices. All nodes are vertices; elements of degree 2 are divided
+  /// into linear cells. Normals of faces point out of the body.
   struct FieldMesh
   {
     std::vector<Node>         nodes;      ///< vertices
     std::vector<std::uint8_t> types;      ///< VTK cell type of each cell
     std::vector<std::int32_t> corners;    ///< vertex indices, cell by cell in VTK order
-    std::vector<std::int32_t> ends;       ///< of each cell, end of its range in corners
-    std::vector<std::int32_t> components; ///< of each cell, see Node
-    std::vector<std::int32_t> volumes;    ///< of each cell, see Cell; empty for faces, or if every body has only one volume
+    std::vector<std::int32_t> ends;       ///< for each cell, the end of its range in corners
+    std::vector<std::int32_t> components; ///< component of each cell, see Node::component
+    std::vector<std::int32_t> volumes;    ///< volume of each cell, see Cell::volume; empty for faces, or if every body has only one volume
   };
 
   /// Mesh of all bodies, or of one component.
@@ -41,13 +41,13 @@ namespace Squeal
   struct VertexField
   {
     std::string        name;
-    unsigned int       n_columns; ///< 1, or 3 for a vector
+    unsigned int       n_columns; ///< number of values per vertex: 1, or 3 for a vector
     std::vector<float> values;
   };
 
-  /// The part of a VTK file (.vtu) on this process: a mesh with the cell field `component`, also `volume` if a body has several volumes,
-  /// and fields, all compressed by zlib. Copies are independent, so that files on one mesh start from a copy of a piece without fields.
-  /// Cells are sorted into columns along z: consecutive cells then share nodes, which compresses better.
+  /// The piece of a VTK file (.vtu) on this process: a mesh with the cell field `component`, also `volume` if a body has several volumes,
+  /// and fields, all compressed by zlib. Files on the same mesh start from copies of a piece without fields, which are independent. Cells
+  /// are sorted into columns along z, so that consecutive cells share nodes, which improves the compression.
   class VtuPiece
   {
   public:
@@ -55,8 +55,8 @@ namespace Squeal
 
     void add(const std::vector<VertexField> &fields);
 
-    /// Writes the pieces of all processes as one file, with a @p title unless it is empty. Collective; process 0 holds one piece at a time.
-    /// Throws FileError on process 0 with the cause if the file cannot be written.
+    /// Writes the pieces of all processes as one file, with a @p title unless it is empty. Collective; process 0 stores one piece at a
+    /// time. Throws FileError on process 0 with the cause if the file cannot be written.
     void write(const ResultFolder &folder, const std::string &name, const std::string &title, MPI_Comm communicator) const;
 
   private:
@@ -66,13 +66,13 @@ namespace Squeal
       std::string  place; ///< PointData, CellData, Points or Cells
       std::string  name, type;
       unsigned int n_columns;
-      std::string  data; ///< compressed, preceded by the block sizes
+      std::string  data; ///< block sizes and compressed data
     };
 
     template <typename Number>
     static Array array(const char *place, const std::string &name, const std::vector<Number> &values, unsigned int n_columns, int level);
 
-    /// XML description of this piece; its data begin at @p offset in the appended data.
+    /// XML description of this piece, whose data begin at @p offset in the appended data.
     std::string description(std::size_t offset) const;
 
     std::size_t        n_points, n_cells;

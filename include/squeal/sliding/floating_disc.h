@@ -11,13 +11,13 @@
 namespace Squeal
 {
   /**
-   * The @p free motions of each body, M-orthonormal, that reactions can balance, n × k; nothing if there are none. The sliding motion,
-   * whose force or moment the drive balances, and motions that leave all gaps unchanged are excluded.
+   * Those M-orthonormal @p free motions of each body for which reactions can provide equilibrium, n × k; nothing if there are none.
+   * Excluded are the sliding motion, whose force or moment the drive balances, and motions that do not change any gap.
    *
-   * @param pressing forces on the bodies, n × 1 [N]; null: none, and only the disc may have free motions
+   * @param pressing forces on the bodies, n × 1 [N]; null: there are none, and only the disc may have free motions
    *
-   * Throws SolverError if friction or @p pressing acts on an excluded motion that leaves the gaps unchanged, if a body other than the disc
-   * is free and not pressed, or if the sliding velocity of a free disc is not a rigid-body motion.
+   * Throws SolverError if friction or @p pressing does work on an excluded motion that does not change the gaps, if a body other than the
+   * disc is free and not pressed, or if the sliding velocity of a free disc is not a rigid-body motion.
    */
   std::optional<MultiVector> balanced_motions(const Model                                   &model,
                                               const ContactOperators                        &contact,
@@ -27,11 +27,12 @@ namespace Squeal
                                               const MultiVector                             *pressing);
 
   /**
-   * A disc that floats between two loaded backplates is in equilibrium at any axial position if the loads are: B y = 0 for a motion y of
-   * all. One free motion, numbered from @p n_plates, is then held instead of balanced, and so on while such a y exists. Decided by the
-   * singular values of B with columns of unit norm, independent of the units of the motions.
+   * Removes undetermined motions. If the loads of two backplates are in equilibrium, a disc that floats between them is in equilibrium at
+   * any axial position: there is a combination y of motions with B y = 0. One free motion, with an index of at least @p n_plates, is then
+   * held, and its equation of equilibrium is omitted. This is repeated while there is such a y, according to the singular values of B with
+   * columns of unit norm, which do not depend on the units of the motions.
    *
-   * Throws SolverError if the loads on such a disc are not in equilibrium.
+   * Throws SolverError if the loads on a floating disc are not in equilibrium.
    */
   void hold_undetermined_motion(ContactProblem &problem, int n_plates);
 } // namespace Squeal

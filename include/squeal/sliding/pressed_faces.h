@@ -13,10 +13,10 @@ namespace Squeal
    *
    *   f_i = −p ∫ n N_i dA,   p = load / |∫ n dA|
    *
-   * n the outward normal: the resultant on each face is the load; on a flat face p = load / area.
+   * with the outward normal n. The resultant on each face is the load; on a flat face, p = load / area.
    *
-   * Throws MeshError if a face does not exist; ParameterError if it belongs to the disc, is in contact or clamped, has no resultant, or if
-   * the pressure pulls its body away from the disc.
+   * Throws MeshError if a face does not exist; ParameterError if a face belongs to the disc, is in contact or clamped, or has no resultant,
+   * or if the pressure pulls its body away from the disc.
    */
   MultiVector pressing_forces(const Model             &model,
                               const ContactInterface  &interface,

@@ -15,37 +15,37 @@
 
 namespace Squeal
 {
-  /// Residuals of a steady sliding state, from the displacements of the full model.
+  /// Residuals of a steady sliding state, computed from the displacements of the full model.
   struct SlidingCertificate
   {
-    double residual; ///< ‖K u − P_nᵀ r_n − μ P_tᵀ r_n − f_p‖ / ‖P_nᵀ r_n‖, all dofs [-]
+    double residual; ///< ‖K u − P_nᵀ r_n − μ P_tᵀ r_n − f_p‖ / ‖P_nᵀ r_n‖ over all dofs [-]
     double load;     ///< largest relative error of the load of a backplate; 0 if none is prescribed [-]
     double tension;  ///< largest r_n over the load of a backplate; ≤ 0 without tension [-]
-    double overlap;  ///< largest g, from P_n u, over the travel of the backplates or, with pressed faces, over the largest displacement [-]
+    double overlap;  ///< largest g from P_n u, over the travel of the backplates (with pressed faces: over the largest displacement) [-]
     double complementarity; ///< largest |r_n g| over load and travel [-]
     double force_balance;   ///< resultant of contact, pressure and support forces of each component, over the load [-]
     double moment_balance;  ///< resultant moment about the origin, over load × largest axis distance [-]
   };
 
-  /// Quasi-static state for the linearisation.
+  /// Quasi-static state for the linearisation: contact forces, gaps and displacements.
   struct SlidingState
   {
     std::vector<double>          reactions;          ///< R_n0 [N] ≤ 0, one for each contact node
     std::vector<double>          gaps;               ///< g [m] ≤ 0
-    std::vector<bool>            closed;             ///< S_0
+    std::vector<bool>            closed;             ///< true for nodes of S_0
     std::vector<double>          approach;           ///< travel of the backplate of each component [m]; 0 for the disc
     std::shared_ptr<MultiVector> displacement;       ///< u [m], n × 1, elastic, relative to the moved backplates
     std::shared_ptr<MultiVector> total_displacement; ///< u with the travel of the backplates [m], n × 1
     SlidingCertificate           certificate;
     ContactUniqueness            uniqueness;
-    int                          n_steps; ///< iterations of the active-set method
+    int                          n_steps; ///< number of iterations of the active-set method
   };
 
   /// Data common to all steady sliding states of a model.
   struct SlidingModel
   {
     /**
-     * Computes the attachment modes. All arguments except the last two must outlive the model.
+     * Computes the attachment modes. All arguments except the last two must outlive this object.
      *
      * @param largest_circular_frequency end of the band [rad/s], see static_response()
      */
@@ -73,15 +73,16 @@ namespace Squeal
    *
    * u is the elastic displacement relative to the backplates, which are rigid, guided along their travel e (contact/travel.h), and
    * displaced towards the disc by d; a = −e·n; the gaps in @p parameters are along e. Each load is the force on its backplate along e, Σ
-   * e·n r_n + Σ e·t r_t. Friction acts along t at every closed node; a drive balances its moment on the disc.
+   * e·n r_n + Σ e·t r_t. Friction acts along t at every closed node; a drive balances the moment of friction on the disc.
    *
    * With BackplateControl::pressure there are no backplates, d = 0, and f_p from pressed_faces.h is added to the forces. Bodies may then
-   * have free motions z, with N z in u, from their equilibrium Nᵀ (P_nᵀ r_n + P_tᵀ r_t + f_p) = 0.
+   * have free motions N z, which are part of u and follow from equilibrium, Nᵀ (P_nᵀ r_n + P_tᵀ r_t + f_p) = 0.
    *
-   * Solved on the contact nodes with the normal and tangential attachment modes, F_nn = P_n K⁻¹ P_nᵀ and F_nt = P_n K⁻¹ P_tᵀ.
+   * The problem is condensed to the contact nodes by the normal and tangential attachment modes, F_nn = P_n K⁻¹ P_nᵀ and F_nt = P_n K⁻¹
+   * P_tᵀ.
    *
-   * Throws MeshError before any solve if a body has no direction of travel; ParameterError if a pin is unknown, or if a gap exceeds the
-   * height of the pin or the displacement; SolverError if no state was found, or if the disc is not held in its plane.
+   * Throws MeshError if a body has no direction of travel; ParameterError if there is no pin of a given name, or if a gap exceeds the
+   * height of the pin or the displacement; SolverError if no state is found, or if the disc is not constrained in its plane.
    */
   SlidingState steady_sliding(const SlidingModel &sliding, const OperationParameters &operation, const SlidingParameters &parameters);
 
@@ -89,15 +90,15 @@ namespace Squeal
    * Derivatives of the reactions with respect to k parameters of the bodies at constant friction coefficient, loads, travel and closed
    * nodes, n_c × k [N per unit]:
    *
-   *   K u' = f' + P_nᵀ r' + μ P_tᵀ r',   P_n u' + a d' − a gap' = 0 at closed nodes,   r' = 0 at open ones
+   *   K u' = f' + P_nᵀ r' + μ P_tᵀ r', P_n u' + a d' − a gap' = 0 at closed nodes, r' = 0 at open nodes
    *
-   * where the free motions R of the disc remain in equilibrium, Rᵀ (f' + P_nᵀ r' + μ P_tᵀ r') = 0, and loads are constant. The attachment
-   * modes also give the gaps due to f', P_n K⁻¹ f' = (K⁻¹ P_nᵀ)ᵀ f': no solve at full order is needed. Normals and the component of t along
-   * the travel are constant.
+   * where the free motions R of the disc remain in equilibrium, Rᵀ (f' + P_nᵀ r' + μ P_tᵀ r') = 0, and loads are constant. No solve at full
+   * order is necessary, because the attachment modes also give the gaps due to f', P_n K⁻¹ f' = (K⁻¹ P_nᵀ)ᵀ f'. Normals and the component
+   * of t along the travel are constant.
    *
-   * @param state       the state at these parameters
+   * @param state       steady sliding state at these parameters
    * @param force_rates f' = −K' u + μ (P_t')ᵀ r plus other changes of the forces on the bodies, n × k [N per unit]
-   * @param gap_rates   change of initial_gaps(), n_c × k [m per unit]
+   * @param gap_rates   derivatives of initial_gaps(), n_c × k [m per unit]
    */
   DenseMatrix reaction_rates(const SlidingModel        &sliding,
                              const OperationParameters &operation,
@@ -109,8 +110,8 @@ namespace Squeal
   /// Gap of each node along its travel, before the backplates move [m].
   Eigen::VectorXd initial_gaps(const Model &model, const ContactInterface &interface, const SlidingParameters &parameters);
 
-  /// Throws ParameterError for parameters of the section `Steady sliding` that do not fit the pins, and MeshError for bodies without a
-  /// direction of travel.
+  /// Throws ParameterError for parameters of the section `Steady sliding` that are inconsistent with the pins, and MeshError for bodies
+  /// without a direction of travel.
   void check_sliding(const Model               &model,
                      const ContactInterface    &interface,
                      const OperationParameters &operation,
@@ -120,11 +121,11 @@ namespace Squeal
   struct PinContact
   {
     std::string  pin;
-    int          side; ///< ±1: above or below the disc; 0: travels along the normal of its own face
+    int          side; ///< ±1: above or below the disc; 0: the pin travels along the normal of its face
     unsigned int n_nodes, n_open;
     double       load;             ///< −Σ r_n [N]
-    double       sliding_offset;   ///< centre of pressure from the centre of the face along t [m]
-    double       radial_offset;    ///< likewise outwards, or along the axis if side = 0 [m]
+    double       sliding_offset;   ///< offset of the centre of pressure from the centre of the face along t [m]
+    double       radial_offset;    ///< offset in the outward direction, or along the axis if side = 0 [m]
     double       largest_pressure; ///< largest −r_n / area of the node [Pa]
     double       sliding_speed;    ///< w_0 at the centre of pressure [m/s]
     double       radial_damping;   ///< Σ c_b [N s/m]
@@ -133,7 +134,7 @@ namespace Squeal
     double       largest_gap;      ///< largest gap of its nodes [m]
   };
 
-  /// One entry for each pin; for a pin without load, offsets are zero and the speed is that at the centre of the face.
+  /// Contact quantities of each pin. For a pin without load, offsets are zero and the speed is taken at the centre of the face.
   std::vector<PinContact> pin_contacts(const Model               &model,
                                        const ContactInterface    &interface,
                                        const SlidingState        &state,

@@ -12,31 +12,31 @@
 
 namespace Squeal
 {
-  /// Modes are followed up to (1 + this) times the end of the band, so that modes that enter or leave it are not lost.
+  /// Modes are followed up to (1 + band_margin) times the end of the band, so that modes that enter or leave the band are not lost.
   inline constexpr double band_margin = 0.05;
 
   /// A point at which a chart is evaluated.
   struct OperatingPoint
   {
     double          friction_coefficient = 0.;
-    ParameterValues values;   ///< other parameters of the system, if different from its values
-    int             line = 0; ///< of the chart: points of one line differ only in the friction coefficient and quantities that depend on it
+    ParameterValues values;   ///< other parameters of the system, if their values differ from those of the system
+    int             line = 0; ///< line of the chart: its points differ only in μ and in quantities that depend on μ
   };
 
-  /// A two-sided reduced model for all operating points of a chart: modes have full-order residuals, and the basis is extended if these are
-  /// too large (see grow_residual_basis()).
+  /// A two-sided reduced model for all operating points of a chart: residuals of modes are those at full order, and the basis is extended
+  /// if they are too large (see grow_residual_basis()).
   class ChartModel
   {
   public:
     /**
-     * Starts from real modes Φ_R and their first-order responses, see starting_model().
+     * Starts with the real modes Φ_R and their first-order responses, see starting_model().
      *
-     * @param system            with parameters at a point of the chart: no term may be zero there that is nonzero at another point
+     * @param system            system at a point of the chart at which all terms that occur in the chart are nonzero
      * @param inverse           factor of K_c, or of K_c + s² M_c without damping if the @p shift s [rad/s] is positive
-     * @param real_modes        M_c-orthonormal, to slightly beyond the band
+     * @param real_modes        M_c-orthonormal real modes up to slightly beyond the band
      * @param largest_circular_frequency end of the band [rad/s]
      *
-     * @p system, @p inverse and @p real_modes must outlive the object.
+     * @p system, @p inverse and @p real_modes must outlive this object.
      */
     ChartModel(const CoupledSystem  &system,
                const UpdatedInverse &inverse,
@@ -44,16 +44,16 @@ namespace Squeal
                const MultiVector    &real_modes,
                double                largest_circular_frequency);
 
-    /// Excludes modes that decay faster than this [1/s]; initially none.
+    /// Excludes modes that decay faster than @p rate [1/s]; initially, no modes are excluded.
     void leave_out_faster_decay(const double rate)
     {
       largest_decay = rate;
     }
 
     /**
-     * For systems that differ from S in more than friction and damping, where parts of the estimate for a mode in a dense cluster may
-     * cancel. Errors are then at least κ/2 √(ε_R ε_L), from the energies of the right and left residuals, which is the estimate without
-     * cancellation; norms of a sketch suffice for it, see ProjectedResiduals::use_sketch().
+     * Changes the error estimate for systems that differ from S in more than friction and damping: parts of the estimate for a mode in a
+     * dense cluster might cancel. Errors are then at least κ/2 √(ε_R ε_L), with the energies of the right and left residuals, which is the
+     * estimate without cancellation. Norms of a sketch are sufficient for it, see ProjectedResiduals::use_sketch().
      */
     void estimate_without_cancellation()
     {
@@ -75,12 +75,12 @@ namespace Squeal
     /// Computes shared data for evaluate() in advance; call before several threads evaluate.
     void prepare() const;
 
-    /// Modes with their error estimates. Not collective. After prepare() several threads may call.
+    /// Modes at an operating point with their error estimates. Not collective; several threads may call it after prepare().
     ChartPoint evaluate(const OperatingPoint &point) const;
 
-    /// Zero of the function of a search between two points, predicted by the reduced model in the span of the right and left vectors of the
-    /// modes involved at both points, which reproduces λ and dλ/dμ there. The other parameters of the system vary linearly between the
-    /// points. Not collective.
+    /// Predicted zero of the function of a search between two points. The prediction uses a reduced model in the span of the right and left
+    /// vectors of the modes at both points, which reproduces λ and dλ/dμ there. The other parameters of the system vary linearly between
+    /// the points. Not collective.
     std::optional<double> predicted_zero(const ZeroSearch &search, const OperatingPoint &first, const OperatingPoint &second) const;
 
     /// Largest estimated |δλ| / |λ| of the modes in the band.
@@ -89,7 +89,7 @@ namespace Squeal
     /// Modes of @p chart in the band with errors above @p tolerance.
     std::vector<int> inaccurate_modes(const ChartPoint &chart, double tolerance) const;
 
-    /// Some modes at an operating point.
+    /// Selected modes at an operating point.
     struct ModesAt
     {
       OperatingPoint    point;
@@ -97,15 +97,15 @@ namespace Squeal
       std::vector<int>  modes;
     };
 
-    /// New basis vectors from the residuals of modes; nothing if they lie in the basis. Collective.
+    /// New basis vectors from the residuals of modes; nothing if the basis contains them already. Collective.
     std::optional<MultiVector> new_vectors(const std::vector<ModesAt> &modes) const;
 
     /// Appends vectors to the basis. Collective.
     void extend(MultiVector vectors);
 
     /**
-     * Principal axes in the K_c-norm of the components of right and left modes of the @p charts, at unit strain energy, outside the span of
-     * the real modes, as coordinates in the basis. Axes with squares below @p tolerance are dropped; errors of λ are products of errors of
+     * Coordinates of principal axes in the K_c-norm: of the components of right and left modes of the @p charts, scaled to unit strain
+     * energy, outside the span of the real modes. Axes with squares below @p tolerance are dropped; errors of λ are products of errors of
      * right and left vectors. Collective.
      *
      * @param real_modes coordinates of the real modes
@@ -115,7 +115,7 @@ namespace Squeal
     /// A smaller basis with about the same span: the real modes and their principal_parts(), truncated to @p maximum vectors. Collective.
     MultiVector compressed_basis(const std::vector<ChartPoint> &charts, double tolerance, int maximum) const;
 
-    /// Starts again with another basis. Collective.
+    /// Replaces the basis. Collective.
     void restart(MultiVector vectors);
 
   private:
@@ -125,6 +125,6 @@ namespace Squeal
     double                     shift, largest_circular_frequency, largest_decay = std::numeric_limits<double>::infinity();
     bool                       allows_cancellation = true;
     ReducedModel               model;
-    mutable ProjectedResiduals residuals; ///< extended when needed
+    mutable ProjectedResiduals residuals; ///< extended with the basis when needed
   };
 } // namespace Squeal

@@ -13,21 +13,21 @@
 namespace Squeal
 {
   /**
-   * Modes at one friction coefficient of a stability chart. Vectors are coordinates in an M_c-orthonormal basis that may have been extended
-   * since: points from an earlier basis have fewer rows, and the missing ones are zero.
+   * Modes at one friction coefficient of a stability chart. Vectors are coordinates in an M_c-orthonormal basis, which may be extended
+   * later: vectors of points from an earlier basis have fewer rows, and the missing rows are zero.
    */
   struct ChartPoint
   {
     double friction_coefficient = 0.;
 
-    std::vector<std::complex<double>> lambda; ///< Im λ > 0, ascending by Im, then Re; including some beyond the end of the band [rad/s]
-    ComplexDenseMatrix                right;  ///< φ_r, r × k, ‖φ_r‖₂ = 1
-    ComplexDenseMatrix                left;   ///< ψ_r, r × k, ‖ψ_r‖₂ = 1: ψ_rᵀ Q_r(λ) = 0, no conjugate
+    std::vector<std::complex<double>> lambda; ///< λ with Im λ > 0, ascending by Im, then Re, to slightly beyond the end of the band [rad/s]
+    ComplexDenseMatrix                right; ///< φ_r, r × k, ‖φ_r‖₂ = 1
+    ComplexDenseMatrix                left;  ///< ψ_r, r × k, ‖ψ_r‖₂ = 1: ψ_rᵀ Q_r(λ) = 0 (without conjugation)
 
     std::vector<double>  right_residuals; ///< ε_res of φ, eq. (16) [-]
     std::vector<double>  left_residuals;  ///< ε_res of ψ [-]
     std::vector<double>  errors;          ///< estimated |δλ| / |λ|, including the effect of close modes that may coalesce [-]
-    std::vector<double>  uncertainties;   ///< of λ [rad/s]
+    std::vector<double>  uncertainties;   ///< uncertainty of each λ [rad/s]
     std::vector<Verdict> verdicts;
 
     /// D, k × k: D_ij = L_iᵀ K_c⁻¹ R_j / ψ_iᵀQ'(λ_i)φ_i; the eigenvalues of diag(λ) + D are more accurate than λ [rad/s].
@@ -36,7 +36,7 @@ namespace Squeal
     std::vector<double> real_values; ///< real λ ≠ 0, ascending [1/s]
     int                 n_zeros = 0; ///< number of λ = 0
 
-    /// Number of real λ, zeros included.
+    /// Number of real λ, including zeros.
     int n_real() const
     {
       return static_cast<int>(real_values.size()) + n_zeros;
@@ -51,7 +51,7 @@ namespace Squeal
     }
   };
 
-  /// A function of one or two modes.
+  /// Function of one or two modes whose zero is searched for.
   enum class ModeFunction
   {
     growth,       ///< Re λ of a mode
@@ -66,15 +66,15 @@ namespace Squeal
     std::vector<int>  modes;
   };
 
-  /// A function that changes its sign between two points of a chart.
+  /// Search for the zero of a function that changes its sign between two points of a chart.
   struct ZeroSearch
   {
     ModeFunction              function;
-    double                    bound;         ///< for the frequency [rad/s]
+    double                    bound;         ///< bound of the frequency [rad/s]
     ModesAtPoint              first, second; ///< the same one or two modes at both points
-    std::vector<ModesAtPoint> beyond;        ///< and at the adjacent points on either side, if they exist
+    std::vector<ModesAtPoint> beyond;        ///< these modes at the adjacent points on both sides, if they exist
   };
 
-  /// Predicted position of the zero between the points; nothing if there is no prediction. The same on every process.
+  /// Function that predicts the zero between the points; nothing if there is no prediction. The result is identical on every process.
   using PredictZero = std::function<std::optional<double>(const ZeroSearch &)>;
 } // namespace Squeal

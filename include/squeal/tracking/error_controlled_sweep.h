@@ -17,36 +17,38 @@ namespace Squeal
   /// Stopping criteria for the basis of a chart.
   struct ErrorControlledSweepOptions
   {
-    double tolerance     = 1e-6; ///< for the estimated |δλ| / |λ| of every mode of the band at every operating point [-]
+    double tolerance     = 1e-6; ///< limit for the estimated |δλ| / |λ| of every mode of the band at every operating point [-]
     int    maximum_basis = 1500; ///< maximum number of vectors, at least the number of real modes
   };
 
-  /// Result of a sweep within its tolerance.
+  /// Result of a sweep.
   struct ErrorControlledSweep
   {
-    std::size_t n_left;      ///< number of points that miss the tolerance
+    std::size_t n_left;      ///< number of points that do not meet the tolerance
     double      worst_error; ///< largest estimated |δλ| / |λ| of the other points [-]
     int         n_growths;
-    std::string why_stopped; ///< empty if all points meet the tolerance
+    std::string why_stopped; ///< reason for stopping; empty if all points meet the tolerance
   };
 
-  /// Receives the result at an operating point, by its index.
+  /// Function that receives the index of an operating point and its result.
   using KeepPoint = std::function<void(int, ChartPoint &&)>;
 
-  /// Evaluates @p model at several operating points, in rounds of a few per thread and process, and passes the results to @p each in order.
+  /// Evaluates @p model at several operating points, in rounds of several points per thread, and passes the results to @p each in order.
   void evaluate(const ChartModel &model, const std::vector<OperatingPoint> &points, MPI_Comm communicator, const KeepPoint &each);
 
   /// Evaluates @p model at all points.
   std::vector<ChartPoint> evaluate(const ChartModel &model, const std::vector<OperatingPoint> &points, MPI_Comm communicator);
 
-  /// Predicts zeros for stability_chart() by ChartModel::predicted_zero(), the same on every process; @p at: operating point for a given μ.
+  /// Function that predicts zeros for stability_chart() by ChartModel::predicted_zero(), identical on every process; @p at returns the
+  /// operating point for a given μ.
   PredictZero zero_predictor(const ChartModel &model, const std::function<OperatingPoint(double)> &at, MPI_Comm communicator);
 
   /**
-   * Extends the basis of @p model until the estimated errors of all modes in the band meet the tolerance at all operating @p points. It is
-   * first extended at the points numbered in @p training, one after the other, and compressed (ChartModel::compressed_basis()); without
-   * training it is not compressed. Then all points are evaluated, and the basis is extended at the point with the largest remaining error.
-   * A result that meets the tolerance is final and passed to @p keep; later vectors serve only the remaining points.
+   * Extends the basis of @p model until the estimated errors of all modes in the band meet the tolerance at all operating @p points. The
+   * basis is first extended at the points with the indices @p training, one after the other, and then compressed
+   * (ChartModel::compressed_basis()); without training points it is not compressed. Then all points are evaluated, and the basis is
+   * extended at the point with the largest remaining error. A result that meets the tolerance is final and is passed to @p keep; vectors
+   * added later are used only for the remaining points.
    */
   ErrorControlledSweep error_controlled_sweep(ChartModel                        &model,
                                               const std::vector<OperatingPoint> &points,
