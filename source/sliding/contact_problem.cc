@@ -74,7 +74,7 @@ namespace Squeal
             nodes.push_back(c);
         const int n = nodes.size();
 
-        // [G_CC/unit B_C; L_C 0] [r; z/unit] = [−g_0/unit; f]; columns of B and rows of L are scaled to a largest entry of 1
+        // [G_CC/unit  B_C; L_C  0] [r; z/unit] = [−g_0/unit; f]; columns of B and rows of L are scaled to a largest entry of 1
         DenseMatrix A = DenseMatrix::Zero(n + n_z, n + n_z), b(n + n_z, k);
         A << G(nodes, nodes) / unit, problem.motions(nodes, Eigen::placeholders::all) * motion_sizes.cwiseInverse().asDiagonal(),
           balance_sizes.cwiseInverse().asDiagonal() * problem.balance(Eigen::placeholders::all, nodes), DenseMatrix::Zero(n_z, n_z);

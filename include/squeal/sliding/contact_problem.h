@@ -57,7 +57,7 @@ namespace Squeal
   /**
    * Derivatives of the reactions, n_c × k, with respect to k parameters that change g_0 and f while the @p closed nodes remain closed:
    *
-   *   g_0' + G r' + B z' = 0 at closed nodes, r' = 0 at open nodes, L r' = f'
+   *   g_0' + G r' + B z' = 0 at closed nodes,   r' = 0 at open nodes,   L r' = f'
    *
    * @param gap_rates   g_0', n_c × k [m per unit]
    * @param force_rates f', n_z × k [N per unit]; unused for held motions

@@ -90,7 +90,7 @@ namespace Squeal
    * Derivatives of the reactions with respect to k parameters of the bodies at constant friction coefficient, loads, travel and closed
    * nodes, n_c × k [N per unit]:
    *
-   *   K u' = f' + P_nᵀ r' + μ P_tᵀ r', P_n u' + a d' − a gap' = 0 at closed nodes, r' = 0 at open nodes
+   *   K u' = f' + P_nᵀ r' + μ P_tᵀ r',   P_n u' + a d' − a gap' = 0 at closed nodes,   r' = 0 at open nodes
    *
    * where the free motions R of the disc remain in equilibrium, Rᵀ (f' + P_nᵀ r' + μ P_tᵀ r') = 0, and loads are constant. No solve at full
    * order is necessary, because the attachment modes also give the gaps due to f', P_n K⁻¹ f' = (K⁻¹ P_nᵀ)ᵀ f'. Normals and the component
