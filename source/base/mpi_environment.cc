@@ -26,10 +26,10 @@ namespace Squeal
         setenv("OMPI_MCA_orte_create_session_dirs", "0", 0);
         // Avoids a shared-memory file, which Open MPI 5 creates but does not use
         setenv("OMPI_MCA_btl", "self", 0);
-        // Avoids the search for networks, which takes 0.2 s
+        // Avoids the search for network interfaces, which takes 0.2 s
         setenv("OMPI_MCA_pml", "ob1", 0);
       }
-    // All cores of the machine, not only those to which this process is bound
+    // Compare with all cores of the machine, not only with the cores to which this process is bound
     else if (std::atoi(n_processes) > ::sysconf(_SC_NPROCESSORS_ONLN))
       setenv("OMPI_MCA_mpi_yield_when_idle", "1", 0);
   }

@@ -27,7 +27,7 @@ namespace Squeal
     if (const char *text = std::getenv("OMP_NUM_THREADS"); text != nullptr)
       if (const long number = std::strtol(text, nullptr, 10); number > 0)
         return static_cast<unsigned int>(std::min(number, 1024l));
-    // A process bound to fewer cores than its share uses those only
+    // A process that is bound to fewer cores than its share uses only these cores
     const unsigned int share = std::thread::hardware_concurrency() / std::max(1u, n_processes);
     return std::max(1u, std::min(n_usable_cores(), share));
   }

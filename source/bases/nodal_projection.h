@@ -67,7 +67,7 @@ namespace Squeal
       return summed(communicator, Q.transpose() * (roots.asDiagonal() * fields));
     }
 
-    /// Coefficients in the original functions from those in the orthonormal functions.
+    /// Converts coefficients of the orthonormal functions to coefficients of the original functions.
     Eigen::VectorXd factors(const Eigen::VectorXd &orthonormal_coefficients) const
     {
       return R.triangularView<Eigen::Upper>().solve(orthonormal_coefficients);

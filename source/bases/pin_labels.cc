@@ -95,7 +95,7 @@ namespace Squeal
     for (const auto &[pin, axis] : axes)
       add_energies(Nodes(model, nodal_masses, pin), axis, modes, energies);
 
-    // Number the modes of each family: each pin has one T1, one L1 and two F1 modes
+    // Number the modes of each family in ascending order: each pin has one T1, one L1 and two F1 modes
     constexpr std::array<ModeFamily, 3> families = {{ModeFamily::flexural, ModeFamily::torsional, ModeFamily::longitudinal}};
     std::vector<ModeLabel>              labels;
     std::array<int, 3>                  count{};

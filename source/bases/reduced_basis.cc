@@ -46,7 +46,7 @@ namespace Squeal
           sets.push_back(part->compute ? part->compute(in) : required(in.set(*part->set), recipe, part->symbol));
           if (part->set)
             counts.sets[*part->set] = sets.back().n_columns();
-          // Rigid-body motions of a free disc that are missing in its modes
+          // Add rigid-body motions of a free disc that are not among its modes
           const MultiVector *N =
             part->set == BasisSource::disc_free && in.static_modes != nullptr ? in.static_modes->response.rigid_body_modes() : nullptr;
           if (N == nullptr)

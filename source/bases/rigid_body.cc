@@ -31,7 +31,7 @@ namespace Squeal
     {
       const RealPairs   axes = symmetric_eigenpairs(gram(X, *system.mass * X));
       const MultiVector Y    = X * DenseMatrix(axes.vectors * as_column(axes.values).cwiseSqrt().cwiseInverse().asDiagonal());
-      // All processes must drop the same motions
+      // Use identical values on all processes, so that all drop the same motions
       const RealPairs ritz = agreed(X.communicator(), symmetric_eigenpairs(gram(Y, *system.stiffness * Y)));
       return {Y * ritz.vectors, ritz.values};
     }

@@ -24,7 +24,7 @@ namespace Squeal
     /// Components of a unit normal below this limit are rounding errors of the coordinates [-].
     constexpr double not_inclined = 1e-12;
 
-    /// Sliding velocities below this fraction of the largest one have no reliable direction because of rounding errors [-].
+    /// Sliding velocities below this fraction of the largest velocity have no reliable direction because of rounding errors [-].
     constexpr double smallest_lever = 1e-8;
 
     /// A face with its nodes, for communication.

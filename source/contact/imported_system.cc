@@ -155,8 +155,8 @@ namespace Squeal
     if (is_definite(0.))
       return 0.;
     const double shift = part_of_band * largest_circular_frequency;
-    // Negative eigenvalues within the rounding errors belong to rigid-body motions; larger ones are growing motions, for which no shift is
-    // used
+    // Negative eigenvalues may be rounding errors of rigid-body motions; eigenvalues beyond this limit are growing motions, for which a
+    // shift is not allowed
     return is_definite(std::min(shift * shift, system.hidden_square)) && is_definite(shift * shift) ? std::optional(shift) : std::nullopt;
   }
 } // namespace Squeal

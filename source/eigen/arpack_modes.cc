@@ -27,7 +27,7 @@ namespace Squeal
     const int     comm    = MPI_Comm_c2f(map.communicator());
     const int     n_local = map.n_local();
 
-    // ARPACK requires at least one row per process: add one with zero entries
+    // ARPACK requires at least one row per process: add a row of zeros if necessary
     const int n   = std::max(1, n_local);
     const int nev = request.n_wanted;
     const int ncv = std::min(map.n(), std::max(2 * nev + 20, nev + 40));
@@ -77,7 +77,7 @@ namespace Squeal
       return {};
 
     const int           want_vectors = 1;
-    const double        sigma        = 0.; // only shifts the eigenvalues, which are not used
+    const double        sigma        = 0.; // shift of the eigenvalues, which are not used
     std::vector<int>    select(ncv);
     std::vector<double> values(nev);
     pdseupd_c(comm, want_vectors, "A", select.data(), values.data(), v.data(), n, sigma, "G", n, "LM", nev, request.tolerance, resid.data(),

@@ -345,8 +345,8 @@ namespace Squeal
     double              condition = 0., separation = 0.;
     std::vector<double> work(std::max(n, 1));
     lapack_int          integer_work = 0;
-    // A positive result means that two values too close to be exchanged keep their order; the Schur form is still valid. LAPACKE's driver
-    // without "_work" passes no integer workspace here and crashes
+    // Ignore a positive result: two values that are too close to be exchanged keep their order, and the Schur form is still valid.
+    // LAPACKE_dtrsen() does not allocate an integer workspace in this case and crashes
     LAPACKE_dtrsen_work(LAPACK_COL_MAJOR, 'N', 'V', selected.data(), n, T.data(), n, Z.data(), n, real.data(), imaginary.data(), &q,
                         &condition, &separation, work.data(), n, &integer_work, 1);
     if (q > 0 && q < n && T(q, q - 1) != 0.)

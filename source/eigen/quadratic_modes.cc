@@ -83,7 +83,7 @@ namespace Squeal
           }
     }
 
-    /// Sorts the Ritz values inside the radius into oscillating, real and zero ones; computes vectors and residuals.
+    /// Sorts the Ritz values inside the radius into oscillating, real and zero eigenvalues; computes vectors and residuals.
     QuadraticModes extract(const QuadraticPencil       &pencil,
                            const InverseAtShift        &transformation,
                            const CompactKrylov         &krylov,

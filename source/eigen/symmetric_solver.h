@@ -22,10 +22,10 @@ namespace Squeal
     /// K, M, and objects in the options must outlive the solver.
     SymmetricSolver(const SparseMatrix &K, const SparseMatrix &M, double limit, const SymmetricModesOptions &options);
 
-    /// True if all modes, not only those of the band, are computed by a dense eigenproblem.
+    /// True if the system is small and all its modes are computed by a dense eigensolver.
     bool is_dense() const;
 
-    /// Solves the dense eigenproblem on a single process in advance of modes(); may run concurrently with others.
+    /// Solves the dense eigenproblem on a single process in advance of modes(); several solvers may do this concurrently.
     void solve_densely();
 
     SymmetricModes modes();

@@ -36,8 +36,8 @@ namespace Squeal
     /// Extent of the search for a point.
     enum class PointSearch
     {
-      inside, ///< in cells whose bounding box contains the point
-      nearest ///< in the nearest cells; the point is clipped to the cell
+      inside, ///< search only cells whose bounding box contains the point
+      nearest ///< search the nearest cells; the point is clipped to the cell
     };
 
     /// Finds points in the cells of this process, separately for each body, because a position on the common face of disc and pin does not

@@ -14,7 +14,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Rejects mid-edge nodes so far from the middle that the edge folds back or bulges beyond a half circle.
+    /// Rejects mid-edge nodes at such a distance from the middle that the edge folds back or bulges beyond a half circle.
     void check_middles(const Mesh &mesh)
     {
       constexpr double           farthest = 0.5; // relative to the length of the edge
@@ -46,7 +46,7 @@ namespace Squeal
     /// separate.
     void check_shared_middles(const Mesh &mesh)
     {
-      std::map<std::array<unsigned int, 4>, unsigned int> middles; // by ascending corners; edges repeat each corner
+      std::map<std::array<unsigned int, 4>, unsigned int> middles; // middle nodes by ascending corners; edges repeat each corner
       std::vector<bool>                                   is_corner(mesh.points.size(), false);
       std::set<std::size_t>                               unmatched; // indices of elements
       for (const Mesh::Cell &cell : mesh.cells)

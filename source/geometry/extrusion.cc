@@ -70,7 +70,7 @@ namespace Squeal
               }
           }
 
-        // Hexahedra; the faces of the plan are counter-clockwise seen from above
+        // Hexahedra: the faces of the plan are counter-clockwise as seen from above
         for (unsigned int layer = 0; layer < n_layers; ++layer)
           for (const auto &[a, b, c, d] : faces)
             {
@@ -96,7 +96,7 @@ namespace Squeal
       }
 
     private:
-      std::vector<std::vector<unsigned int>> nodes; ///< by layer and node of the plan
+      std::vector<std::vector<unsigned int>> nodes; ///< node numbers by layer and node of the plan
       Mesh                                  &mesh;
     };
   } // namespace

@@ -57,7 +57,7 @@ namespace Squeal
       unsigned int       group;
     };
 
-    /// Elements by tag; write_msh() numbers them in the order of the mesh.
+    /// Elements by tag; write_msh() uses tags in the order of the mesh.
     using TaggedElements = std::multimap<std::size_t, GroupElement>;
 
     void add_group(TaggedElements &all, const GmshMesh::Group &group, std::vector<std::string> &names, const std::string &where)

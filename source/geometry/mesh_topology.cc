@@ -256,7 +256,7 @@ namespace Squeal
     struct MisplacedPoints
     {
       std::map<unsigned int, std::set<unsigned int>>                          hanging;  ///< points on or in other elements of the same body
-      std::map<std::pair<unsigned int, unsigned int>, std::set<unsigned int>> overlaps; ///< by own and containing body
+      std::map<std::pair<unsigned int, unsigned int>, std::set<unsigned int>> overlaps; ///< points by own and other body
     };
 
     std::vector<Box> boxes_of_bodies(const Mesh &mesh, const std::vector<unsigned int> &bodies)

@@ -26,7 +26,7 @@ namespace Squeal
                                          "$Entities; write it with them, or in format 2.2";
     constexpr std::size_t quoted_lines = 8;
 
-    /// A file in memory that is removed with its last descriptor.
+    /// A file in memory that is removed when its last descriptor is closed.
     using MemoryFile = std::unique_ptr<std::FILE, decltype(&std::fclose)>;
 
     MemoryFile memory_file(const std::string &content)

@@ -20,7 +20,7 @@ namespace Squeal
   {
     // Constants of ProblemSize::memory(), fitted to measurements [byte]
     constexpr double program          = 1.8e8;
-    constexpr double bytes_per_entry  = 90.;   ///< per entry of K, for all matrices
+    constexpr double bytes_per_entry  = 90.;   ///< memory of all matrices per entry of K
     constexpr double factor_per_dof   = 3100.; ///< memory of the factor per dof at reference_dofs
     constexpr double reference_dofs   = 3e4;
     constexpr double factor_growth    = 0.4; ///< exponent of the growth of factor_per_dof with the number of dofs
@@ -178,7 +178,7 @@ namespace Squeal
   bool is_round_about_z(const Mesh &mesh, const std::string &where)
   {
     constexpr double clearly_rounder = 0.1, least_round = 0.5;          // fractions of the surface
-    constexpr double negligible_angle = 5e-3, negligible_offset = 5e-3; // [rad], [outer radius]
+    constexpr double negligible_angle = 5e-3, negligible_offset = 5e-3; // angle [rad], offset relative to the outer radius [-]
 
     // Second moments of each face, exact for triangles and parallelograms: each corner has the weight 1/12, the centre has the remainder
     std::vector<CellFace> faces = outer_faces(mesh);

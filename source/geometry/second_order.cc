@@ -84,7 +84,7 @@ namespace Squeal
 
       using Range = std::pair<std::vector<CellFace>::const_iterator, std::vector<CellFace>::const_iterator>;
 
-      /// The one or two cells at a face.
+      /// The one or two cells that have a face.
       Range cells_at(const Key &key) const
       {
         const auto first =
@@ -96,7 +96,7 @@ namespace Squeal
       void find_surfaces()
       {
         for (const char *name :
-             {PhysicalNames::pin_side, PhysicalNames::disc_rim, PhysicalNames::disc_bore}) // the last one takes precedence
+             {PhysicalNames::pin_side, PhysicalNames::disc_rim, PhysicalNames::disc_bore}) // the last surface takes precedence
           {
             std::map<unsigned int, std::vector<CellFace>> patches; // faces of the surface by body
             for (const Mesh::Face &face : mesh.faces)

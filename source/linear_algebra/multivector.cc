@@ -295,7 +295,7 @@ namespace Squeal
         for (int i = 0; i < X.n_local_rows(); ++i)
           {
             const std::uint64_t bits = mix(stream ^ mix(static_cast<std::uint64_t>(map.number(i))));
-            // The upper 53 bits give a double in [0, 1)
+            // The upper 53 bits are converted to a double in [0, 1)
             X(i, j) = 2. * static_cast<double>(bits >> 11) / 9007199254740992. - 1.;
           }
       }

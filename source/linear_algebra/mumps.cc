@@ -35,7 +35,7 @@ namespace Squeal
       counted ///< only numbers and signs of pivots are determined
     };
 
-    /// An instance of MUMPS with the factors of one matrix.
+    /// A MUMPS instance with the factors of one matrix.
     class Mumps
     {
     public:
@@ -177,7 +177,7 @@ namespace Squeal
         return id.info[22];
       }
 
-      /// Address for MUMPS, which requires valid pointers.
+      /// Address of the first number for MUMPS, which requires a valid pointer even if there are no numbers.
       static int *address(std::vector<int> &numbers)
       {
         numbers.reserve(1);

@@ -70,7 +70,7 @@ namespace Squeal
       return stream >> word && (word == "$NOD" || (word == "$MeshFormat" && stream >> version && version < 3.));
     }
 
-    /// Index of each node by its tag.
+    /// Collects the nodes; returns the index of each node by its tag.
     std::map<std::size_t, unsigned int> collect_nodes(GmshMesh &mesh)
     {
       std::vector<std::size_t> tags;

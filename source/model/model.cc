@@ -79,7 +79,7 @@ namespace Squeal
       return Utilities::unpack<Part>(buffer, false);
     }
 
-    /// The whole mesh on process 0, with nodes and dofs numbered, and its parts for the processes.
+    /// The whole mesh on process 0, with numbered nodes and dofs, and its division into parts for the processes.
     class Division
     {
     public:

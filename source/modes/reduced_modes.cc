@@ -60,7 +60,7 @@ namespace Squeal
       std::sort(values.begin(), values.end());
     }
 
-    /// Replaces the modes by those of process 0: vectors of a multiple eigenvalue may differ between processes.
+    /// Replaces the modes by the modes of process 0, because vectors of a multiple eigenvalue may differ between processes.
     void agree_on_modes(const MPI_Comm communicator, ReducedModes &modes)
     {
       const int r         = modes.mass.rows();

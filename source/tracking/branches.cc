@@ -92,7 +92,7 @@ namespace Squeal
       };
       add_overlaps(carried.right, modes.points[k + 1].right);
       add_overlaps(carried.left, modes.points[k + 1].left);
-      // Prefer modes with the same sign of growth, even if growth is slow, when nothing else distinguishes the modes
+      // Prefer modes with the same sign of growth, even if the growth is slow: it may be the only distinction
       const auto   grow_alike = [](const Complex &x, const Complex &y) { return growth_class(x) == growth_class(y); };
       const double weight     = block.resolved ? closeness_weight : 1.;
       return best_assignment(n, n, [&](const int i, const int j) {

@@ -49,7 +49,7 @@ namespace Squeal
       return "";
     }
 
-    /// Extends the basis for some operating points, one after the other, and compresses it; returns the number of extensions.
+    /// Extends the basis at the training points, one after the other, and compresses it; returns the number of extensions.
     int train(ChartModel                        &model,
               const std::vector<OperatingPoint> &points,
               const std::vector<int>            &training,

@@ -23,8 +23,8 @@ namespace Squeal
   enum class FactorizationLibrary
   {
     automatic, ///< CHOLMOD on one process, MUMPS on several
-    cholmod,   ///< one process
-    mumps      ///< any number of processes
+    cholmod,   ///< for one process
+    mumps      ///< for any number of processes
   };
 
   template <>

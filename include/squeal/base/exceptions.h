@@ -14,7 +14,7 @@ namespace Squeal
     /**
      * @param what   the quantity or parameter, its value, and why it is rejected
      * @param where  file, section, surface, component or step
-     * @param change what would make the run succeed
+     * @param change remedy: how to make the run succeed
      */
     Error(const std::string &what, const std::string &where, const std::string &change)
       : std::runtime_error(what + "\n  where:  " + where + "\n  change: " + change)

@@ -11,7 +11,7 @@ namespace Squeal
   /**
    * Memory that the processes of this machine may use in total before the kernel kills one of them [byte]: the smaller of the available
    * memory (`MemAvailable`) and the remaining limit of the control groups (version 2). Cached files count as available. Infinity if neither
-   * is known.
+   * can be determined.
    *
    * @param root folder that contains /proc and /sys
    */
@@ -20,7 +20,7 @@ namespace Squeal
   /// Available memory of all machines of the communicator [byte]. Collective.
   double available_memory(MPI_Comm communicator);
 
-  /// Largest fraction of the available memory for vectors that can be recomputed, one per contact node [-].
+  /// Largest fraction of the available memory for attachment modes, one vector per contact node, which can be recomputed [-].
   constexpr double largest_part_of_attachment_modes = 0.125;
 
   /// Resident memory of this process [byte]; 0 if the system does not report it.

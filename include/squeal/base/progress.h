@@ -38,7 +38,7 @@ namespace Squeal
   struct StepRecord : Cost
   {
     std::string name;
-    std::string summary; ///< result of the step, one phrase
+    std::string summary; ///< result of the step in a few words
   };
 
   /**

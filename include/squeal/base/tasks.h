@@ -15,11 +15,11 @@ namespace Squeal
 
   unsigned int n_task_threads();
 
-  /// Calls task(0) to task(n - 1), in any order and concurrently. Tasks must not communicate, nor write what another one reads. Rethrows
-  /// the exception of the first failing task once all running tasks have ended.
+  /// Calls task(0) to task(n - 1), in any order and concurrently. Tasks must not communicate and must not write data that another task
+  /// reads. Rethrows the exception of the first failing task once all running tasks have ended.
   void run_tasks(int n, const std::function<void(int)> &task);
 
-  /// Calls f(first, n) as tasks for blocks of 0, ..., total - 1 with @p size elements, the last one with the remainder; f(0, 0) once if the
-  /// total is 0. The blocks do not depend on the number of threads.
+  /// Calls f(first, n) as tasks for blocks of @p size elements of 0, ..., total - 1; the last block has the remainder. Calls f(0, 0) once
+  /// if the total is 0. The blocks do not depend on the number of threads.
   void run_parts(int total, int size, const std::function<void(int first, int n)> &f);
 } // namespace Squeal

@@ -14,15 +14,15 @@ namespace Squeal
   /// Cores that this process may use according to its affinity.
   unsigned int n_usable_cores();
 
-  /// Runs this program in a separate process, so that its failure does not affect this one. It does not join the MPI job of this process
-  /// and receives SIGTERM when this process ends for any reason.
+  /// Runs this program in a separate process, so that a failure does not affect the calling process. The new process does not join the
+  /// caller's MPI job and receives SIGTERM when the caller ends for any reason.
   class WorkerProcess
   {
   public:
     /**
      * Starts the process.
      *
-     * @param arguments without the name of the program
+     * @param arguments command-line arguments without the name of the program
      * @param log       file for its output
      * @param n_threads sets OMP_NUM_THREADS unless the user has set it, so that there are not more threads than cores
      *

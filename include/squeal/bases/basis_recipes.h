@@ -52,7 +52,7 @@ namespace Squeal
   struct BasisCounts
   {
     std::map<BasisSource, int> sets;
-    int                        rigid_body = 0; ///< rigid-body motions of a free disc that are missing in its modes
+    int                        rigid_body = 0; ///< rigid-body motions of a free disc that are not among its modes
     int                        contact    = 0; ///< n_c
   };
 
@@ -114,7 +114,7 @@ namespace Squeal
     bool rests_on(BasisSource source) const;
   };
 
-  /// All bases: first those of tables 2, 4 and 5 of the paper, then additional ones.
+  /// All bases: first the bases of tables 2, 4 and 5 of the paper, then additional bases.
   const std::vector<BasisRecipe> &basis_recipes();
 
   /// Basis with this name; null if there is none.

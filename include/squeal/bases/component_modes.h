@@ -17,7 +17,7 @@ namespace Squeal
   {
     std::vector<ModeLabel>       labels;
     std::vector<double>          eigenvalues; ///< ω² [rad²/s²], ascending
-    std::vector<double>          residuals;   ///< as in SymmetricModes [-]
+    std::vector<double>          residuals;   ///< see SymmetricModes::residuals [-]
     std::shared_ptr<MultiVector> vectors;     ///< n_free × k, orthonormal in M, zero on the other components
   };
 
@@ -30,7 +30,7 @@ namespace Squeal
    * All modes of a component with ω² ≤ @p largest_eigenvalue, with free or sliding contact nodes, labelled by shape. Throws SolverError if
    * their number differs from the inertia count.
    *
-   * @param interface all contact nodes, closed or open: they define the axes of the pins
+   * @param interface all contact nodes, closed or open, which define the axes of the pins
    * @param closed    closed contact nodes
    */
   ComponentModes component_modes(const Model                 &model,
@@ -79,7 +79,7 @@ namespace Squeal
    * Labels real or complex coupled modes by their M-inner products with component modes; modes of one shape (a doublet, the F1 modes of all
    * pins) count together. If each mode is dominated by a different component mode, it gets the label of this component mode. If several
    * modes compete (an A0-5 mode with larger motion of the pins), labels are assigned so that the sum of all participations is largest and
-   * no label occurs more often than there are component modes with it. Participations below 0.1 are ignored.
+   * no label occurs more often than there are component modes with this label. Participations below 0.1 are ignored.
    *
    * @param references component modes, as for shape_shares()
    * @param shares     result of shape_shares(), one entry per coupled mode

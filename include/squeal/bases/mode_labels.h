@@ -50,8 +50,8 @@ namespace Squeal
   struct ModeLabel
   {
     ModeFamily  family          = ModeFamily::unnamed;
-    int         nodal_circles   = 0; ///< of a disc mode
-    int         nodal_diameters = 0; ///< of a disc mode
+    int         nodal_circles   = 0; ///< for disc modes
+    int         nodal_diameters = 0; ///< for disc modes
     int         rank            = 0; ///< modes of pins or other bodies: 1 for the lowest mode of the family
     DoubletSign sign            = DoubletSign::none;
     double      participation   = 0.; ///< Σ |ψᵀ M φ|² / φᴴ M φ over the component modes ψ of this shape [-]
@@ -77,9 +77,9 @@ namespace Squeal
 
   /**
    * Assigns signs to labels whose shape occurs exactly twice, except unnamed modes. Plus is the mode that grows, or grows faster; if
-   * neither grows, the one with the higher frequency. All tables of all studies use this rule.
+   * neither grows, the mode with the higher frequency. All tables of all studies use this rule.
    *
-   * @param labels       of modes in ascending order of frequency
+   * @param labels       labels of modes in ascending order of frequency
    * @param growth_rates one for each mode, zero if the mode does not grow [any unit]; empty: no mode grows
    */
   void mark_doublets(std::vector<ModeLabel> &labels, const std::vector<double> &growth_rates = {});
@@ -100,21 +100,21 @@ namespace Squeal
   /// Energy fractions of the two travelling waves of a disc mode; 0.5 each for a standing wave [-].
   struct WaveShares
   {
-    double positive; ///< along +e_θ
-    double negative; ///< along -e_θ
+    double positive; ///< share of the wave along +e_θ
+    double negative; ///< share of the wave along -e_θ
   };
 
   /**
-   * Travelling waves in disc modes. Harmonic n of the label of a mode is projected as in disc_labels(), from the displacement component
-   * that names it (axial, radial or circumferential):
+   * Travelling waves in disc modes. Harmonic n of the label of a mode is projected as in disc_labels(), from the displacement component of
+   * its family (axial, radial or circumferential):
    *
    *   φ = a(r) cos nθ + b(r) sin nθ = ½ (a + ib) e^{-inθ} + ½ (a - ib) e^{inθ}.
    *
-   * With u = Re(φ e^{λt}) and ω = Im λ > 0 the first part depends on ωt - nθ and travels along +e_θ with the angular speed ω/n, the second
-   * one along -e_θ. The shares are the fractions of Σ m |a ± ib|² over the nodes. Empty for pin modes, unnamed modes and modes without
+   * With u = Re(φ e^{λt}) and ω = Im λ > 0, the first part depends on ωt - nθ and travels along +e_θ with the angular speed ω/n, the second
+   * part along -e_θ. The shares are the fractions of Σ m |a ± ib|² over the nodes. Empty for pin modes, unnamed modes and modes without
    * nodal diameters.
    *
-   * @param labels         of the modes
+   * @param labels         labels of the modes
    * @param real_part      n_free × k displacements
    * @param imaginary_part n_free × k
    */

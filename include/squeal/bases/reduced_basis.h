@@ -33,8 +33,8 @@ namespace Squeal
   struct ConnectionRank
   {
     int    rank             = 0;  ///< rank of P_n T_r0; 0 for a basis that needs no connection
-    double smallest_kept    = 0.; ///< singular value / largest one [-]
-    double largest_dropped  = 0.; ///< singular value / largest one [-]; 0 if none was dropped
+    double smallest_kept    = 0.; ///< smallest nonzero singular value, relative to the largest [-]
+    double largest_dropped  = 0.; ///< largest singular value that counts as zero, relative to the largest [-]; 0: none
     double constraint_error = 0.; ///< max |P_n T_r0 T_cr| / max |T_r0 T_cr| before the final correction [-]
   };
 

@@ -18,7 +18,7 @@ namespace Squeal
   /// ω_max / s for the shift s in K + s² M: s is large enough that the inverse does not amplify slow motions [-].
   inline constexpr double band_per_stabilizing_shift = 50.;
 
-  /// Translations along and rotations about x, y, z of one component, the others at rest: n × 6 on the uncoupled dofs.
+  /// Translations along and rotations about x, y and z of one component, n × 6 on the uncoupled dofs; other components are at rest.
   MultiVector rigid_motions(const Model &model, unsigned int component);
 
   /// The six rigid-body motions of the disc in coupled coordinates, n × 6; pins move only where the contact constraints require it.
@@ -31,8 +31,8 @@ namespace Squeal
   /// Rigid-body motions, M-orthonormal, split by their effect on the contact nodes.
   struct ContactMotions
   {
-    std::optional<MultiVector> pressing; ///< move contact nodes along the normals
-    std::optional<MultiVector> sliding;  ///< leave all gaps unchanged
+    std::optional<MultiVector> pressing; ///< change gaps: move contact nodes along the normals
+    std::optional<MultiVector> sliding;  ///< do not change any gap
   };
 
   /**
@@ -52,12 +52,12 @@ namespace Squeal
   double stabilizing_shift(const Model &model, const SecondOrderSystem &system, double largest_circular_frequency);
 
   /**
-   * Solves K u = f for blocks of forces, K symmetric positive semidefinite with a known kernel N of rigid-body motions. If N is not empty,
-   * inertia relief applies,
+   * Solves K u = f for blocks of forces, where K is symmetric positive semidefinite and its kernel N of rigid-body motions is known. If N
+   * is not empty, inertia relief applies,
    *
    *   K u = f − M N Nᵀf,   NᵀM u = 0,   NᵀM N = 1,
    *
-   * solved by a factor of K + s² M and iterative refinement.
+   * which is solved by a factor of K + s² M and iterative refinement.
    */
   class InertiaRelief
   {
@@ -94,7 +94,7 @@ namespace Squeal
 
   /**
    * Static responses of the uncoupled bodies, K u = f: f = P_nᵀ or P_tᵀ gives the normal and tangential attachment modes of disc and pins
-   * (section 5.1 of the paper). K is block diagonal, so that one factorisation serves all components.
+   * (section 5.1 of the paper). K is block diagonal, so that one factorisation is sufficient for all components.
    *
    * @param largest_circular_frequency end of the band [rad/s], for the shift of a disc that can move freely
    *

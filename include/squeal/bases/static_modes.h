@@ -14,7 +14,7 @@ namespace Squeal
 {
   /**
    * Static boundary modes of disc and pins on the uncoupled dofs, one column for each contact node (sections 5.1 and 6.1 of the paper).
-   * Each set is computed on first use and kept. The arguments must outlive the object.
+   * Each set is computed on first use and stored. The arguments must outlive this object.
    *
    * For a disc with rigid-body motions that its mounts do not resist, inertia relief applies: attachment modes are complete only together
    * with InertiaRelief::rigid_body_modes().
@@ -37,18 +37,18 @@ namespace Squeal
     /// Ψ_at^D − Ψ_at^P = K⁻¹ P_tᵀ: responses to unit forces along t [m/N], n × n_c.
     const MultiVector &tangential_attachment() const;
 
-    /// Ψ_an^D or Ψ_an^P: responses of one component to unit forces along n, the other at rest.
+    /// Ψ_an^D or Ψ_an^P: responses of one component to unit forces along n; the other component is at rest.
     MultiVector normal_attachment(Component component) const;
 
     /// Ψ_aμ^D − Ψ_aμ^P = K⁻¹ (P_nᵀ + μ P_tᵀ), eq. (23): responses to unit normal forces with the corresponding friction r_t = μ r_n.
     MultiVector rubbing_attachment(double friction_coefficient) const;
 
     /**
-     * Ψ_cn^D or Ψ_cn^P: responses of one component to a unit displacement n·u = 1 of one of its contact nodes, n·u = 0 at the others, free
-     * in the tangent planes [-], n × n_c; P_n Ψ_cn^D = I and P_n Ψ_cn^P = −I. If the disc still has rigid-body motions, the responses are
-     * M-orthogonal to them.
+     * Ψ_cn^D or Ψ_cn^P: responses of one component to a unit displacement n·u = 1 of one of its contact nodes, with n·u = 0 at its other
+     * contact nodes and free tangential displacements [-], n × n_c; P_n Ψ_cn^D = I and P_n Ψ_cn^P = −I. If the disc still has rigid-body
+     * motions, the responses are M-orthogonal to these motions.
      *
-     * Throws SolverError if the stiffness of the sliding component is singular for another reason.
+     * Throws SolverError if the stiffness of the component with sliding contact is singular for another reason.
      */
     const MultiVector &constraint(Component component) const;
 

@@ -71,8 +71,8 @@ namespace Squeal
 
   /**
    * Contact nodes of pairs of surfaces: pairs of nodes if every node of the pins has a disc node within @p tolerance [m] and vice versa,
-   * else by mortar(). The normal of a node pair is the area average over the adjacent contact faces of the disc, that of a mortar node the
-   * average over those of the pin; t is the direction of the velocity in the tangent plane.
+   * else by mortar(). The normal of a node pair is the area average over the adjacent contact faces of the disc; for a mortar node, the
+   * average is over the faces of the pin. t is the direction of the velocity in the tangent plane.
    *
    * Throws MeshError if a contact node is clamped, if its velocity is zero, not finite or normal to the face, or if mortar() fails.
    */

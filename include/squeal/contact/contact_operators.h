@@ -15,7 +15,7 @@ namespace Squeal
   /// Compliant contact of a pair of surfaces, with springs k: r_n = −k diag(D) P_n, D the areas of the contact nodes.
   struct ContactSpring
   {
-    std::string                         name;      ///< parameter of its term
+    std::string                         name;      ///< name of its parameter
     double                              stiffness; ///< k [N/m³]
     std::shared_ptr<const SparseMatrix> matrix;    ///< P_nᵀ diag(D) P_n [m²], n × n
     std::shared_ptr<const SparseMatrix> reaction;  ///< −diag(D) P_n [m²], n_c × n, zero rows for other pairs
@@ -36,7 +36,7 @@ namespace Squeal
    * Any S with these properties gives the same eigenvalues. For node pairs it is ½ P_n, because P_n P_nᵀ = 2 I; for mortar nodes it is a
    * weighted sum of the forces on the nodes of the pin.
    *
-   * T_c eliminates one displacement component of each pin node, the one closest to the normal; if the normal is a coordinate axis, T_c
+   * T_c eliminates the displacement component of each pin node that is closest to the normal; if the normal is a coordinate axis, T_c
    * selects dofs.
    */
   struct ContactOperators

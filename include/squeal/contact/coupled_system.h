@@ -38,7 +38,7 @@ namespace Squeal
    *
    *   (λ² (M_c − μ A V_M) + λ (C_c − μ A V_C) + K_c − μ A V_K) φ_c = 0
    *
-   * as a list of terms. Each term X of the bodies, such as K, gives
+   * as a list of terms. Each term X of the bodies, for example K, gives
    *
    *   X_c = T_cᵀ X T_c   and   −μ A V_X,   A = T_cᵀ P_tᵀ,  V_X = S X T_c,
    *
@@ -69,7 +69,7 @@ namespace Squeal
       return friction_forces->rank();
     }
 
-    /// Parameter values with the varied parameter (μ for a mesh) at @p value and with @p others replaced.
+    /// Parameter values with @p value for the varied parameter (μ for a mesh) and the values @p others for other parameters.
     ParameterValues at(double value, const ParameterValues &others = {}) const;
 
     /// True if there is damping at μ = 0.
@@ -109,7 +109,7 @@ namespace Squeal
                        const ContactDamping    &damping = {},
                        const ParameterValues   &values  = {});
 
-  /// The same system with other values of some parameters.
+  /// The system with other values of some parameters.
   CoupledSystem with_values(CoupledSystem system, const ParameterValues &others);
 
   /// The system without its damping terms (λ¹).

@@ -22,7 +22,7 @@ namespace Squeal
    * Symmetric parts of unsymmetric matrices (TermKind::circulatory) are included in mass and stiffness if these are then definite;
    * otherwise they count as friction. If neither choice is definite, mass and stiffness are null: use direct_modes().
    *
-   * @param values  of all parameters, for mass and stiffness
+   * @param values  values of all parameters, for mass and stiffness
    * @param varied  parameter of charts
    * @param largest_circular_frequency ω [rad/s]
    */

@@ -12,8 +12,8 @@ namespace Squeal
   /// Travel of the backplate of a pin towards the disc: the direction of the load.
   struct Travel
   {
-    Eigen::Vector3d direction = Eigen::Vector3d::Zero(); ///< e, a unit vector; zero for a component without contact nodes, such as the disc
-    int             side      = 0; ///< ±1: along the axis, from above or below the disc; 0: along the normal of the body's own face
+    Eigen::Vector3d direction = Eigen::Vector3d::Zero(); ///< e, a unit vector; zero for the disc
+    int             side      = 0; ///< ±1: along the axis, from above or below the disc; 0: along the normal of the body's face
 
     /// a = −e·n: closure of the normal gap at a node per unit of travel [-].
     double closing(const ContactNode &node) const
@@ -40,8 +40,8 @@ namespace Squeal
   /// True if every body has a direction of travel.
   bool have_travels(const Model &model, const ContactInterface &interface);
 
-  /// Backplate of each component, numbered from 0; −1: none. Pins that travel along the axis share the backplate of their side, unless each
-  /// has its own.
+  /// Backplate of each component, numbered from 0; −1: none. Pins that travel along the axis share the backplate of their side, unless @p
+  /// one_for_each_pin is set.
   std::vector<int> backplate_numbers(const std::vector<Travel> &travels, bool one_for_each_pin);
 
   /// Displacement of the backplate of each component [m] for given travels towards the disc [m].

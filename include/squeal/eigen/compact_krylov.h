@@ -32,12 +32,10 @@ namespace Squeal
    *
    *     S [x_0; x_1; ...] = [f(x_0, x_1, ...); x_0; ...; x_{d-2}].
    *
-   * The linearisation of a polynomial eigenproblem of degree d = 2 has this
-   * form; d = 1 is the ordinary block Krylov–Schur method. The orthonormal
-   * basis of states is stored as V = (I_d ⊗ U) G with one orthonormal basis U,
-   * n × r, for all parts, and small coordinates G, d r × m: the two-level
-   * orthogonal Arnoldi process, with half the memory and a quarter of the
-   * inner products of a basis of full states. It keeps the relation
+   * The linearisation of a polynomial eigenproblem of degree d = 2 has this form; d = 1 is the ordinary block Krylov–Schur method. The
+   * orthonormal basis of states is stored as V = (I_d ⊗ U) G with one orthonormal basis U, n × r, for all parts, and small coordinates G, d
+   * r × m: the two-level orthogonal Arnoldi process, with half the memory and a quarter of the inner products of a basis of full states.
+   * The process maintains the relation
    *
    *     S V = V H + V_a B,
    *
@@ -81,7 +79,7 @@ namespace Squeal
 
     /**
      * Upper parts of S x, n × k, for the Ritz vectors x in the columns @p positions of the eigenvectors. Applying S once more damps
-     * components with small |ν| and is free, because S V is known.
+     * components with small |ν| and needs no solves, because S V is known.
      */
     MultiVector ritz_vectors(const RitzPairs &ritz, const std::vector<int> &positions) const;
 

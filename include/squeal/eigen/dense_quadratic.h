@@ -25,7 +25,7 @@ namespace Squeal
     std::vector<std::complex<double>> values;
 
     ComplexDenseMatrix right; ///< φ, r × k: Q(λ) φ = 0, ‖φ‖₂ = 1, the entry of largest modulus real and positive
-    ComplexDenseMatrix left;  ///< ψ, r × k: ψᵀ Q(λ) = 0 (plain transpose), normalised likewise
+    ComplexDenseMatrix left;  ///< ψ, r × k: ψᵀ Q(λ) = 0 (plain transpose), normalised like φ
 
     std::vector<double> real_values; ///< all real λ, ascending: overdamped, divergent or zero
   };

@@ -34,7 +34,7 @@ namespace Squeal
 
     double zero_modulus = 0.; ///< |λ| up to this limit counts as zero [rad/s]; 0: limit of 1e-4 ω_max
 
-    int    expected  = 0;    ///< estimated number of modes, for example of real modes below the same frequency
+    int    expected  = 0;    ///< estimated number of modes, for example the number of real modes
     double tolerance = 1e-9; ///< largest ‖Q(λ)φ‖₂ / ‖Kφ‖₂ [-]
 
     /// A norm of K. Modes of very low frequency have a small ‖Kφ‖; their residual ‖Q(λ)φ‖ may be as large as the rounding errors, ten times
@@ -92,15 +92,15 @@ namespace Squeal
    * ν u = -Q(s)⁻¹ M u on vectors of length n: λ → -λ holds exactly.
    *
    * The iteration ends when all Ritz values inside the radius, and some outside, have converged. The residuals are then computed from the
-   * pencil; if one exceeds the tolerance, the iteration continues. A short second process from random directions, with the found values
-   * deflated, then searches for missing ones; if it finds any, these directions join the block and the iteration continues. This search
-   * finds values well inside the radius. A missing member of a cluster at the very end of the band may remain undetected; the block size
-   * should therefore be at least the size of clusters.
+   * pencil; if one exceeds the tolerance, the iteration continues. A short second process from random directions, in which the found values
+   * are deflated, then searches for missing values; if it finds any, random directions are added to the block and the iteration continues.
+   * This search finds values well inside the radius. A missing member of a cluster at the very end of the band may remain undetected; the
+   * block size should therefore be at least the size of clusters.
    *
    * @param inverse_at_shift Q(s)⁻¹ = (s² M + s C + K)⁻¹
    *
-   * Throws SolverError with the number of converged values and the largest residual if max_restarts do not suffice or rounding errors keep
-   * the residuals above the tolerance.
+   * Throws SolverError with the number of converged values and the largest residual if max_restarts is not sufficient or if rounding errors
+   * prevent residuals below the tolerance.
    */
   QuadraticModes quadratic_modes(const QuadraticPencil       &pencil,
                                  const LinearOperator        &inverse_at_shift,

@@ -89,17 +89,17 @@ namespace Squeal
                                  const SymmetricModesOptions &options = {});
 
   /// Number of eigenvalues ω² ≤ @p limit of K φ = ω² M φ from the inertia of K - limit M: exact, with multiplicities and rigid-body modes,
-  /// without computing modes. Throws SolverError naming @p what.
+  /// without computing modes. Throws a SolverError that names @p what.
   ModeCount count_below(const SparseMatrix &K, const SparseMatrix &M, double limit, const std::string &what);
 
   /**
-   * Upper end of a band [rad²/s²] that contains exactly the @p n_modes lowest modes, by inertia counts. Modes whose ω² exceeds that of the
-   * last mode by less than 10⁻³, for example members of a multiple eigenvalue, may also be included.
+   * Upper end of a band [rad²/s²] that contains exactly the @p n_modes lowest modes, by inertia counts. Modes whose ω² is relatively larger
+   * by less than 10⁻³, for example members of a multiple eigenvalue, may also be included.
    *
    * @param first   start of the search [rad²/s²]
    * @param highest limit of the search [rad²/s²]
    *
-   * Throws SolverError naming @p what if there are fewer modes below @p highest.
+   * Throws a SolverError that names @p what if there are fewer modes below @p highest.
    */
   double end_of_lowest(const SparseMatrix &K, const SparseMatrix &M, int n_modes, double first, double highest, const std::string &what);
 } // namespace Squeal

@@ -27,6 +27,7 @@ namespace Squeal
   std::vector<BodyFrame> body_frames(const Model &model);
 
   /// Maps points to the corresponding positions in another design, with the same masses; bodies that the other design lacks are omitted.
-  /// Disc points keep their angle and their relative radial and axial positions, pin points their relative position in the bounding box.
+  /// Points of the disc keep their angle and their relative radial and axial positions, points of pins keep their relative positions in the
+  /// bounding box.
   CommonPoints carried_over(const CommonPoints &points, const std::vector<BodyFrame> &from, const std::vector<BodyFrame> &to);
 } // namespace Squeal

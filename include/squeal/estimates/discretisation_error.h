@@ -22,7 +22,7 @@ namespace Squeal
     /// Verdict on growth, within the estimated errors of mesh and solver.
     Verdict verdict = Verdict::undecided;
 
-    /// True if both errors are known and within the limits.
+    /// True if both errors have been estimated and are within the limits.
     bool is_within(double frequency_limit, double divergence_limit) const;
   };
 

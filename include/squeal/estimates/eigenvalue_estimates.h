@@ -45,7 +45,7 @@ namespace Squeal
    *
    *   ψᵀQ'(λ)φ δλ + ψᵀMφ δλ² = L_Fᵀ K_c⁻¹ R_F,
    *
-   * where the smaller root is taken.
+   * of which the smaller root is used.
    *
    * The condition number of an eigenvalue,
    *

@@ -11,7 +11,7 @@ namespace Squeal
   /// Counterpart of a mode on another mesh.
   struct PairedMode
   {
-    int    partner    = -1;    ///< number of the mode on the other mesh; -1: none
+    int    partner    = -1;    ///< index of the mode on the other mesh; -1: none
     double overlap    = 0.;    ///< |φᴴWψ|² / (φᴴWφ ψᴴWψ) with the partner [-]
     bool   in_cluster = false; ///< one of several modes that mix differently on each mesh
   };

@@ -33,8 +33,8 @@ namespace Squeal
   struct ModeError : ErrorMeasures
   {
     std::complex<double> reference, reduced, corrected; ///< λ, λ̂ and λ̂ + δλ [rad/s]
-    int                  match;                         ///< number of the reduced mode
-    int                  closest;                       ///< number of the reduced mode selected by eq. (17)
+    int                  match;                         ///< index of the reduced mode
+    int                  closest;                       ///< index of the reduced mode selected by eq. (17)
     int                  cluster_size;                  ///< number of reference modes with nearly the same λ, including this one
     double               estimated_error;               ///< |δλ| / |λ̂| [-]
     double               estimate_ratio;                ///< |δλ| / |λ̂ − λ| [-]; infinite if λ̂ is exact
@@ -43,7 +43,7 @@ namespace Squeal
     Verdict              verdict;
   };
 
-  /// Real modes as complex ones, λ = iω, without rigid-body modes.
+  /// Converts real modes to complex modes with λ = iω, without rigid-body modes.
   ComplexModes undamped_modes(const SymmetricModes &modes);
 
   /**

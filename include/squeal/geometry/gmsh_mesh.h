@@ -35,7 +35,7 @@ namespace Squeal
       int                                         dimension;
       int                                         number;   ///< number of the group; the smallest one if several groups share the name
       std::string                                 name;     ///< name of the group; empty if it has only a number
-      std::map<std::string, std::vector<Element>> elements; ///< by Gmsh's name of the type ("Quadrilateral 4"); ascending by tag
+      std::map<std::string, std::vector<Element>> elements; ///< elements by Gmsh's name of their type ("Quadrilateral 4"), ascending by tag
 
       template <typename Archive>
       void serialize(Archive &archive, unsigned int)
@@ -44,7 +44,7 @@ namespace Squeal
       }
     };
 
-    std::vector<std::array<double, 3>> points;                        ///< in the order of Gmsh's node tags [m]
+    std::vector<std::array<double, 3>> points;                        ///< nodal coordinates in the order of Gmsh's node tags [m]
     std::vector<Group>                 groups;                        ///< sorted by dimension, then by number
     std::size_t                        n_unnamed_volume_elements = 0; ///< number of 3-D elements without a physical group
 

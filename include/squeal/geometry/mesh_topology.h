@@ -20,8 +20,8 @@ namespace Squeal
    * - overlapping bodies: nodes or element centres inside an element of another body by more than both a twentieth of its extent and @p
    * pairing_tolerance [m].
    *
-   * Element edges are assumed straight. Requires check_parts() and check_mesh(). The cost is that of sorting the faces and of a spatial
-   * index.
+   * Element edges are assumed straight. Requires check_parts() and check_mesh(). The cost is dominated by sorting the faces and by a
+   * spatial index.
    */
   void check_topology(const Mesh &mesh, double pairing_tolerance, const std::string &where);
 

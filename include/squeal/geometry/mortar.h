@@ -30,7 +30,7 @@ namespace Squeal
   /// Multiplier j of a slave node; see mortar() for the formulas.
   struct MortarRow
   {
-    unsigned int node;         ///< of the slave
+    unsigned int node;         ///< slave node of the multiplier
     double       area;         ///< D_j = ∫ ψ_j over the overlap, positive [m²]
     NodeWeights  slave;        ///< B_ji; the sum is one
     NodeWeights  master;       ///< W_jl = ∫ ψ_j N_l / D_j; the sum is one, entries below 1e-13 are dropped
@@ -54,8 +54,7 @@ namespace Squeal
    *     g_j = Σ_i B_ji u_i − Σ_l W_jl u_l
    *
    * with forces f_i = Σ_j B_ji r_j on the slave and −Σ_j W_jl r_j on the master. The slave forces determine r_j: r_j = Σ_i G_ji f_i, G Bᵀ =
-   * I.
-   * On flat faces g vanishes for linear displacements, and a constant pressure gives both sides their consistent nodal forces. If the
+   * I. On flat faces, g vanishes for linear displacements, and a constant pressure gives both sides their consistent nodal forces. If the
    * meshes match, W = B.
    *
    * On an element ψ = diag(∫ Ñ) (∫ Ñ Ñᵀ)⁻¹ Ñ, so that ∫ ψ_i Ñ_j = δ_ij ∫ Ñ_j. Both integrals extend over the overlap and use the quadrature

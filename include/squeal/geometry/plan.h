@@ -39,7 +39,7 @@ namespace Squeal
       std::string               name; ///< "pin_top..." or "pin_bottom..."
       Side                      side = Side::top;
       std::vector<unsigned int> faces;              ///< indices into Plan::faces, ascending
-      Point                     displacement;       ///< from the position in the plan to the position on the disc [m]
+      Point                     displacement;       ///< displacement from the position in the plan to the position on the disc [m]
       bool                      is_round   = false; ///< true for a pin filled by fill_pin(), which may rotate about its centre
       std::vector<unsigned int> ring_nodes = {};    ///< nodes of the rings inside the outline; not moved by smoothing
     };

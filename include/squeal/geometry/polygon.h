@@ -13,7 +13,7 @@ namespace Squeal
   /// Nodes of a closed curve in order, starting with the smallest number; empty if the edges do not form one closed curve.
   std::vector<unsigned int> closed_polygon(const std::vector<std::array<unsigned int, 2>> &edges);
 
-  /// Area of a polygon, given by the indices of its nodes, positive if they are counter-clockwise [m²].
+  /// Area of a polygon that is given by the indices of its nodes, positive if the nodes are counter-clockwise [m²].
   template <typename Nodes>
   double signed_area(const Nodes &nodes, const std::vector<dealii::Point<2>> &points)
   {

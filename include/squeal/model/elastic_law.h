@@ -13,7 +13,7 @@ namespace Squeal
   /// Index of a pair of directions in Voigt's order xx, yy, zz, yz, xz, xy.
   inline constexpr unsigned int voigt[3][3] = {{0, 5, 4}, {5, 1, 3}, {4, 3, 2}};
 
-  /// Hooke's law of a material, divided by its Young's modulus (E_1 if orthotropic).
+  /// Hooke's law of a material, divided by its Young's modulus (E_1 of an orthotropic material).
   class ElasticLaw
   {
   public:

@@ -22,7 +22,7 @@ namespace Squeal
     std::shared_ptr<MultiVector> left_real_part, left_imaginary_part; ///< ψ, ψᵀQ(λ) = 0, ψᴴM_cψ = 1; null if the method does not compute it
     std::vector<double>          residuals;                           ///< ‖Q(λ)φ‖ / ‖Kφ‖ [-]
     std::vector<double>          energy_residuals;                    ///< ε_res, eq. (16) of the paper [-]
-    std::vector<double>          estimated_errors;                    ///< |δλ| / |λ| [-]; empty if the method gives no estimates
+    std::vector<double>          estimated_errors;                    ///< |δλ| / |λ| [-]; empty if the method does not estimate errors
     int                          n_rigid_body = 0;                    ///< number of rigid-body modes, λ = 0
     std::vector<double>          real_values;                         ///< real λ ≠ 0, |λ| ≤ the band's radius, ascending [1/s]
     std::string                  summary;                             ///< method and its cost, for messages

@@ -26,7 +26,7 @@ namespace Squeal
   /// Solver options for the real modes of @p what; @p shift [rad/s] is positive if bodies have rigid-body motions.
   SymmetricModesOptions real_modes_options(const SolverParameters &solvers, const std::string &what, double shift);
 
-  /// Counts the modes of the band by one factorisation, as a step of @p progress. Throws ParameterError if there are more than the
+  /// Counts the modes of the band by one factorisation, as a step of @p progress. Throws ParameterError if there are more modes than the
   /// parameters allow.
   ModeCount number_of_modes(const CoupledSystem    &system,
                             double                  largest_circular_frequency,

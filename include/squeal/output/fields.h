@@ -24,9 +24,9 @@ namespace Squeal
   /// A complex mode for output.
   struct ModeField
   {
-    std::string                       name;         ///< of its files, without extension
+    std::string                       name;         ///< name of its files, without extension
     std::complex<double>              lambda;       ///< [rad/s]
-    std::vector<std::complex<double>> displacement; ///< on the free dofs, rows of this process
+    std::vector<std::complex<double>> displacement; ///< u on the free dofs, rows of this process
     std::vector<std::complex<double>> reactions;    ///< r_n of each pair of contact nodes, negative in compression [N per unit amplitude]
     std::string                       title = {};   ///< text that describes the mode in its files
     std::vector<double> energy_input        = {};   ///< contribution of each pair to the divergence rate, per area [1/m²]; empty: unknown
@@ -35,16 +35,16 @@ namespace Squeal
   /// A mode without friction, of the coupled bodies or of one component, for output.
   struct RealModeField
   {
-    std::string              name;         ///< of its file, without extension
-    std::string              title;        ///< description of the mode in its file
-    std::vector<double>      displacement; ///< on the free dofs, rows of this process
+    std::string              name;         ///< name of its file, without extension
+    std::string              title;        ///< text that describes the mode in its file
+    std::vector<double>      displacement; ///< u on the free dofs, rows of this process
     std::optional<Component> component;    ///< bodies that are written; nothing: all
   };
 
   /// An entry of a list of mode files for ParaView.
   struct ListedMode
   {
-    std::string name;      ///< of its file, without extension
+    std::string name;      ///< name of its file, without extension
     double      frequency; ///< [Hz]
   };
 
@@ -59,7 +59,7 @@ namespace Squeal
   /// A contact state for output, with one value for each pair of contact nodes.
   struct ContactField
   {
-    std::vector<double>          displacement;    ///< on the free dofs [m], rows of this process, including the motion of the backplates
+    std::vector<double>          displacement;    ///< u on the free dofs [m], rows of this process, including the motion of the backplates
     std::vector<Eigen::Vector3d> backplates;      ///< displacement of the backplate of each component [m]
     std::vector<double>          reactions;       ///< R_n0 [N]
     std::vector<double>          gaps;            ///< g [m]

@@ -80,7 +80,7 @@ namespace Squeal
   };
 
   /**
-   * Checks whether a solution is unique. This is so if Gᵀ + G is positive definite and L = −Bᵀ: two solutions would give (r − r')ᵀ G (r −
+   * Checks the uniqueness of a solution. It is unique if Gᵀ + G is positive definite and L = −Bᵀ: two solutions would give (r − r')ᵀ G (r −
    * r') ≤ 0. G satisfies this condition for all μ < 1/λ_max, where λ_max is the largest eigenvalue of −½ (F_nt + F_ntᵀ) x = λ F_nn x. For
    * larger μ, the problem is solved again from @p n_searches random sets.
    */

@@ -11,10 +11,10 @@
 namespace Squeal
 {
   /**
-   * Those M-orthonormal @p free motions of each body for which reactions can provide equilibrium, n × k; nothing if there are none.
-   * Excluded are the sliding motion, whose force or moment the drive balances, and motions that do not change any gap.
+   * M-orthonormal motions, n × k, selected from the @p free motions of each body, for which reactions can provide equilibrium; nothing if
+   * there are none. Excluded are the sliding motion, whose force or moment the drive balances, and motions that do not change any gap.
    *
-   * @param pressing forces on the bodies, n × 1 [N]; null: there are none, and only the disc may have free motions
+   * @param pressing forces on the bodies, n × 1 [N]; null: no such forces, and only the disc may have free motions
    *
    * Throws SolverError if friction or @p pressing does work on an excluded motion that does not change the gaps, if a body other than the
    * disc is free and not pressed, or if the sliding velocity of a free disc is not a rigid-body motion.

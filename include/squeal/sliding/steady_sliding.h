@@ -81,7 +81,7 @@ namespace Squeal
    * The problem is condensed to the contact nodes by the normal and tangential attachment modes, F_nn = P_n K⁻¹ P_nᵀ and F_nt = P_n K⁻¹
    * P_tᵀ.
    *
-   * Throws MeshError if a body has no direction of travel; ParameterError if there is no pin of a given name, or if a gap exceeds the
+   * Throws MeshError if a body has no direction of travel; ParameterError if there is no pin with a given name, or if a gap exceeds the
    * height of the pin or the displacement; SolverError if no state is found, or if the disc is not constrained in its plane.
    */
   SlidingState steady_sliding(const SlidingModel &sliding, const OperationParameters &operation, const SlidingParameters &parameters);

@@ -99,7 +99,7 @@ namespace Squeal
   {
     double friction_coefficient = 0.;
     int    n_modes              = 0; ///< number of oscillating modes in the band
-    int    n_expected           = 0; ///< number at the first point, plus entries, minus exits
+    int    n_expected           = 0; ///< number of modes at the first point, plus entries, minus exits
     int    n_overdamped         = 0; ///< number of pairs of nonzero real λ
   };
 
@@ -108,18 +108,18 @@ namespace Squeal
   {
     std::vector<ChartPoint>   points;               ///< evaluated points in ascending order, including refinement
     std::vector<bool>         is_refinement;        ///< true for points that are not in the grid
-    std::vector<Branch>       branches;             ///< in the order of their first points; includes modes beyond the band
+    std::vector<Branch>       branches;             ///< branches in the order of their first points, including modes beyond the band
     std::vector<Threshold>    thresholds;           ///< ascending
     std::vector<BandCrossing> crossings;            ///< ascending
-    std::vector<ChartCount>   counts;               ///< one for each point
+    std::vector<ChartCount>   counts;               ///< numbers of modes at each point
     int                       n_doubtful_steps = 0; ///< number of steps in which modes were distinguished only by closeness of λ
   };
 
   /**
    * Follows modes over the friction coefficients of @p grid, ascending, possibly empty. Modes of neighbouring points are linked by
-   * link_modes(); doubtful steps are halved, and all points of a round are evaluated together. Further steps are divided in two cases. If
-   * two branches exchange their order, the interpolation of Λ_a and of Λ_b, transformed to the modes at a, predicts whether, where and how
-   * closely the branches approach. In other steps, extrapolated growth rates or frequencies may come close.
+   * link_modes(); doubtful steps are halved, and all points of a round are evaluated together. Further steps are divided in two cases: if
+   * two branches exchange their order, and the interpolation of Λ_a and of Λ_b, transformed to the modes at a, predicts an interaction; and
+   * if extrapolated growth rates approach zero, or extrapolated frequencies approach each other.
    *
    * A branch that grows at only one end of a step has a threshold in the step. At a coalescence δ²(μ) = (λ_1 − λ_2)² is analytic and real
    * with a simple zero, while λ has a branch point; otherwise the zero of Re λ is computed. The interval of a zero is reduced to two points

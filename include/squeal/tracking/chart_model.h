@@ -19,12 +19,12 @@ namespace Squeal
   struct OperatingPoint
   {
     double          friction_coefficient = 0.;
-    ParameterValues values;   ///< other parameters of the system, if their values differ from those of the system
+    ParameterValues values;   ///< values of other parameters that differ from the values of the system
     int             line = 0; ///< line of the chart: its points differ only in μ and in quantities that depend on μ
   };
 
-  /// A two-sided reduced model for all operating points of a chart: residuals of modes are those at full order, and the basis is extended
-  /// if they are too large (see grow_residual_basis()).
+  /// A two-sided reduced model for all operating points of a chart: residuals are computed at full order, and the basis is extended if they
+  /// are too large (see grow_residual_basis()).
   class ChartModel
   {
   public:
@@ -104,9 +104,9 @@ namespace Squeal
     void extend(MultiVector vectors);
 
     /**
-     * Coordinates of principal axes in the K_c-norm: of the components of right and left modes of the @p charts, scaled to unit strain
-     * energy, outside the span of the real modes. Axes with squares below @p tolerance are dropped; errors of λ are products of errors of
-     * right and left vectors. Collective.
+     * Principal axes, in the K_c-norm, of the components of right and left modes of the @p charts outside the span of the real modes, as
+     * coordinates in the basis. Modes are scaled to unit strain energy. Axes with squares below @p tolerance are dropped; errors of λ are
+     * products of errors of right and left vectors. Collective.
      *
      * @param real_modes coordinates of the real modes
      */

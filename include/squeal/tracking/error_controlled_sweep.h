@@ -46,9 +46,9 @@ namespace Squeal
   /**
    * Extends the basis of @p model until the estimated errors of all modes in the band meet the tolerance at all operating @p points. The
    * basis is first extended at the points with the indices @p training, one after the other, and then compressed
-   * (ChartModel::compressed_basis()); without training points it is not compressed. Then all points are evaluated, and the basis is
-   * extended at the point with the largest remaining error. A result that meets the tolerance is final and is passed to @p keep; vectors
-   * added later are used only for the remaining points.
+   * (ChartModel::compressed_basis()); without training points it is not compressed. After that, all points are evaluated, and the basis is
+   * extended at the point with the largest remaining error until all points meet the tolerance. A result that meets the tolerance is final
+   * and is passed to @p keep; vectors added later are used only for the remaining points.
    */
   ErrorControlledSweep error_controlled_sweep(ChartModel                        &model,
                                               const std::vector<OperatingPoint> &points,
