@@ -34,7 +34,7 @@ namespace Squeal
         cosines = theta.array().cos();
         sines   = theta.array().sin();
 
-        // Columns: powers of the radius times cosine, then times sine
+        // Columns: powers of the radius times cosine, then powers times sine
         const double inner = -disc.largest(-radii), outer = disc.largest(radii);
         radial = powers((2. * radii.array() - inner - outer) / (outer - inner), n_radial_functions);
         for (int n = 0; n <= largest_harmonic; ++n)

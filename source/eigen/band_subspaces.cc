@@ -318,7 +318,7 @@ namespace Squeal
     if (!apart)
       return {};
 
-    // From coordinates (x, λ x / σ) of both parts to [φ; λ φ]
+    // Transform the coordinates (x, λ x / σ) of both parts to [φ; λ φ]
     const DenseMatrix &X = apart->X, &Y = apart->Y, &first = apart->first;
     BandSubspaces      result{DenseMatrix::Zero(2 * n, 2 * k), DenseMatrix(2 * n, 2 * k), apart->small};
     result.right.topLeftCorner(k, k).setIdentity();

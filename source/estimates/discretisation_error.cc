@@ -81,7 +81,7 @@ namespace Squeal
     /// Relative differences of values up to this limit are rounding errors [-].
     constexpr double rounding = 1e-13;
 
-    /// Limit from the two finest values with order p.
+    /// Extrapolated limit of the two finest values for order p.
     double limit(const std::vector<double> &widths, const std::vector<double> &values, const double p)
     {
       const std::size_t n     = values.size();
@@ -89,7 +89,7 @@ namespace Squeal
       return values[n - 1] + (values[n - 1] - values[n - 2]) * ratio / (1. - ratio);
     }
 
-    /// Order from three values; nothing if there is none in the range.
+    /// Order of convergence from three values; nothing if no order in the range agrees with them.
     std::optional<double> observed_order(const double *h, const double *v, const OrderRange &plausible)
     {
       const double quotient = (v[0] - v[1]) / (v[1] - v[2]);

@@ -17,8 +17,7 @@ namespace Squeal
   {
     using Complex = std::complex<double>;
 
-    /// Fraction of the energy of a mode in the modes with which it is connected, and fraction of the largest share below which a share is
-    /// ignored [-].
+    /// Connections of a mode comprise this fraction of its energy; shares below the second fraction of the largest share are ignored [-].
     constexpr double connecting = 0.75, side = 0.25;
 
     /// Smallest energy fraction in the span of the other modes for which a mode has a counterpart [-].

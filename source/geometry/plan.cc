@@ -362,7 +362,7 @@ namespace Squeal
   {
     for (const Plan::Curve &curve : plan.curves)
       enlarge(curve.edges, nodes_of(curve.edges), plan.points);
-    // Pins of both sides may share the same faces
+    // Enlarge the faces once, because pins of both sides may share them
     std::set<std::vector<unsigned int>> done;
     for (const Plan::Pin &pin : plan.pins)
       if (done.insert(pin.faces).second)

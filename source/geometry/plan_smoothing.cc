@@ -329,7 +329,7 @@ namespace Squeal
     for (const Plan::Pin &pin : plan.pins)
       fix(pin, plan, fixed);
     smooth(plan.faces, fixed, plan.points);
-    std::set<std::vector<unsigned int>> done; // pins of both sides may share the same faces
+    std::set<std::vector<unsigned int>> done; // faces of rotating pins: pins of both sides may share the same faces
     std::vector<TurningPart>            parts;
     for (const Plan::Pin &pin : plan.pins)
       if (pin.is_round && done.insert(pin.faces).second)

@@ -200,7 +200,7 @@ namespace Squeal
       const std::string   what;
       const RowMap        map;
       std::vector<int>    own_rows, solved_rows; ///< row numbers, which start at 1
-      std::vector<double> solution;              ///< n_solved() × columns of a block
+      std::vector<double> solution;              ///< solution, n_solved() × columns of a block
       double              nothing = 0.;          ///< target of pointers on processes without rows
       DMUMPS_STRUC_C      id      = {};
     };

@@ -27,7 +27,7 @@ namespace Squeal
           const int *place = pattern.innerIndexPtr() + pattern.outerIndexPtr()[i];
           for (SparseRows::InnerIterator entry(A.by_place(), i); entry; ++entry)
             {
-              // Columns are ascending in both
+              // Columns are ascending in both matrices: search forwards only
               while (*place != entry.col())
                 ++place;
               values[place - pattern.innerIndexPtr()] = entry.value();

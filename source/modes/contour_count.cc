@@ -31,7 +31,7 @@ namespace Squeal
     /// and ω_high [-].
     constexpr double shortest_step = 1e-9;
 
-    /// Corners of the contour, counterclockwise, and number of its repetitions by symmetry.
+    /// Corners of the contour, counterclockwise. By symmetry, only half of it is followed without damping; it then counts twice.
     struct Contour
     {
       Contour(const ContourOptions &options, const bool damped)

@@ -104,8 +104,8 @@ namespace Squeal
   /// Value of the function of a search at point k; nothing if its branches do not exist there.
   std::optional<double> search_value(const TrackedModes &modes, const EventSearch &search, int k);
 
-  /// True if a branch that is neutral at the first point grows from there: Re λ ~ μ, or δ² ~ μ² for a double mode, with a factor that is
-  /// positive by linear extrapolation.
+  /// True if a branch that is neutral at the first point grows from there: the quotient Re λ / μ, or δ² / μ² for a double mode,
+  /// extrapolated linearly to the first point, is positive and of similar size.
   bool grows_at_once(const TrackedModes &modes, const EventSearch &search);
 
   /// Friction coefficients for further evaluations; @p predict may be empty.

@@ -73,7 +73,7 @@ namespace Squeal
   inline ModalQuantities modal_quantities(const std::complex<double> &lambda)
   {
     const double R = lambda.real(), omega = lambda.imag();
-    // Rigid-body and overdamped modes have ω = 0
+    // ξ is undefined for rigid-body and overdamped modes, ω = 0: report zero
     const double xi = omega > 0. ? R / omega : 0.;
     return {hertz(omega), R, xi, -2. * xi};
   }

@@ -63,7 +63,7 @@ namespace Squeal
     }
   };
 
-  /// Equal shape and sign.
+  /// True for labels of equal shape and sign.
   bool operator==(const ModeLabel &a, const ModeLabel &b);
 
   /// `A0-4 -`: family, nodal circles, nodal diameters, sign; `F1`: family and rank; `pad_outer 3`: body and rank.
@@ -72,7 +72,7 @@ namespace Squeal
   /// Label without blanks and signs, for file names: `A0-4_minus`.
   std::string file_text(const ModeLabel &label);
 
-  /// Shape only: `A0-4`.
+  /// Text of the shape without sign: `A0-4`.
   std::string shape_text(ModeLabel label);
 
   /**

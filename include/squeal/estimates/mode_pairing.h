@@ -31,10 +31,10 @@ namespace Squeal
    * in the same way. A shape may thus rotate by up to 30° towards another shape from mesh to mesh and still have a single counterpart.
    * Chains of connected modes form groups; two modes that are each connected only with the other form a pair.
    *
-   * - One mode of each mesh: they are counterparts.
-   * - Several: a cluster. The eigenvalues are so close that discretisation mixes the eigenvectors, as in a doublet or for equal pins. Only
-   * their spans have counterparts: members are marked, and paired so that the sum of squared distances of λ, after a common shift, is
-   * smallest.
+   * - A group with one mode of each mesh: the modes are counterparts.
+   * - A group with several modes of a mesh: a cluster. The eigenvalues are so close that discretisation mixes the eigenvectors, as in a
+   * doublet or for equal pins. Only their spans have counterparts: members are marked, and paired so that the sum of squared distances of
+   * λ, after a common shift, is smallest.
    * - A mode with less than half of its energy in the span of the modes of the other mesh has no counterpart, for example beyond the end of
    * the other band; surplus modes of a cluster have none either. To provide counterparts near the end of a band, the band of the other mesh
    * should be wider.

@@ -30,7 +30,7 @@ namespace Squeal
   /// Size of an extruded plan.
   ProblemSize expected_size(const Plan &plan, const GeometryParameters &parameters);
 
-  /// Size of a mesh with elements of this degree.
+  /// Size of a model with this mesh and elements of this @p degree.
   ProblemSize expected_size(const Mesh &mesh, unsigned int degree);
 
   /// Throws a MeshError with these numbers if the memory exceeds the available memory of the machines that run the processes.

@@ -27,7 +27,7 @@ namespace Squeal
     MultiVector(const MultiVector &X);
     MultiVector(MultiVector &&X);
 
-    /// Throws SolverError if this is a view and the shape of X differs.
+    /// Copies X; throws SolverError if this is a view and the shape of X differs.
     MultiVector &operator=(const MultiVector &X);
     MultiVector &operator=(MultiVector &&X);
 

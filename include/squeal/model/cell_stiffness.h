@@ -15,7 +15,7 @@ namespace Squeal
    * Hexahedra with incompatible modes (E. L. Wilson, R. L. Taylor et al. 1973; R. L. Taylor, P. J. Beresford, E. L. Wilson 1976) have nine
    * additional internal displacements, (1 − ξ_a²) e_b with ξ in [−1, 1]³, which are condensed:
    *
-   *   K = K_uu − K_uα K_αα⁻¹ K_αu,
+   *   K = K_uu − K_uα K_αα⁻¹ K_αu.
    *
    * This avoids shear locking in bending. Their gradients use the Jacobian J₀ at the centre of the cell, ∇(1 − ξ_a²) := (det J₀ / det J)
    * J₀⁻ᵀ ∇_ξ (1 − ξ_a²). The mean of these gradients over the cell vanishes, so that constant strains are exact in hexahedra of any shape.

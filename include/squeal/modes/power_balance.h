@@ -25,9 +25,9 @@ namespace Squeal
    */
   struct PowerBalance
   {
-    std::vector<double> into_disc, into_pins;            ///< friction at each contact node [-]
-    std::vector<double> radial_damping, sliding_damping; ///< contact damping at each contact node [-]
-    std::vector<double> bodies;                          ///< damping of each component, the disc first [-]
+    std::vector<double> into_disc, into_pins;            ///< contribution of friction at each contact node [-]
+    std::vector<double> radial_damping, sliding_damping; ///< contribution of damping at each contact node [-]
+    std::vector<double> bodies;                          ///< contribution of damping in each component, the disc first [-]
     double              modal_damping = 0.;              ///< [-]
 
     /// Contribution of friction and damping at a contact node [-].

@@ -17,7 +17,7 @@ namespace Squeal
   /// into linear cells. Normals of faces point out of the body.
   struct FieldMesh
   {
-    std::vector<Node>         nodes;      ///< vertices
+    std::vector<Node>         nodes;      ///< vertices of the mesh
     std::vector<std::uint8_t> types;      ///< VTK cell type of each cell
     std::vector<std::int32_t> corners;    ///< vertex indices, cell by cell in VTK order
     std::vector<std::int32_t> ends;       ///< for each cell, the end of its range in corners

@@ -18,13 +18,13 @@ namespace Squeal
   /// Residuals of a steady sliding state, computed from the displacements of the full model.
   struct SlidingCertificate
   {
-    double residual; ///< ‖K u − P_nᵀ r_n − μ P_tᵀ r_n − f_p‖ / ‖P_nᵀ r_n‖ over all dofs [-]
-    double load;     ///< largest relative error of the load of a backplate; 0 if none is prescribed [-]
-    double tension;  ///< largest r_n over the load of a backplate; ≤ 0 without tension [-]
-    double overlap;  ///< largest g from P_n u, over the travel of the backplates (with pressed faces: over the largest displacement) [-]
-    double complementarity; ///< largest |r_n g| over load and travel [-]
-    double force_balance;   ///< resultant of contact, pressure and support forces of each component, over the load [-]
-    double moment_balance;  ///< resultant moment about the origin, over load × largest axis distance [-]
+    double residual;        ///< ‖K u − P_nᵀ r_n − μ P_tᵀ r_n − f_p‖ / ‖P_nᵀ r_n‖ over all dofs [-]
+    double load;            ///< largest relative error of the load of a backplate; 0 if none is prescribed [-]
+    double tension;         ///< largest r_n relative to the load of a backplate; ≤ 0 without tension [-]
+    double overlap;         ///< largest g from P_n u, relative to the travel (with pressed faces: to the largest displacement) [-]
+    double complementarity; ///< largest |r_n g| relative to load × travel [-]
+    double force_balance;   ///< resultant of contact, pressure and support forces of each component, relative to the load [-]
+    double moment_balance;  ///< resultant moment about the origin, relative to load × largest axis distance [-]
   };
 
   /// Quasi-static state for the linearisation: contact forces, gaps and displacements.

@@ -160,8 +160,8 @@ namespace Squeal
   };
 
   /// Onset of growth beyond the uncertainty of λ for a branch in the band: the threshold or band crossing at which this growth begins. If
-  /// the branch grows at the first point, the onset is between this point and @p before, the largest smaller friction coefficient that has
-  /// been evaluated; the uncertainty is their distance.
+  /// the branch grows at the first point, the onset is between this point and @p before, the last friction coefficient that was evaluated
+  /// below the chart; the uncertainty is their distance.
   std::optional<GrowthOnset> onset_of(int branch, const StabilityChart &chart, double largest_circular_frequency, double before);
 
   /// The onset of all branches with the smallest friction coefficient.
