@@ -16,7 +16,7 @@ namespace Squeal
     /// Smallest participation for which a mode gets the label of a component mode [-].
     constexpr double smallest_participation = 0.1;
 
-    /// Entry in a local row of this process.
+    /// Entry of A in a local row of this process; 0 if there is none.
     double entry(const SparseMatrix &A, const int place, const int column)
     {
       SparseMatrix::Row row;

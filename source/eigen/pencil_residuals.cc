@@ -14,7 +14,7 @@ namespace Squeal
   {
     using Complex = std::complex<double>;
 
-    /// Q(λ_j) φ_j for some modes.
+    /// Residual vectors Q(λ_j) φ_j of some modes.
     struct PencilImage
     {
       MultiVector         real, imaginary;
@@ -196,7 +196,7 @@ namespace Squeal
     if (worst <= options.tolerance)
       return worst / options.tolerance;
 
-    // ‖φ‖ = 1
+    // Since ‖φ‖ = 1, rounding errors of Kφ are proportional to the norm of K
     constexpr double ten_roundings = 10. * std::numeric_limits<double>::epsilon();
     MultiVector      product(*modes.real_part);
     pencil.stiffness->apply(*modes.real_part, product);

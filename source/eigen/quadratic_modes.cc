@@ -28,7 +28,7 @@ namespace Squeal
     /// Number of such steps if fewer modes were found than expected.
     constexpr int n_searching_steps = 16;
 
-    /// Convergence of the Ritz values.
+    /// State of convergence of the Ritz values.
     struct Convergence
     {
       int    n_inside    = 0; ///< Ritz values inside the radius

@@ -63,7 +63,7 @@ namespace Squeal
     const ComplexDenseMatrix &E = products.coupling;
     EigenvalueEstimates       result;
 
-    // δλ and κ
+    // Corrections δλ and condition numbers κ
     const Eigen::VectorXcd mass = bilinear(modes.pencil.mass, modes.left, modes.right);
     const Eigen::VectorXcd damping =
       modes.pencil.has_damping ? bilinear(modes.pencil.damping, modes.left, modes.right) : Eigen::VectorXcd(Eigen::VectorXcd::Zero(k));
@@ -84,7 +84,7 @@ namespace Squeal
       }
     result.couplings = derivatives.cwiseInverse().asDiagonal() * E;
 
-    // Modes that may coalesce
+    // Find modes that may coalesce
     for (int i = 0; i < k; ++i)
       {
         bool   alone = true, apart = true;

@@ -213,7 +213,7 @@ namespace Squeal
             result.coarse[i].overlap = result.fine[j].overlap = overlap;
           }
       }
-    // Rounding may differ between processes
+    // Rounding errors may differ between processes: use the pairs of process 0
     agree_on_pairs(coarse.real_part.communicator(), result.coarse);
     agree_on_pairs(coarse.real_part.communicator(), result.fine);
     return result;

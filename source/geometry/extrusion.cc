@@ -111,7 +111,7 @@ namespace Squeal
     for (const Plan::Pin &pin : plan.pins)
       mesh.volume_names.push_back(pin.name);
 
-    // Disc
+    // Layers of the disc
     const double                   z_face = parameters.disc_thickness / 2., z_end = z_face + parameters.pin_height;
     const std::vector<Plan::Point> top = points_on_side(plan, Plan::Side::top), bottom = points_on_side(plan, Plan::Side::bottom);
     Stack disc(plan, bottom, top, plan.faces, -z_face, z_face, graded_intervals(parameters.disc_layers, 1.), 0, mesh);

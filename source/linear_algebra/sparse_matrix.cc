@@ -78,7 +78,7 @@ namespace Squeal
       int    i, j;
       double x;
 
-      // Interface of Eigen's triplets
+      // Member functions as in Eigen's triplets
       int row() const
       {
         return i;

@@ -53,7 +53,7 @@ namespace Squeal
         }
     }
 
-    /// C : ∇φ.
+    /// Stress C : ∇φ of a displacement field.
     Tensor<2, 3> stress_of(const ElasticLaw::Stiffness &C, const Displacement &displacement)
     {
       const unsigned int *columns = voigt[displacement.component];

@@ -51,7 +51,7 @@ namespace Squeal
       return std::accumulate(values.begin(), values.end(), 0.);
     }
 
-    /// φᴴ C_m φ
+    /// φᴴ C_m φ of the modal damping.
     double modal_damping(const CoupledSystem &coupled, const MultiVector &real_part, const MultiVector &imaginary_part)
     {
       double result = 0.;

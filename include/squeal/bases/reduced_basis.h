@@ -50,7 +50,7 @@ namespace Squeal
     double                       orthonormality; ///< max |T_rᵀ M_c T_r − I|, below 1e-10
     ConnectionRank               connection;
 
-    /// r
+    /// Number of vectors r.
     int size() const
     {
       return vectors->n_columns();

@@ -63,7 +63,7 @@ namespace Squeal
     /// Distribution of the coupled dofs.
     const RowMap &map() const;
 
-    /// n_c
+    /// Number of contact nodes n_c.
     int n_contact() const
     {
       return friction_forces->rank();

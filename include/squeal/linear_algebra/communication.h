@@ -22,7 +22,7 @@ namespace Squeal
   template <typename Number>
   void smallest_of_processes(MPI_Comm communicator, Number *values, std::size_t n);
 
-  /// Largest value of all processes.
+  /// Largest @p value of all processes.
   double largest_of_processes(MPI_Comm communicator, double value);
 
   /// Broadcasts bytes from process 0.

@@ -42,7 +42,7 @@ namespace Squeal
       return static_cast<int>(real_values.size()) + n_zeros;
     }
 
-    /// Serialises for Boost.
+    /// Serialisation by Boost, for sending points to other processes.
     template <class Archive>
     void serialize(Archive &archive, const unsigned int /*version*/)
     {
