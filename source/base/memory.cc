@@ -51,7 +51,7 @@ namespace Squeal
     const auto memory = numbers_in(root / "proc/meminfo");
     double     result = memory.count("MemAvailable:") > 0 ? memory.at("MemAvailable:") * kilobyte : unlimited;
 
-    // The group of this process and all its parent groups
+    // Include the limits of the group of this process and of all its parent groups
     const std::string prefix = "0::/";
     std::ifstream     groups(root / "proc/self/cgroup");
     for (std::string line; std::getline(groups, line);)
@@ -100,7 +100,7 @@ namespace Squeal
   bool reset_peak_memory()
   {
     return_freed_memory();
-    // 5: resets the peak to the current resident memory, see proc(5)
+    // Writing 5 resets the peak to the current resident memory, see proc(5)
     std::ofstream stream("/proc/self/clear_refs");
     stream << 5 << std::flush;
     return static_cast<bool>(stream);

@@ -72,7 +72,7 @@ namespace Squeal
         const double          angle     = 0.5 * std::atan2(2. * a.dot(b), a.squaredNorm() - b.squaredNorm());
         const Eigen::VectorXd amplitude = std::cos(angle) * a + std::sin(angle) * b;
 
-        // Sign changes between values clearly different from zero
+        // Count sign changes between values that clearly differ from zero
         constexpr double clear   = 0.1;
         const double     largest = max_norm(amplitude);
         int              changes = 0;
@@ -115,7 +115,7 @@ namespace Squeal
         for (const Projection &harmonic : disc.harmonics)
           coefficients.push_back(harmonic.coefficients(fields));
 
-        // Harmonic with the largest energy over all three directions
+        // Find the harmonic with the largest energy over all three directions
         DenseMatrix energies(3, largest_harmonic + 1);
         for (int n = 0; n <= largest_harmonic; ++n)
           energies.col(n) = coefficients[n].colwise().squaredNorm();

@@ -150,7 +150,7 @@ namespace Squeal
     {
       if (disc.nodes.size() != pins.nodes.size())
         return {};
-      // Sorted by x to limit the search to neighbours
+      // Sort by x to limit the search to neighbours
       std::vector<std::pair<double, std::size_t>> sorted;
       for (std::size_t d = 0; d < disc.nodes.size(); ++d)
         sorted.emplace_back(disc.position(d)[0], d);

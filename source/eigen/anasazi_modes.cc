@@ -150,7 +150,7 @@ namespace Squeal
     using Problem = Anasazi::BasicEigenproblem<double, MultiVector, LinearOperator>;
     using Teuchos::rcp;
 
-    // The basis and one more block must be linearly independent
+    // Limit the block size: the basis and one more block must be linearly independent
     const int n          = A.n_free();
     const int block_size = std::max(1, std::min(request.block_size, n / 4));
 

@@ -70,7 +70,7 @@ namespace Squeal
               throw_arpack("pdsaupd (unknown request)", ido, request.what);
           }
       }
-    // 1: some values have not converged within the allowed restarts; the converged ones are returned
+    // Accept info = 1: some values have not converged within the allowed restarts; the converged values are returned
     if (info < 0 || info > 1)
       throw_arpack("pdsaupd", info, request.what);
     if (iparam[4] == 0)

@@ -67,7 +67,7 @@ namespace Squeal
           const double norm = step.norm();
           if (i == 0)
             first = norm;
-          // Steps no longer decrease because of rounding errors
+          // Accept X if steps no longer decrease because of rounding errors
           if (i > 0 && !(norm < contraction * before) && norm <= error_allowed)
             return true;
           if (!(norm <= hopeless_growth * first))

@@ -64,7 +64,7 @@ namespace Squeal
       if (degree == 2)
         return s + radius * theta;
       const std::complex<double> square = s * s + radius * radius * theta;
-      // The result for a negative square must not depend on the sign of a zero
+      // Treat a negative square separately, so that the root does not depend on the sign of a zero imaginary part
       const std::complex<double> root =
         square.imag() == 0. && square.real() < 0. ? std::complex<double>(0., std::sqrt(-square.real())) : std::sqrt(square);
       return root.imag() < 0. ? -root : root;

@@ -174,7 +174,7 @@ namespace Squeal
 
   std::optional<MultiVector> lanczos_vectors(const ShiftInvert &A, const KrylovRequest &request)
   {
-    // The basis and one more block must be linearly independent
+    // Limit the block size: the basis and one more block must be linearly independent
     const int n = A.n_free(), width = std::max(1, std::min(request.block_size, n / 4));
     const int largest = std::min(n - width, 4 * request.n_wanted + (20 + 10 * request.attempt) * width);
 
@@ -184,7 +184,7 @@ namespace Squeal
     // Reserve the largest size: unused space takes no physical memory, and growing later would require a copy
     BlockLanczos process(A, std::move(start), largest + 2 * width);
 
-    // About two vectors per mode are needed in the end
+    // Check convergence early: the final basis has about two vectors per mode
     BlockLanczos::RitzPairs ritz;
     int                     n_found = 0;
     for (int size = std::min(largest, 3 * request.n_wanted / 2 + 2 * width); n_found < request.n_wanted;)

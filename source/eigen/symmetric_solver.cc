@@ -95,7 +95,8 @@ namespace Squeal
         Residuals result = refine(pairs);
         if (!(result.excess <= 1.) && options.solver != RealSolver::lanczos && !is_dense())
           {
-            // For multiple eigenvalues, Anasazi and ARPACK may return mixtures with other modes, which refinement does not separate
+            // Use block Lanczos: for multiple eigenvalues, Anasazi and ARPACK may return mixtures with other modes, which refinement does
+            // not separate
             options.solver = RealSolver::lanczos;
             pairs          = find_all();
             result         = refine(pairs);
@@ -135,7 +136,8 @@ namespace Squeal
 
     RitzPairs pairs;
     int       n_found = 0, n_fruitless = 0;
-    // Members of multiple eigenvalues may be missing after the first start; every further start finds at least one, usually all
+    // Start again while modes are missing: a start may miss members of multiple eigenvalues, and every further start finds at least one of
+    // them
     for (unsigned int attempt = 0; n_found < count.n_modes; ++attempt)
       {
         const std::optional<MultiVector> fresh = krylov(count.n_modes - n_found, attempt, n_fruitless, pairs.vectors);

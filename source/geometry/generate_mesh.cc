@@ -78,7 +78,7 @@ namespace Squeal
       if (!is_script(geometry))
         return {geometry, "", {}};
       MesherInput input{geometry, driver(parameters), {}};
-      // Gmsh ignores the last line of a file without a final line break, unless the file is included
+      // Include the geometry if possible: Gmsh ignores the last line of an opened file without a final line break
       if (can_be_included(geometry))
         {
           input.script += "Include \"" + geometry + "\";\n";
@@ -293,7 +293,7 @@ namespace Squeal
       return finished(extrude(plan, parameters));
     }
 
-    // Repetitions for the supplied plan with smaller elements, if elements of the requested size do not fit between the pins
+    // If elements of the requested size do not fit between the pins of the supplied plan, repeat with smaller elements
     constexpr int    max_attempts      = 5;
     constexpr double smaller_next_time = 0.9;
   } // namespace

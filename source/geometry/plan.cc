@@ -61,7 +61,7 @@ namespace Squeal
       if (signed_area(loop, points) < 0.)
         std::reverse(loop.begin(), loop.end());
 
-      // The first spoke points away from the axis of the disc
+      // Begin the loop at its outermost node, so that the first spoke points away from the axis of the disc
       const Plan::Point centre = mean_point(loop, points);
       if (const double radius = std::hypot(centre[0], centre[1]); radius > 0.)
         {

@@ -339,7 +339,7 @@ namespace Squeal
 
   std::vector<Plan::Point> points_on_side(const Plan &plan, const Plan::Side side)
   {
-    // Pins of this side and the boundary of the annulus have prescribed displacements
+    // Prescribe displacements of the pins of this side and of the boundary of the annulus
     std::vector<Plan::Point> displacements(plan.points.size());
     std::vector<bool>        outline(plan.points.size(), false), given(plan.points.size(), false);
     bool                     displaced = false;
@@ -360,7 +360,7 @@ namespace Squeal
     if (!displaced)
       return plan.points;
 
-    // Displacements of the other nodes are means of their neighbours
+    // Compute displacements of the other nodes as means of their neighbours
     std::vector<std::vector<unsigned int>> neighbours(plan.points.size());
     for (const Plan::Face &face : plan.faces)
       for (unsigned int v = 0; v < 4; ++v)
@@ -387,7 +387,7 @@ namespace Squeal
         smooth(plan.faces, outline, points);
       }
 
-    // A round pin may also rotate about its centre; a pad may not
+    // Only round pins may also rotate about their centres
     std::vector<TurningPart> parts;
     for (const Plan::Pin &pin : plan.pins)
       if (pin.side == side && pin.is_round)

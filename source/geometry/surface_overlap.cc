@@ -203,9 +203,9 @@ namespace Squeal
       for (unsigned int i = 0; i < 50; ++i)
         {
           const Vector2d step = (map * derivatives(r)).inverse() * (place - map * monomials(r));
-          // A longer step may reach a region where the map is folded
+          // Limit the step: a longer step may reach a region where the map is folded
           r += step * std::min(1., longest_step / step.norm());
-          // After the step, the error is of the order of the square of the step
+          // Newton's method has converged: the remaining error is of the order of the square of the step
           if (step.squaredNorm() < 1e-16)
             return r;
         }

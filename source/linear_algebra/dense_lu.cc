@@ -21,7 +21,7 @@ namespace Squeal
   DenseLU<Matrix>::DenseLU(const Matrix &A)
     : norm(A.size() == 0 ? 0. : A.cwiseAbs().colwise().sum().template maxCoeff<Eigen::PropagateNaN>())
   {
-    // LU factors of matrices with non-finite entries are undefined
+    // Do not factorise matrices with non-finite entries, whose LU factors are undefined
     if (!std::isfinite(norm))
       return;
     factors.compute(A);

@@ -145,7 +145,7 @@ namespace Squeal
           if (!(values.back() > smallest) || n_rest == k)
             break;
 
-          // If no pass follows, the axes overwrite the columns
+          // Save memory: if no pass follows, the axes overwrite the columns
           const DenseMatrix S = largest_axes(pairs, k - n_rest);
           MultiVector       W = n_rest > 0 ? *remaining * S : std::move(*remaining);
           if (n_rest == 0)

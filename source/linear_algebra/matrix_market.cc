@@ -23,7 +23,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Memory per row or column, even without entries [byte].
+    /// Memory of a row or column without entries [byte].
     constexpr double bytes_of_row = 32.;
 
     /// Reads a text line by line as words; error messages quote the line.

@@ -128,7 +128,7 @@ namespace Squeal
         for (auto entry = matrix.begin(i); entry != matrix.end(i); ++entry)
           if (entry->value() != 0.)
             row.emplace_back(entry->column(), entry->value());
-        // deal.II stores the diagonal first
+        // Move the diagonal, which deal.II stores first, to its position
         if (!row.empty())
           std::rotate(row.begin(), row.begin() + 1, std::upper_bound(row.begin() + 1, row.end(), row.front()));
       });

@@ -28,7 +28,7 @@ namespace Squeal
     /// C in x, y and z from C in the material axes, the columns of R.
     ElasticLaw::Stiffness rotated(const ElasticLaw::Stiffness &C, const Eigen::Matrix3d &R)
     {
-      // σ_ij = R_ik R_jl σ_kl
+      // Rotation of stresses, σ_ij = R_ik R_jl σ_kl
       ElasticLaw::Stiffness turn;
       for (unsigned int i = 0; i < 3; ++i)
         for (unsigned int j = i; j < 3; ++j)

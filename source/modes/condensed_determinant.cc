@@ -211,7 +211,7 @@ namespace Squeal
     for (const double frequency : frequencies)
       result.resonances.push_back(1. / (lambda + Complex(0., frequency)) / (lambda - Complex(0., frequency)));
 
-    // N_⊥⁻¹ G Φ
+    // X = N_⊥⁻¹ G Φ
     ComplexDenseMatrix X = ComplexDenseMatrix::Zero(n_rows, n_modes);
     for (const Block &block : blocks)
       X.middleRows(block.first_row, block.on_modes.rows()) +=

@@ -89,7 +89,7 @@ namespace Squeal
     for (const Term &term : system.terms)
       (term.is_sparse() ? sparse : others).push_back(term);
     const bool has_full_terms = !terms_of(others, values, 1).empty();
-    // Modal damping cannot enter the shifted factor
+    // Reject modal damping with a shift: the shifted factor cannot include it
     if (shift != 0. && has_full_terms)
       throw SolverError("the Krylov solver cannot combine modal damping with a free or softly held disc", "complex modes",
                         "choose Complex modes/Solver = residual iteration, hold the disc by stiffer Mounts/Elastic mounts, or leave "

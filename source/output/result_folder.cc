@@ -285,7 +285,7 @@ namespace Squeal
                                {"peak memory so far [byte]", step.peak_memory},
                                {"result", step.summary}});
     tree[file_list] = record.files;
-    // File names and command-line words need not be UTF-8
+    // Replace invalid bytes: file names and command-line words need not be UTF-8
     stream << tree.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
   }
 

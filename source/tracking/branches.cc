@@ -49,7 +49,7 @@ namespace Squeal
     {
       const Complex here   = modes.points[k].lambda[mode];
       const int     before = k > 0 ? modes.branches[modes.branch_of[k][mode]].modes[k - 1] : -1;
-      // The slope of a much shorter step is not representative
+      // Do not use the slope of a much shorter step, which is not representative
       if (before < 0 || modes.width(k - 1) < 0.1 * modes.width(k))
         return here;
       return here + (here - modes.points[k - 1].lambda[before]) * (modes.width(k) / modes.width(k - 1));

@@ -156,7 +156,7 @@ namespace Squeal
       ParameterValues others;
       for (const auto &[name, numbers] : first.values)
         {
-          std::vector<double> &between = others[name]; // adds the entry even if the list is empty, which means zeros
+          std::vector<double> &between = others[name]; // keeps empty lists, which mean zeros
           for (std::size_t i = 0; i < numbers.size(); ++i)
             between.push_back((1. - t) * numbers[i] + t * second.values.at(name)[i]);
         }

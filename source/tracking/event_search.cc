@@ -41,7 +41,7 @@ namespace Squeal
     {
       const Complex here = modes.lambda(branch, k);
       int           best = -1;
-      // Close to a coalescence, R is small and limited by rounding errors of λ
+      // Allow for rounding errors of λ, because R is small close to a coalescence
       double least = std::max(mirror_tolerance * std::abs(here.real()), 1e-13 * std::abs(here));
       for (std::size_t j = 0; j < modes.points[k].lambda.size(); ++j)
         if (const double distance = std::abs(modes.points[k].lambda[j] + std::conj(here));
@@ -212,7 +212,7 @@ namespace Squeal
         error *= 2. * modes.lambda(search.branch, search.upward ? search.interval + 1 : search.interval).imag();
       if (error == 0.)
         return 0.;
-      // Without a slope, for example if a mode leaves zero, the uncertainty is the interval, in which the number of modes changes
+      // If there is no slope, for example if a mode begins at zero, the uncertainty is the interval, in which the number of modes changes
       const double change = slope(modes, search);
       return change > 0. ? error / change : modes.width(search.interval);
     }

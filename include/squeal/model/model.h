@@ -149,7 +149,7 @@ namespace Squeal
       return face_table;
     }
 
-    /// Faces of a named surface; throws a MeshError that lists all surfaces if there is none of this name.
+    /// Faces of a named surface; throws a MeshError that lists all surfaces if there is no surface of this name.
     std::vector<const Face *> faces_of(const std::string &surface) const;
 
     /// Nodes of all processes in the order of their numbers, on process 0 only; used for output files of small models.
