@@ -132,7 +132,7 @@ namespace Squeal
         volumes_of_bodies[mesh.body_of_volume.back()].push_back(volume);
       }
 
-    // Assign names
+    // Name the bodies
     mesh.body_names.clear();
     for (const std::vector<unsigned int> &volumes : volumes_of_bodies)
       {

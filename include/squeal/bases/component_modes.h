@@ -48,7 +48,7 @@ namespace Squeal
   /**
    * Contribution of every shape to real or complex modes.
    *
-   * @param references     disc modes with contact free, pin modes with contact sliding
+   * @param references     disc modes with free contact nodes, pin modes with sliding contact
    * @param mass           M of the uncoupled bodies
    * @param real_part      n_free × k
    * @param imaginary_part n_free × k; null for real modes

@@ -36,7 +36,7 @@ namespace Squeal
   /**
    * Factorises the system and computes its real modes, as steps of @p progress. Throws SolverError if no mode is in the band.
    *
-   * @param shift s ≥ 0 [rad/s] that makes K_c + s² M_c positive definite; with damping it must be zero
+   * @param shift s ≥ 0 [rad/s] that makes K_c + s² M_c positive definite
    * @param count number of modes in the band and its margin
    */
   SystemModes system_modes(const CoupledSystem    &system,

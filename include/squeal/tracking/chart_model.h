@@ -105,8 +105,8 @@ namespace Squeal
 
     /**
      * Principal axes, in the K_c-norm, of the components of right and left modes of the @p charts outside the span of the real modes, as
-     * coordinates in the basis. Modes are scaled to unit strain energy. Axes with squares below @p tolerance are dropped; errors of λ are
-     * products of errors of right and left vectors. Collective.
+     * coordinates in the basis. Modes are scaled to unit strain energy. Axes with squares below @p tolerance are dropped, because errors of
+     * λ are products of errors of right and left vectors. Collective.
      *
      * @param real_modes coordinates of the real modes
      */
