@@ -75,7 +75,7 @@ Decides whether a disc rubbed by friction pins squeals.
     options.output   = line.output.value_or("results/" + std::filesystem::path(line.parameter_file).stem().string());
     options.dry_run  = line.dry_run;
     options.again    = {
-         (std::filesystem::path(".") / line.parameter_file).string()}; // so that a name that begins with `-` is not taken for an option
+         (std::filesystem::path(".") / line.parameter_file).string()}; // prevents names that begin with `-` from being taken for options
     for (const std::string &text : line.overrides)
       options.again.push_back("--set=" + text);
     options.designs = line.designs;
@@ -86,8 +86,8 @@ Decides whether a disc rubbed by friction pins squeals.
     run_study(run);
   }
 
-  /// Redirects closed standard streams to /dev/null: otherwise files and pipes opened later would get their descriptors, and the printed
-  /// output.
+  /// Redirects closed standard streams to /dev/null: otherwise files and pipes opened later would reuse their descriptors and receive the
+  /// printed output.
   void open_closed_streams()
   {
     for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
@@ -138,7 +138,8 @@ Decides whether a disc rubbed by friction pins squeals.
   /// Prints the message of a failed run; returns the exit status.
   int report(const std::string &message, const bool is_root)
   {
-    // Most errors occur on all processes, and the root prints them. The others wait before they abort the job, in case they failed alone
+    // Most errors occur on all processes and are reported by process 0. Other processes wait, and report theirs only if process 0 has not
+    // aborted the job by then
     if (!is_root)
       std::this_thread::sleep_for(std::chrono::seconds(3));
     print_error(message);
@@ -156,7 +157,7 @@ int main(int argc, char **argv)
   // Ignore SIGXFSZ so that write() fails with EFBIG
   std::signal(SIGXFSZ, SIG_IGN);
 
-  // Libraries abort at start without a current folder
+  // Some libraries abort at startup if the current folder does not exist
   std::error_code                              no_folder;
   [[maybe_unused]] const std::filesystem::path here = std::filesystem::current_path(no_folder);
   if (no_folder)
@@ -177,7 +178,7 @@ int main(int argc, char **argv)
   const bool                               is_root = dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
   std::ostream                             silence(nullptr);
   std::ostream                            &screen = is_root ? std::cout : silence;
-  // Under mpirun every process sees a terminal, even if there is none
+  // Under mpirun, isatty() is true on every process, even without a terminal
   const bool        live    = isatty(STDOUT_FILENO) != 0 && dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) == 1;
   const std::string command = Squeal::shell_command({argv, argv + argc});
   try

@@ -2,7 +2,7 @@
 
 #pragma once
 
-// Headers that many files include and that take long to compile. Every file still includes what it uses.
+// Headers that many files include and that take long to compile. Every file still includes the headers that it uses.
 
 #include <deal.II/base/point.h>
 

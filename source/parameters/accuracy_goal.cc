@@ -22,7 +22,7 @@ namespace Squeal
     struct MeshDensity
     {
       Element      element;
-      unsigned int blocks; ///< k of the pin faces
+      unsigned int blocks; ///< k, elements along a block edge of a pin face
       unsigned int rings;
       double       grading;
       unsigned int pin_layers; ///< for pins with a height of up to 0.6 times their diameter
@@ -34,7 +34,7 @@ namespace Squeal
     {
       AccuracyLimits limits;
       MeshDensity    mesh, coarser;
-      double         tolerance; ///< of reduced models and solvers: estimated |δλ| / |λ| [-]
+      double         tolerance; ///< tolerance of reduced models and solvers: estimated |δλ| / |λ| [-]
     };
 
     /// Measured on the default model, see doc/accuracy.md. Requires a goal.
@@ -51,19 +51,19 @@ namespace Squeal
       return levels.at(goal);
     }
 
-    /// Largest ratio of height to diameter for the layers of a level [-].
+    /// Largest ratio of pin height to diameter for which the layers of a level are sufficient [-].
     constexpr double squat_pin = 0.62;
 
     /// Relative extension of the band on the coarser mesh, as a multiple of the requested accuracy, and its smallest value [-].
     constexpr double margin_of_coarser_band = 2., least_band_margin = 0.02;
 
-    /// The same for a given coarser mesh of unknown accuracy [-].
+    /// Relative extension of the band on a given coarser mesh, whose accuracy is unknown [-].
     constexpr double margin_of_given_mesh = 0.05;
 
     /// Shorter of the wavelengths of thin-plate bending, 2π (D / ρhω²)^¼, and of Rayleigh waves on the faces, at the end of the band [m].
     double shortest_wave(const Parameters &parameters)
     {
-      constexpr double rayleigh  = 0.9; // relative to the speed of shear waves
+      constexpr double rayleigh  = 0.9; // Rayleigh wave speed relative to the shear wave speed
       const Material   disc      = parameters.materials.of("disc");
       const double     frequency = parameters.discretization.maximum_frequency, omega = circular_frequency(frequency);
       const double     nu = disc.mean_poisson_ratio(), h = parameters.geometry.disc_thickness;

@@ -8,8 +8,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Smallest and largest rate of a band relative to the circular frequency of its end: limits of counts and of the search for
-    /// eigenvalues [-].
+    /// Smallest and largest rate of a band relative to the circular frequency at its end, for which modes can be counted and searched [-].
     constexpr double least_rate = 1e-6, greatest_rate = 10.;
   } // namespace
 

@@ -42,7 +42,7 @@ namespace Squeal
       return content.rfind(utf8_mark, 0) == 0 ? content.substr(3) : content;
     }
 
-    /// Rejects encodings and line ends that hide the lines of a file.
+    /// Rejects encodings and line ends that prevent reading line by line.
     void check_encoding(const std::string &content, const std::string &file)
     {
       const bool is_marked = content.rfind("\xFF\xFE", 0) == 0 || content.rfind("\xFE\xFF", 0) == 0;
@@ -55,7 +55,7 @@ namespace Squeal
                                "end lines with a line feed; " + std::string(as_csv_file));
     }
 
-    /// Rejects a first line from a spreadsheet with other separators.
+    /// Rejects a header line with separators other than commas.
     void check_separator(const std::string &names, const std::string &where)
     {
       if (names.rfind("sep=", 0) == 0)

@@ -38,7 +38,7 @@ namespace Squeal
 
       Range       range;
       bool        is_integer;
-      std::string unit; ///< preceded by a blank; empty without a unit, or with several
+      std::string unit; ///< unit after a blank; empty for a number without a unit, or with several
 
       /// "0 ... 10", ">= 0", "<= 10", or nothing.
       std::string bounds() const

@@ -28,7 +28,7 @@ namespace Squeal
     using dealii::Utilities::split_string_list;
     using dealii::Utilities::trim;
 
-    /// A full grid soon becomes too large; more designs are probably a typo.
+    /// Maximum number of designs: a larger number is probably a typo, as full grids grow quickly.
     constexpr std::size_t most_designs = 100000;
 
     constexpr const char *where_variables = "parameter Designs/Variables";
@@ -85,7 +85,7 @@ namespace Squeal
         variable.levels.push_back(i + 1 < n ? variable.at(i / (n - 1.)) : exact_text(variable.last));
     }
 
-    /// "Section/Name[3]" divided into path and number; zero: none.
+    /// Path and number of "Section/Name[3]"; the number is zero without an index.
     std::pair<std::string, unsigned int> split_index(const std::string &name, const std::string &where = where_variables)
     {
       const auto bracket = name.find('[');
@@ -108,7 +108,7 @@ namespace Squeal
     /// Rejects names that set a number twice: A and A, A and A[1], A + B and B.
     void refuse_repeated(const std::vector<std::string> &names, const std::string &where)
     {
-      std::vector<std::pair<std::string, std::pair<std::string, unsigned int>>> known; // as given, and the number that it sets
+      std::vector<std::pair<std::string, std::pair<std::string, unsigned int>>> known; // written name; path and index that it sets
       for (const std::string &several : names)
         for (const std::string &name : split_string_list(several, '+'))
           {

@@ -21,7 +21,7 @@ namespace Squeal
       throw ParameterError(what, "Geometry/" + name, change);
     }
 
-    /// More than twice the memory of Gmsh with its libraries alone [GB].
+    /// Minimum memory limit: more than twice the memory that Gmsh needs before it meshes [GB].
     constexpr double least_memory_limit = 1.;
 
     void check_format(const std::string &file)
@@ -111,7 +111,7 @@ namespace Squeal
       std::string   line;
       while (std::getline(stream, line) && line.rfind("$PhysicalNames", 0) != 0)
         ;
-      std::getline(stream, line); // number of names
+      std::getline(stream, line); // skip the number of names
       while (std::getline(stream, line) && line.rfind("$End", 0) != 0)
         if (int dimension; std::istringstream(line) >> dimension && dimension == 3)
           return true;
@@ -131,7 +131,7 @@ namespace Squeal
       }
     catch (const MeshError &)
       {
-        return; // rejected when it is opened
+        return; // the missing file is reported when it is opened
       }
     if (is_script(geometry))
       for (const GeometryVariable &variable : GeometryScript(geometry).variables())

@@ -20,7 +20,7 @@ namespace Squeal
 
   namespace
   {
-    using Pattern = boost::xpressive::sregex; // not recursive, unlike std::regex: texts may be long
+    using Pattern = boost::xpressive::sregex; // std::regex would overflow the stack on long texts
     using Match   = boost::xpressive::smatch;
     using Matches = boost::xpressive::sregex_iterator;
 

@@ -19,7 +19,7 @@ namespace Squeal
     /// Two groups of digits joined by a single comma: "0,4", also in "pin: 0,4; ..."; not in "1,2,3".
     struct JoinedDigits
     {
-      std::string before, after; ///< the comma
+      std::string before, after; ///< digits before and after the comma
 
       bool is_fraction() const
       {
@@ -40,15 +40,15 @@ namespace Squeal
       return result;
     }
 
-    /// Number of commas with a blank on either side.
+    /// Number of commas with a blank before or after.
     std::ptrdiff_t n_spaced_commas(const std::string &text)
     {
       static const std::regex spaced(R"(\s,|,\s)");
       return std::distance(std::sregex_iterator(text.begin(), text.end(), spaced), std::sregex_iterator());
     }
 
-    /// True if commas look like decimal commas: digits after one begin with zero; semicolons separate the numbers; or some commas have a
-    /// blank on either side and all others join digits, several of them or after a zero.
+    /// True if commas look like decimal commas: if digits after a comma begin with zero, if semicolons separate the numbers, or if commas
+    /// with and without blanks are mixed, and those without blanks occur more than once or after a zero.
     bool has_decimal_commas(const std::string &list, const std::vector<JoinedDigits> &joined)
     {
       if (joined.empty())

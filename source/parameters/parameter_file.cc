@@ -24,7 +24,7 @@ namespace Squeal
 
     constexpr const char *blanks = " \t\r\n\v\f";
 
-    // Far more than a run needs; devices have no end, and nested double includes multiply
+    // Limits far above the needs of a run: devices have no end, and nested includes multiply
     constexpr std::streamsize largest_file       = 1 << 24; // [byte]
     constexpr unsigned int    most_files         = 1000;
     constexpr std::size_t     most_open_sections = 100;

@@ -20,14 +20,13 @@ namespace Squeal
 {
   namespace
   {
-    /// Distance of -1/β from zero relative to the radius of the band, above which the eigenvalues gathered there do not affect the search
-    /// [-].
+    /// Smallest 1/β, relative to the radius of the band, at which the eigenvalues accumulated near −1/β do not affect the search [-].
     constexpr double clear_of_accumulation = 1.2;
 
-    /// Characters of an unknown name that are compared with known ones, which are all shorter.
+    /// Number of characters of an unknown name that are compared; all known names are shorter.
     constexpr std::size_t longest_name = 200;
 
-    /// α relative to the radius of the band, above which eigenvalues of waves far above the band may be in it [-].
+    /// Largest α, relative to the radius of the band, at which overdamped waves far above the band have no eigenvalue in it [-].
     constexpr double most_damping_by_mass = 4.;
 
     /// Case-insensitive Levenshtein distance.
@@ -315,7 +314,7 @@ namespace Squeal
   void Parameters::check_damping_in_band() const
   {
     // Waves with β ω > 2 are overdamped, and one of their two real λ tends to −1/β for fast waves: the finer the mesh, the more eigenvalues
-    // accumulate there. The list of eigenvalues must end before
+    // accumulate there. The search radius must end before −1/β
     const double radius = clear_of_accumulation * discretization.band().radius();
     for (const auto &[section, material] : materials.all())
       if (const double beta = material.rayleigh_beta; beta * radius >= 1.)

@@ -35,21 +35,21 @@ namespace Squeal
       return parts;
     }
 
-    /// Null unless there are three valid expressions.
+    /// Parsed function of three valid expressions; null if they are invalid.
     std::shared_ptr<const dealii::FunctionParser<3>> parsed(const std::string &expressions)
     {
       const std::vector<std::string> parts = outer_parts(expressions);
       if (parts.size() != 3)
         return nullptr;
       auto                              function = std::make_shared<dealii::FunctionParser<3>>(3);
-      static std::mutex                 one_stream; // std::cerr belongs to all threads
+      static std::mutex                 one_stream; // std::cerr is shared by all threads
       const std::lock_guard<std::mutex> lock(one_stream);
-      std::ostringstream                unread; // deal.II prints the exceptions it throws
+      std::ostringstream                unread; // discards the exceptions that deal.II prints
       std::streambuf                   *shown = std::cerr.rdbuf(unread.rdbuf());
       try
         {
           function->initialize("x,y,z", parts, {{"pi", M_PI}});
-          for (const unsigned int component : {0, 1, 2}) // parsed on first evaluation
+          for (const unsigned int component : {0, 1, 2}) // deal.II parses on first evaluation
             function->value(dealii::Point<3>(1., 1., 1.), component);
         }
       catch (const std::exception &)

@@ -145,7 +145,7 @@ namespace Squeal
     check_range(map_values, "map values", "Sweep/First map value, Last map value and Number of map values");
     if (!(map_values.first > 0.))
       throw ParameterError("the map begins at zero", "parameter Sweep/First map value", "give a positive load or speed");
-    // A sweep with one value needs no ascending range
+    // Check again: for a single value, the check above does not require an ascending range
     check_range({friction_coefficients.first, friction_coefficients.last, map_friction_coefficients}, "friction coefficients of the map",
                 "Sweep/First friction coefficient, Last friction coefficient and Map friction coefficients");
   }

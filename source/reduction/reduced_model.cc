@@ -38,14 +38,14 @@ namespace Squeal
   void ReducedModel::extend(MultiVector given)
   {
     const int old = size();
-    modes.reset(); // they refer to the old basis
+    modes.reset(); // computed for the old basis
     if (old == 0)
       T = std::make_shared<MultiVector>(std::move(given));
     else if (T.use_count() == 1)
       T->append(given);
     else
       T = std::make_shared<MultiVector>(join({&basis(), &given}));
-    // View after a possible reallocation
+    // Take the view after extending T, which may reallocate
     const MultiVector vectors = view(*T, old, T->n_columns() - old);
 
     std::map<const LowRankFactor *, bool> is_extended;
@@ -101,7 +101,7 @@ namespace Squeal
         // Restore orthonormality to the last digits: V (3 I − VᵀMV) / 2
         V = 1.5 * V - 0.5 * V * (V.transpose() * mass() * V).eval();
         Modal result{std::move(squares), V, restricted(V)};
-        // Exact values without rounding errors
+        // Set exact values; computed ones contain rounding errors
         result.model.mass_matrix      = DenseMatrix::Identity(size(), size());
         result.model.stiffness_matrix = as_column(result.squares).asDiagonal();
         modes                         = std::make_shared<const Modal>(std::move(result));

@@ -15,10 +15,11 @@ namespace Squeal
   {
     using Complex = std::complex<double>;
 
-    /// Number s of random vectors. New basis vectors are chosen with others, because residuals that those underestimate remain.
+    /// Number s of random vectors. New basis vectors are selected with another s vectors: the first set would miss the residuals that it
+    /// underestimates.
     constexpr int size_of_sketch = 128;
 
-    /// Diagonal of Xᴴ Y for matrices of real and imaginary halves, at least zero despite rounding.
+    /// Diagonal of Xᴴ Y for matrices stored as real parts, then imaginary parts; negative rounding errors are set to zero.
     std::vector<double> hermitian_products(const DenseMatrix &X, const DenseMatrix &Y)
     {
       const Eigen::Index    k        = X.cols() / 2;
@@ -49,7 +50,7 @@ namespace Squeal
   {
     const ParameterValues with_friction = system.at(1., values);
     for (std::size_t k = 0; k < system.terms.size(); ++k)
-      // Keep terms that vanish only at these values, except weights, for which the caller is responsible
+      // Keep terms that vanish only at these values, unless their weights vanish: the caller guarantees that these remain zero
       if (const Term &term = system.terms[k]; term.vanishes(with_friction) && (!term.weights.empty() || term.coefficient.is_constant()))
         continue;
       else if (term.matrix)
@@ -64,7 +65,7 @@ namespace Squeal
                 n_factor_columns += factor->rank();
               }
         }
-    // Constant terms of S leave no residual
+    // Constant stiffness terms cancel in Q(λ) − S
     sparse.erase(std::remove_if(sparse.begin(), sparse.end(),
                                 [](const Sparse &part) { return is_symmetric(*part.term, 0) && part.term->coefficient.is_constant(); }),
                  sparse.end());
@@ -215,7 +216,7 @@ namespace Squeal
     if (is_prepared)
       return;
     find_blocks();
-    // Columns of W that belong to a factor F are F C
+    // Columns of W from a low-rank factor F are F C: their products follow from Fᵀ S⁻¹ F
     const auto gram_of = [&](const Factor &f, const Factor &g) {
       return factor_gram.block(f.first, g.first, f.factor->rank(), g.factor->rank());
     };
@@ -273,7 +274,7 @@ namespace Squeal
   std::vector<ProjectedResiduals::Group> ProjectedResiduals::groups(const ParameterValues &values, const bool transposed) const
   {
     std::vector<Group> result;
-    // Blocks with equal rows up to a factor, by the index of the low-rank factor applied to φ_r, or -1, and the power
+    // Group blocks whose rows differ only by a factor; key: index of the low-rank factor applied to φ_r, or -1, and the power
     std::map<std::pair<int, int>, std::vector<std::pair<const Block *, double>>> alike;
     const auto add = [&](const Block &block, const double scale, const int reader, const int power) {
       if (scale != 0.)
@@ -383,7 +384,7 @@ namespace Squeal
         const DenseMatrix R = sketches(values, lambda, right, false), L = sketches(values, lambda, left, true);
         return {product_of_halves(L.transpose() * R), hermitian_products(R, R), hermitian_products(L, L)};
       }
-    // Left and right residuals share most groups
+    // Compute groups common to left and right residuals once
     const std::vector<Group> C = groups(values, false), D = groups(values, true);
     std::vector<Group>       all = C;
     std::vector<std::size_t> of_D;
@@ -402,7 +403,7 @@ namespace Squeal
       for (Eigen::Index i = first[g]; i < first[g + 1]; ++i)
         rows_of_D.push_back(i);
 
-    // The bracket is symmetric and too large for the processor's cache: half of it is read, once
+    // The bracket is symmetric and larger than the processor's cache: read only half of it, once
     DenseMatrix small(first.back(), first.back());
     for (std::size_t g = 0; g < all.size(); ++g)
       for (std::size_t h = 0; h <= g; ++h)

@@ -17,18 +17,18 @@ namespace Squeal
     /// circles [-].
     constexpr double resemblance = 0.02;
 
-    /// Difference of equal radii due to rounding, relative to the outer radius [-].
+    /// Tolerance for equal radii, relative to the outer radius [-].
     constexpr double rounding = 1e-9;
 
-    /// A pin in the plane of the disc.
+    /// Position of a pin in the plane of the disc.
     struct PinPlace
     {
       unsigned int component;
       std::string  name;
-      int          side;                 ///< ±1
-      double       x, y;                 ///< of its axis [m]
-      double       radius;               ///< of its outermost node [m]
-      double       gap = 0.;             ///< to the nearest other pin on its side, or to a rim [m]
+      int          side;                 ///< sign of z
+      double       x, y;                 ///< position of its axis [m]
+      double       radius;               ///< distance of its outermost node from its axis [m]
+      double       gap = 0.;             ///< distance to the nearest other pin on its side, or to a rim [m]
       double       axis_distance, angle; ///< from the parameters [m], [degree]
     };
 
@@ -88,7 +88,7 @@ namespace Squeal
       return found;
     }
 
-    /// Pins and the free space around them; empty if the mesh is not that of the parameters.
+    /// Pins and the free space around them; empty if the mesh does not match the parameters.
     std::vector<PinPlace> pins_of(const Mesh                      &mesh,
                                   const std::vector<unsigned int> &component,
                                   const Extent                    &extent,
@@ -140,9 +140,9 @@ namespace Squeal
         motion.velocity.push_back(velocity(mesh.points[n], component[n]));
       result.push_back(std::move(motion));
     };
-    // Linear from the face of the pins to the opposite face
+    // Factor that falls linearly from 1 on the face of the pins to 0 on the opposite face
     const auto through_disc = [&](const PinPlace &pin, const Point &x) { return std::clamp(0.5 + pin.side * x[2] / t, 0., 1.); };
-    // In-plane velocity of a node that moves with a pin: its own nodes, and those of the disc
+    // In-plane velocity caused by the motion of a pin: at the nodes of this pin, and at those of the disc
     const auto taken_along = [&](const PinPlace &pin, const Point &x, const unsigned int k, const auto &inside) {
       if (k != 0 && k != pin.component)
         return Point();

@@ -13,13 +13,13 @@ namespace Squeal
 {
   namespace
   {
-    /// Relative difference of two frequencies below which g' replaces the divided difference: balances its error and rounding [-].
+    /// Relative difference of two frequencies below which g' replaces the divided difference; balances truncation and rounding errors [-].
     constexpr double equal_frequencies = 1e-6;
 
     /// Highest power of (K_c + s² M_c)⁻¹ M_c.
     constexpr int krylov_steps = 3;
 
-    /// Component of a unit vector outside a span, below which it is dependent [-].
+    /// Norm of the component of a unit vector outside a span, below which the vector counts as linearly dependent [-].
     constexpr double dependent = 1e-11;
 
     bool is_rate(const Term &term)
@@ -86,7 +86,7 @@ namespace Squeal
 
   std::vector<double> ModalDampingDerivatives::rates_of_ratio(const int number) const
   {
-    // ζ is linear in the ratios of the list
+    // 2 ζ ω is linear in the ratios: evaluate it for one ratio of 1 and the other ratios 0
     DampingParameters unit = damping;
     for (int i = 0; i < static_cast<int>(unit.modal_ratios.size()); ++i)
       unit.modal_ratios[i].ratio = i == number ? 1. : 0.;
@@ -132,7 +132,7 @@ namespace Squeal
       }
     const auto rest = orthonormalize_if_any(*system.mass, modes.vectors.get(), join_all(powers), dependent);
 
-    // Coordinates of ψ and φ in modes, and in Ritz vectors of the remainder
+    // Coordinates of ψ and φ in the modes, and in Ritz vectors of the components outside them
     std::vector<double>          squares;
     DenseMatrix                  Z = Y;
     std::unique_ptr<MultiVector> ritz;

@@ -128,7 +128,7 @@ namespace Squeal
     /// Rejects duplicate keys in an object, of which only one would be used.
     Json parsed(std::istream &stream, const std::string &file)
     {
-      std::vector<std::set<std::string>> keys; // of the open objects
+      std::vector<std::set<std::string>> keys; // keys of the objects that are still open
       return Json::parse(stream, [&](int, const Json::parse_event_t event, const Json &value) {
         if (event == Json::parse_event_t::object_start)
           keys.emplace_back();
@@ -244,7 +244,7 @@ namespace Squeal
           {
             entry["coefficient"].refuse(error.reason, error.change);
           }
-        // Each parameter over its range, with the others at their values
+        // Vary each parameter over its range, with the other parameters at their values in the file
         const auto check = [&](const ParameterValues &values) {
           if (std::isfinite(result.at(values)))
             return;

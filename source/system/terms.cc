@@ -256,7 +256,7 @@ namespace Squeal
                     const bool               transposed)
   {
     MultiVector                                                result(X.map(), X.n_columns());
-    std::vector<std::pair<const LowRankFactor *, DenseMatrix>> onto; // product of each factor, shared by all of its terms
+    std::vector<std::pair<const LowRankFactor *, DenseMatrix>> onto; // product of each factor, reused by all of its terms
     for (const Term *term : terms_of(terms, values, power))
       {
         const double theta = term->coefficient.at(values);
@@ -279,7 +279,7 @@ namespace Squeal
 
   namespace
   {
-    /// A, of low rank or not.
+    /// A as a sparse matrix, also if it has low rank.
     Matrix sparse_form(const Term &term, const ParameterValues &values)
     {
       if (!term.is_sparse())
@@ -367,14 +367,14 @@ namespace Squeal
 
   namespace
   {
-    /// Relative difference below which scales are equal: they come from products of the same parameters [-].
+    /// Relative difference below which scales count as equal; they are products of the same parameters [-].
     constexpr double same_scale = 1e-13;
 
     /// Terms whose coefficients have the same ratio to their mean in all members.
     struct Group
     {
       const Term                                                         *first;
-      std::vector<double>                                                 scales; ///< for each member
+      std::vector<double>                                                 scales; ///< ratio for each member
       std::vector<std::pair<double, std::shared_ptr<const SparseMatrix>>> summands;
     };
 

@@ -15,13 +15,13 @@ namespace Squeal
   /// Meshes, elements and bases that an accuracy study compares (section `Accuracy study`).
   struct AccuracyStudyParameters
   {
-    std::vector<double>      factors         = {0.5, 1., 1.5}; ///< mesh refinement relative to the given mesh [-]
+    std::vector<double>      factors         = {0.5, 1., 1.5}; ///< mesh refinement factors relative to the given mesh [-]
     std::vector<Element>     elements        = {Element::trilinear, Element::incompatible_modes, Element::quadratic};
-    std::vector<Outlines>    outlines        = {Outlines::inscribed, Outlines::true_area}; ///< for elements with straight edges
+    std::vector<Outlines>    outlines        = {Outlines::inscribed, Outlines::true_area}; ///< outlines of elements with straight edges
     std::vector<std::string> bases           = {"real + 1st-ord. two-sided", "residual-grown"};
-    double                   grown_tolerance = 1e-4;   ///< of bases grown by residuals [-]
-    double                   largest_dofs    = 150000; ///< largest number of dofs of a mesh, clamped dofs included
-    double                   margin          = 0.1;    ///< relative extension of the bands, so that all modes have counterparts [-]
+    double                   grown_tolerance = 1e-4;   ///< tolerance of residual-grown bases [-]
+    double                   largest_dofs    = 150000; ///< maximum number of dofs of a mesh, including clamped dofs
+    double                   margin          = 0.1;    ///< relative extension of the band, so that all modes have counterparts [-]
 
     void declare(Declarations &declarations);
 
@@ -58,19 +58,19 @@ namespace Squeal
   /// Limits of a goal other than as_given.
   AccuracyLimits limits_of(AccuracyGoal goal);
 
-  /// Ratio of the error of a goal's mesh to the difference from its coarser mesh [-], slightly larger than observed for the default model
-  /// (doc/accuracy.md): 2/3 for elements with eight nodes, 1/3 for quadratic ones; 1 without a goal.
+  /// Estimated error on the mesh of a goal, divided by the difference from its coarser mesh [-]. Slightly larger than observed for the
+  /// default model (doc/accuracy.md): 2/3 for elements with eight nodes, 1/3 for quadratic elements; 1 without a goal.
   double error_by_difference(AccuracyGoal goal);
 
   /**
-   * Parameters with the element, mesh, solver and tolerances of a goal, which replace the given values; based on doc/accuracy.md, which
-   * shows their cost and accuracy for the default model. Element sizes of the disc are a fraction of the shorter of the bending and shear
-   * wavelengths at the end of the band, layers are at most as thick, and tall pins have proportionally more layers. Unchanged without a
-   * goal.
+   * Parameters in which the element, mesh, solver and tolerances are replaced by those of the accuracy goal. doc/accuracy.md shows their
+   * cost and accuracy for the default model. Element sizes of the disc are a fraction of the shorter of the bending and shear wavelengths
+   * at the end of the band, layers are no thicker than this, and tall pins have proportionally more layers. Without a goal, the parameters
+   * are unchanged.
    */
   Parameters with_goal(const Parameters &given);
 
-  /// The same model on the coarser mesh of a goal or, without a goal, on the given coarser mesh, in a slightly wider band because coarse
-  /// meshes have higher frequencies. Throws ParameterError; one of the two must be given.
+  /// The same model on the coarser mesh of a goal or, without a goal, on the coarser mesh from the parameters. The band is slightly wider,
+  /// because coarse meshes have higher frequencies. Throws ParameterError if there is neither a goal nor a coarser mesh.
   Parameters with_coarser_mesh(const Parameters &given);
 } // namespace Squeal

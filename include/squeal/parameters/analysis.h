@@ -18,7 +18,7 @@ namespace Squeal
     double  maximum_frequency = 5000.; ///< upper end of the band [Hz]
     double  maximum_rate      = 0.;    ///< largest |Re λ| [1/s]; 0: see Band
 
-    /// Parameters of `Geometry` with the values of a coarser mesh, "disc_size = 0.012, ...", or its file; empty: no coarser mesh.
+    /// Coarser mesh: values of `Geometry` parameters, "disc_size = 0.012, ...", or the name of a mesh file; empty: no coarser mesh.
     std::string coarser_mesh;
 
     Band band() const
@@ -63,13 +63,13 @@ namespace Squeal
   struct SolverParameters
   {
     RealSolver           real_solver         = RealSolver::lanczos;
-    double               real_tolerance      = 1e-10; ///< on ‖Kφ - ω²Mφ‖ / ‖Kφ‖ [-]
+    double               real_tolerance      = 1e-10; ///< limit of ‖Kφ - ω²Mφ‖ / ‖Kφ‖ [-]
     unsigned int         maximum_modes       = 500;   ///< limit on the number of modes in the band
     ComplexSolver        complex_solver      = ComplexSolver::krylov;
     ShiftInverse         shift_inverse       = ShiftInverse::updated_cholesky;
-    double               complex_tolerance   = 1e-9; ///< on the residual ‖Q(λ)φ‖ / ‖Kφ‖ [-]
-    double               iteration_tolerance = 1e-7; ///< on the estimated |δλ| / |λ| [-]
-    unsigned int         maximum_basis       = 1500; ///< of the residual iteration [vectors]
+    double               complex_tolerance   = 1e-9; ///< limit of the residual ‖Q(λ)φ‖ / ‖Kφ‖ [-]
+    double               iteration_tolerance = 1e-7; ///< limit of the estimated |δλ| / |λ| [-]
+    unsigned int         maximum_basis       = 1500; ///< maximum basis size of the residual iteration [vectors]
     FactorizationLibrary library             = FactorizationLibrary::automatic;
     unsigned int         n_threads           = 0; ///< 0: usable_threads()
     unsigned int         blas_threads        = 1;
@@ -107,11 +107,11 @@ namespace Squeal
   struct OutputParameters
   {
     FieldSelection fields            = FieldSelection::all;
-    bool           component_fields  = false; ///< also modes of disc and pins alone
-    bool           real_fields       = false; ///< also coupled modes without friction
-    unsigned int   animation_frames  = 16;    ///< per period of an unstable mode; 0: no animation
+    bool           component_fields  = false; ///< also write modes of disc and pins alone
+    bool           real_fields       = false; ///< also write coupled modes without friction
+    unsigned int   animation_frames  = 16;    ///< frames per period of an unstable mode; 0: no animation
     unsigned int   animation_periods = 1;
-    bool           animation_growth  = false; ///< scaled by e^{Rt}
+    bool           animation_growth  = false; ///< scale the animation by e^{Rt}
     bool           write_matrices    = false;
     SystemOutput   write_system      = SystemOutput::none;
 

@@ -10,8 +10,8 @@ namespace Squeal
   /// A table of texts from a spreadsheet.
   struct CsvFile
   {
-    std::vector<std::string>              names;       ///< of the columns
-    std::string                           where_names; ///< file and line, for messages
+    std::vector<std::string>              names;       ///< column names
+    std::string                           where_names; ///< file and line of the column names, for messages
     std::vector<std::vector<std::string>> rows;        ///< one text for each column, without surrounding blanks
     std::vector<std::string>              where;       ///< file and line of each row, for messages
 
@@ -31,7 +31,7 @@ namespace Squeal
   /**
    * Reads comma-separated values: column names in the first line, then one row per line. Empty lines are skipped.
    *
-   * @param parameter that gives the file, "Section/Name", for messages
+   * @param parameter that names the file, "Section/Name", for messages
    * @param row       meaning of a row, for messages: "design"
    *
    * Throws FileError if the file cannot be read, ParameterError with the line if it is not comma-separated UTF-8 text.

@@ -67,7 +67,7 @@ namespace Squeal
         [&value](const std::string &text) { value = enum_value<Enum>(text); });
     }
 
-    /// One of several names; @p parse receives only these.
+    /// One of several names; @p parse receives only these names.
     void add_choice(const std::string                              &name,
                     const std::vector<std::string>                 &names,
                     const std::string                              &documentation,

@@ -12,11 +12,11 @@ namespace Squeal
   /// Designs, defined by the values of their variables.
   struct DesignPlan
   {
-    std::vector<std::string>              names;   ///< of the variables: "Section/Name", "Section/Name[k]", several joined by "+"
-    std::vector<std::vector<std::string>> designs; ///< a value for each variable; empty: unchanged
+    std::vector<std::string>              names;   ///< names of the variables: "Section/Name", "Section/Name[k]", several joined by "+"
+    std::vector<std::vector<std::string>> designs; ///< values of the variables for each design; an empty text means unchanged
 
-    std::string              where_names; ///< parameter, or file and line, for messages
-    std::vector<std::string> where;       ///< of each design in a file; empty: as where_names
+    std::string              where_names; ///< source of the names for messages: parameter, or file and line
+    std::vector<std::string> where;       ///< file and line of each design; empty: as where_names
   };
 
   /// A varied parameter with a list of values or a range.
@@ -24,7 +24,7 @@ namespace Squeal
   {
     std::string              name;
     std::vector<std::string> levels;
-    double                   first = 0., last = 0.; ///< of a range
+    double                   first = 0., last = 0.; ///< ends of the range
     bool                     is_range = false, by_ratio = false;
 
     /// Value at the fraction t in [0, 1] of the range or list.
@@ -51,17 +51,18 @@ namespace Squeal
   /// The plan as a CSV file for Designs/Plan = file.
   std::string as_csv(const DesignPlan &plan);
 
-  /// @p parameters with the values of a design, unchecked. Throws ParameterError if a parameter is unknown, with the nearest known name, or
-  /// if it rejects a value.
+  /// @p parameters with the values of a design, unchecked. Throws ParameterError for an unknown parameter, suggesting the nearest known
+  /// name, or for a value that the parameter rejects.
   Parameters with_design(const Parameters &parameters, const std::vector<std::string> &names, const std::vector<std::string> &values);
 
-  /// Current value of a variable: that of its first parameter. Throws ParameterError as with_design() does.
+  /// Current value of the first parameter of a variable. Throws ParameterError as with_design() does.
   std::string current_value(const Parameters &parameters, const std::string &name);
 
-  /// The k-th number in @p text, counted from one, without digits in names. Throws ParameterError if there are fewer.
+  /// The k-th number in @p text, counted from one; digits in names do not count. Throws ParameterError if there are fewer numbers.
   std::string number_of(const std::string &text, unsigned int k);
 
-  /// @p text with its k-th number replaced, counted from one, without digits in names. Throws ParameterError if there are fewer.
+  /// @p text with its k-th number replaced, counted from one; digits in names do not count. Throws ParameterError if there are fewer
+  /// numbers.
   std::string with_number(const std::string &text, unsigned int k, const std::string &value);
 
   /// Path of the file of designs: in the folder of the parameter file, or in the current directory; empty if the designs do not come from a

@@ -13,7 +13,7 @@ namespace Squeal
   enum class DesignChoice
   {
     full_grid,       ///< all combinations of all levels
-    one_at_a_time,   ///< the given model, then every level of each variable with the others unchanged
+    one_at_a_time,   ///< the given model, then every level of each variable with the other variables unchanged
     latin_hypercube, ///< one sample in each of n equal parts of every range
     sobol,           ///< Sobol sequence (I. M. Sobol), randomly shifted
     file             ///< rows of a CSV file
@@ -30,9 +30,9 @@ namespace Squeal
   struct DesignParameters
   {
     DesignChoice choice = DesignChoice::full_grid;
-    std::string  variables;        ///< parameters and their values, as given
-    std::string  file;             ///< CSV
-    unsigned int n_samples   = 20; ///< of a Latin hypercube or a Sobol sequence
+    std::string  variables;        ///< parameters and their values, not yet parsed
+    std::string  file;             ///< name of a CSV file with designs
+    unsigned int n_samples   = 20; ///< number of samples of a Latin hypercube or a Sobol sequence
     unsigned int seed        = 1;
     unsigned int n_processes = 0; ///< concurrent solutions of designs; 0: one per core
 
@@ -77,11 +77,11 @@ namespace Squeal
   {
     SearchGoal   goal          = SearchGoal::divergence_rate;
     SearchMethod method        = SearchMethod::subplex;
-    unsigned int n_samples     = 10;    ///< of the Sobol sequence; the methods start from the best one
-    unsigned int n_evaluations = 40;    ///< maximum number, including those samples
-    double       quantile      = 0.95;  ///< for the goal quantile [-]
-    double       first_step    = 0.15;  ///< of the methods, fraction of each range [-]
-    double       smallest_step = 0.002; ///< termination of the methods, fraction of each range [-]
+    unsigned int n_samples     = 10;    ///< samples of the Sobol sequence; the methods start from the best one
+    unsigned int n_evaluations = 40;    ///< maximum number of evaluations, including these samples
+    double       quantile      = 0.95;  ///< level of the quantile for the goal quantile [-]
+    double       first_step    = 0.15;  ///< initial step of the methods, as a fraction of each range [-]
+    double       smallest_step = 0.002; ///< step at which the methods stop, as a fraction of each range [-]
 
     void declare(Declarations &declarations);
 

@@ -35,7 +35,7 @@ namespace Squeal
   /// Shape and mesh of disc and pins (section `Geometry`).
   struct GeometryParameters
   {
-    std::string  file                 = "disc_pins.geo"; ///< plan (.geo) or mesh (.geo, .msh)
+    std::string  file                 = "disc_pins.geo"; ///< plan to extrude (.geo) or solid mesh (.geo, .msh)
     double       disc_inner_radius    = 0.1505;          ///< [m]
     double       disc_outer_radius    = 0.3155;          ///< [m]
     double       disc_thickness       = 0.0463;          ///< [m]
@@ -46,16 +46,16 @@ namespace Squeal
     unsigned int nodes_per_pin_face   = 19;
     unsigned int pin_layers           = 4;
     unsigned int disc_layers          = 3;
-    double       element_size         = 0.0115; ///< in the plane of the disc [m]
+    double       element_size         = 0.0115; ///< element size in the plane of the disc [m]
     Outlines     outlines             = Outlines::inscribed;
     unsigned int pin_rings            = 0;  ///< rings of elements along the outline of each pin
     double       pin_grading          = 1.; ///< size ratio of neighbouring layers and rings, finer towards the edge of the clamped end [-]
     double       pairing_tolerance    = 1e-6;  ///< largest distance between the two nodes of a contact pair [m]
-    bool         allow_shell_commands = false; ///< a geometry may run programs and write files
+    bool         allow_shell_commands = false; ///< allow a geometry to run programs and write files
     double       meshing_time_limit   = 600.;  ///< [s]
     double       meshing_memory_limit = 8.;    ///< [GB]
 
-    /// A number in the user's script, and its given value, if any.
+    /// A numeric variable of the user's script; value: from the parameter file, if given there.
     struct Variable
     {
       GeometryVariable      declaration;
@@ -71,9 +71,8 @@ namespace Squeal
     /// Script variables for these parameters, with values in the units of a script.
     std::map<std::string, std::string> script_variables() const;
 
-    /// Those of script_variables() that affect the geometry: a Gmsh script contains the names of those that it uses, a plan is extruded
-    /// with thickness, height and layers, and contact nodes are paired in every mesh. Reads the file without running it. Throws MeshError
-    /// if it does not exist.
+    /// Names of the script_variables() that affect the geometry: the names that occur in a Gmsh script; thickness, height and layers of an
+    /// extruded plan; and the pairing tolerance for every mesh. Reads the file without running it. Throws MeshError if it does not exist.
     std::set<std::string> used_variables() const;
 
     /// True if the file is a plan to be extruded, not a solid. Reads the file. Throws MeshError if it does not exist.
@@ -94,7 +93,7 @@ namespace Squeal
     return 3 * k * (k + 1) + 1;
   }
 
-  /// Number k of elements along a block edge of a pin face with this number of nodes, not rounded.
+  /// Number k of elements along a block edge of a pin face with the given number of nodes, not rounded.
   inline double blocks_of_pin_face(const double nodes)
   {
     return (std::sqrt(12. * nodes - 3.) - 3.) / 6.;

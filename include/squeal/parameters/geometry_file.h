@@ -27,14 +27,14 @@ namespace Squeal
   {
     std::string name;        ///< name in the script
     std::string value;       ///< value as written in the script
-    std::string onelab_name; ///< of DefineNumber[..., Name "..."]; empty if the script uses the name for another value
+    std::string onelab_name; ///< Name option of DefineNumber; empty if the script uses this name for another value
   };
 
   /// Text of a Gmsh script, without running it, and of the scripts that it includes by literal names; comments are removed.
   class GeometryScript
   {
   public:
-    /// Reads a script; an unreadable one is empty.
+    /// Reads a script; for an unreadable file, the text is empty.
     explicit GeometryScript(const std::string &file);
 
     /// Variables of DefineConstant[...] and DefineNumber[...], without lists and texts.
@@ -43,19 +43,19 @@ namespace Squeal
     /// The script itself, then existing files in its Include and Merge commands.
     std::vector<std::string> files() const;
 
-    /// File, line and text of the first line that contains one of the words, or several words separated by single blanks.
+    /// File, line and text of the first line that contains one of @p words; an entry may be several words separated by single blanks.
     std::optional<std::string> find(const std::vector<std::string> &words) const;
 
   private:
     struct Part
     {
-      std::string file, text; ///< lines as in the file
+      std::string file, text; ///< name, and text with the same line numbers as the file
     };
 
     void read(const std::string &file);
 
     std::vector<Part>        parts;
-    std::vector<std::string> merged; ///< files other than scripts
+    std::vector<std::string> merged; ///< merged files that are not scripts
   };
 
   /// A geometry and all included files, to be stored with results.
@@ -70,7 +70,7 @@ namespace Squeal
     std::string       name;  ///< name of the copy or, if there is none, of the geometry itself
   };
 
-  /// Files to copy for a geometry, and their names. A file included from outside the folder of the geometry would not be found from the
-  /// copy; @p name is then the geometry itself.
+  /// Files to copy for a geometry, and their names. If the geometry includes a file from outside its folder, nothing is copied, because the
+  /// copy would not find that file; @p name is then the geometry itself.
   GeometryCopy copy_of(const std::string &geometry);
 } // namespace Squeal

@@ -13,9 +13,9 @@ namespace Squeal
   /// A system of matrices instead of a mesh (parameters `System` and `System values`).
   struct GivenSystemParameters
   {
-    std::string                   file;      ///< folder with a system.json, or that file; empty: the system comes from a mesh
-    std::map<std::string, double> values;    ///< of its parameters, if different from those in the file
-    std::string                   directory; ///< of the parameter file
+    std::string                   file;      ///< path of system.json or of its folder; empty: the system comes from a mesh
+    std::map<std::string, double> values;    ///< parameter values that replace those in the file
+    std::string                   directory; ///< folder of the parameter file
 
     explicit operator bool() const
     {

@@ -51,7 +51,7 @@ namespace Squeal
     std::string surface;
     double      radial, tangential, axial;
 
-    /// Coefficient in direction 0, 1 or 2.
+    /// Coefficient in radial (0), tangential (1) or axial (2) direction.
     double along(const int direction) const
     {
       return direction == 0 ? radial : direction == 1 ? tangential : axial;
@@ -88,7 +88,7 @@ namespace Squeal
     Material                    pin  = {1.90e9, 0.25, 3070.};
     std::vector<VolumeMaterial> volumes;                                        ///< volumes with their own material
     std::vector<VolumeMaterial> orthotropic;                                    ///< orthotropic volumes; their axes are in the list below
-    std::vector<MaterialAxes>   axes;                                           ///< of orthotropic volumes whose axes are not cylindrical
+    std::vector<MaterialAxes>   axes;                                           ///< material axes that are not cylindrical
     std::vector<Mount>          mounts = {{"disc_bore", 0., 7.80e10, 1.88e10}}; ///< springs
     std::vector<Mount>          dashpots;
     std::vector<SurfaceMass>    masses;
@@ -98,7 +98,7 @@ namespace Squeal
     /// Throws ParameterError.
     void check() const;
 
-    /// Material of a volume: its own, or else that of the disc or of the pins.
+    /// Material of a volume; by default, that of the disc or of the pins.
     Material of(const std::string &volume) const;
 
     bool has_own(const std::string &volume) const;

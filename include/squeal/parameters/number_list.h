@@ -39,13 +39,13 @@ namespace Squeal
     std::set<std::size_t> n_numbers; ///< permitted numbers of values in an entry
     char                  separator = ';', between_numbers = ',';
 
-    /// Throws ParameterError that quotes this format; @p list: text as given, to detect a decimal comma.
+    /// Throws ParameterError that quotes this format; a decimal comma in @p list adds a hint.
     [[noreturn]] void refuse(const std::string &what, const std::string &list = "") const;
   };
 
   struct ListEntry
   {
-    std::string         text; ///< as given
+    std::string         text; ///< the entry as written
     std::string         key;
     std::vector<double> numbers;
   };

@@ -26,7 +26,8 @@ namespace Squeal
    */
   std::vector<ParameterStatement> read_parameter_file(const std::string &file);
 
-  /// A value as written to a parameter file: in double quotes, with `\"`, `\\` and `\n`, if it would not be read back unchanged without them.
+  /// A value as written to a parameter file: in double quotes, with `\"`, `\\` and `\n`, if the value would be read back differently
+  /// without quotes.
   std::string written_value(const std::string &value);
 
   /// Value of @p text: the quoted text, or the text without surrounding blanks. Throws ParameterError naming @p where.

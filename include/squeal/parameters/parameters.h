@@ -30,8 +30,8 @@ namespace Squeal
   {
     const Study             *study = studies().front(); ///< study to run
     AccuracyGoal             goal  = AccuracyGoal::as_given;
-    std::vector<std::string> replaced; ///< parameters whose given values the accuracy goal replaced
-    GivenSystemParameters    system;   ///< replaces geometry, materials and contact
+    std::vector<std::string> replaced; ///< parameters whose values were replaced by the accuracy goal
+    GivenSystemParameters    system;   ///< system file that replaces geometry, materials and contact
     GeometryParameters       geometry;
     MaterialParameters       materials;
     DiscretizationParameters discretization;
@@ -71,7 +71,7 @@ namespace Squeal
     /// True if the study solves for the steady sliding state.
     bool needs_steady_sliding() const;
 
-    /// True if contact damps the modes in some run of the study: radial dissipation, or friction that depends on speed.
+    /// True if any run of the study includes contact damping: radial dissipation, or friction that depends on speed.
     bool has_contact_damping() const;
 
     /// True if the study computes modes with friction; otherwise the friction coefficient affects only the steady sliding state.

@@ -25,9 +25,9 @@ namespace Squeal
   struct ModeTruncation
   {
     double frequency    = 0.; ///< [Hz]; 0: use the numbers
-    int    disc         = 0;  ///< modes of the disc, free or sliding
+    int    disc         = 0;  ///< free modes of all pins together
     int    pins_free    = 0;  ///< of all pins together
-    int    pins_sliding = 0;  ///< of all pins together
+    int    pins_sliding = 0;  ///< sliding modes of all pins together
 
     /// "10000 Hz" or "80/120/60".
     std::string text() const;
@@ -36,12 +36,12 @@ namespace Squeal
   /// Reduced bases and their comparison (section `Reduction`).
   struct ReductionParameters
   {
-    std::vector<std::string>    bases; ///< names; empty: all for the eigenproblem
+    std::vector<std::string>    bases; ///< names of the bases; empty: all bases for the eigenproblem
     ReductionProblem            problem             = ReductionProblem::friction;
     std::vector<ModeTruncation> truncations         = {{10000., 0, 0, 0}};
-    std::vector<double>         coupled_frequencies = {0.};  ///< upper limits of the sets of real coupled modes [Hz]; 0: that of the band
+    std::vector<double>         coupled_frequencies = {0.};  ///< upper limits of the sets of real coupled modes [Hz]; 0: end of the band
     double                      rank_tolerance      = 1e-10; ///< [-]
-    std::vector<double>         grown_tolerances    = {1e-4, 1e-6}; ///< of bases grown by residuals, for the estimated |δλ|/|λ| [-]
+    std::vector<double>         grown_tolerances    = {1e-4, 1e-6};       ///< tolerances of residual-grown bases: estimated |δλ|/|λ| [-]
     std::vector<double>         snapshots           = {0.05, 0.25, 0.45}; ///< friction coefficients of the complex modes in the POD basis
     double                      pod_tolerance       = 1e-4;               ///< [-]
 

@@ -37,29 +37,29 @@ namespace Squeal
   /// An uncertain parameter.
   struct UncertainParameter
   {
-    std::string  name; ///< in the parameter file, as in Designs/Variables, or in the system file
+    std::string  name; ///< name in the parameter file, as in Designs/Variables, or in the system file
     Distribution distribution;
-    bool         is_relative  = false; ///< numbers are per cent of the given value
+    bool         is_relative  = false; ///< numbers are per cent of the nominal value
     bool         for_each_pin = false; ///< independent values for each pin
   };
 
   struct Correlation
   {
     std::string first, second; ///< names of uncertain parameters
-    double      value;         ///< of the normal copula [-]
+    double      value;         ///< correlation of the normal copula [-]
   };
 
   /// Scatter of modes with uncertain parameters (section `Robustness`).
   struct RobustnessParameters
   {
-    std::string         distributions, correlations; ///< as given
+    std::string         distributions, correlations; ///< not yet parsed
     unsigned int        n_samples   = 2000;          ///< independent samples
     unsigned int        seed        = 1;
-    double              tolerance   = 1e-4; ///< for the estimated |δλ| / |λ| at every sample [-]
+    double              tolerance   = 1e-4; ///< limit of the estimated |δλ| / |λ| at every sample [-]
     bool                has_indices = true; ///< compute Sobol' indices, which need additional samples
     std::vector<double> frequency_bands;    ///< limits of bands with separate probabilities [Hz]
-    unsigned int        n_worst  = 5;       ///< worst samples, written as parameter files
-    unsigned int        n_onsets = 0;       ///< samples with modes followed over the friction coefficient
+    unsigned int        n_worst  = 5;       ///< number of worst samples written as parameter files
+    unsigned int        n_onsets = 0;       ///< number of samples followed over the friction coefficient
 
     void declare(Declarations &declarations);
 

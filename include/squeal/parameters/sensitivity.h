@@ -27,7 +27,7 @@ namespace Squeal
     unsigned int          modes      = 10;   ///< largest number of modes with derivatives
     bool                  thresholds = true; ///< also compute derivatives of thresholds
     GeometrySensitivities geometry   = GeometrySensitivities::sizes;
-    double                tolerance  = 1e-4; ///< relative change of derivatives by the last extension of the basis [-]
+    double                tolerance  = 1e-4; ///< relative change of derivatives at which the basis is no longer extended [-]
 
     void declare(Declarations &declarations);
   };
@@ -37,8 +37,8 @@ namespace Squeal
   {
     double frequency_tolerance  = 1.;   ///< largest change of a frequency [%]
     double divergence_tolerance = 0.05; ///< largest change of a divergence rate [percentage points]
-    double trial_slope          = 0.;   ///< friction slope if the model has none [s/m]; 0: not tried
-    double trial_damping_ratio  = 0.;   ///< ζ of all modes if the model has no modal damping [-]; 0: not tried
+    double trial_slope          = 0.;   ///< friction slope to try if the model has none [s/m]; 0: not tried
+    double trial_damping_ratio  = 0.;   ///< ζ of all modes to try if the model has no modal damping [-]; 0: not tried
 
     void declare(Declarations &declarations);
 

@@ -41,8 +41,8 @@ namespace Squeal
    *
    *   gap + sliding taper · s_t + radial taper · s_r
    *
-   * with the distances s_t along t and s_r outwards from the centre of the face; s_r is along the axis if the travel is not, and along b if
-   * the disc does not turn about z.
+   * with the distances s_t along t and s_r outwards from the centre of the face; s_r is measured along the disc axis if the travel is not,
+   * and along b if the disc does not turn about z.
    */
   struct PinGap
   {
@@ -64,15 +64,15 @@ namespace Squeal
   {
     ContactState         state        = ContactState::equal_load;
     BackplateControl     control      = BackplateControl::load_per_side;
-    double               displacement = 0.; ///< of each backplate towards the disc [m]
+    double               displacement = 0.; ///< displacement of each backplate towards the disc [m]
     std::vector<PinLoad> pin_loads;         ///< pins with a load other than an equal share of their side
     std::vector<PinGap>  gaps;              ///< pins with an initial gap
 
-    std::vector<std::string> pressed_faces; ///< faces with the load per side, for pressure control
+    std::vector<std::string> pressed_faces; ///< faces to which pressure control applies the load per side
 
     void declare(Declarations &declarations);
 
-    /// Throws ParameterError for values without a steady sliding state.
+    /// Throws ParameterError for values that do not define a steady sliding state.
     void check_steady() const;
   };
 } // namespace Squeal

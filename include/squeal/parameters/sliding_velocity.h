@@ -22,13 +22,13 @@ namespace Squeal
     SlidingVelocity(Rotation rotation = Rotation::positive, const std::string &expressions = OperationParameters().sliding_direction);
     SlidingVelocity(const OperationParameters &operation);
 
-    /// v at a point [m]; components that are undefined there are not finite.
+    /// v at a point [m]; a component that is undefined there is not finite.
     Eigen::Vector3d operator()(const Eigen::Vector3d &position) const;
 
     /// |v| = w_0 / Ω at a point [m].
     double lever(const Eigen::Vector3d &position) const;
 
-    /// v as a rigid-body motion: displacement along and rotation about x, y, z; nothing if it is not one.
+    /// v as a rigid-body motion: displacement along and rotation about x, y, z; empty if v is not a rigid-body motion.
     std::optional<Eigen::Matrix<double, 6, 1>> rigid_motion() const;
 
     /// True if v = ±e_z × x.

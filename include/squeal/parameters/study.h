@@ -15,7 +15,7 @@ namespace Squeal
   /// Reason why a run does not use a parameter, for messages; null if it does.
   using Reason = const char *;
 
-  /// The general rules decide whether a study uses a parameter.
+  /// Reason that means: the general rules decide whether a study uses a parameter.
   inline constexpr Reason as_in_general = "";
 
   inline Reason unless(const bool is_used, const Reason reason)
@@ -23,7 +23,7 @@ namespace Squeal
     return is_used ? nullptr : reason;
   }
 
-  /// True if @p path, "Section/Name" or "Section/", is that of a parameter or of its section.
+  /// True if @p path, "Section/Name" or "Section/", names the parameter or its section.
   inline bool concerns(const std::string &path, const std::string &parameter)
   {
     return path.back() == '/' ? parameter.rfind(path, 0) == 0 : parameter == path;
@@ -40,7 +40,7 @@ namespace Squeal
   /// study.
   struct Study
   {
-    const char *name;            ///< in `set Study = ...`
+    const char *name;            ///< name in `set Study = ...`
     void (*run)(Scene &, Run &); ///< called with a meshed model
 
     /// Paths of parameters and sections used only by this study and by others that list them.

@@ -48,19 +48,19 @@ namespace Squeal
   struct SweepParameters
   {
     ValueRange          friction_coefficients = {0., 0.45, 90};
-    double              tolerance             = 1e-6; ///< for the estimated |δλ| / |λ| [-]
-    unsigned int        maximum_basis         = 1500; ///< vectors
-    double              threshold_tolerance   = 1e-6; ///< of the friction coefficient [-]
+    double              tolerance             = 1e-6; ///< limit of the estimated |δλ| / |λ| [-]
+    unsigned int        maximum_basis         = 1500; ///< maximum basis size [vectors]
+    double              threshold_tolerance   = 1e-6; ///< tolerance of thresholds in the friction coefficient [-]
     bool                compare_dissipation   = true; ///< repeat the sweep without radial dissipation
     std::vector<double> mode_shapes;                  ///< friction coefficients for output of the leading mode
     std::vector<double> planes;                       ///< friction coefficients for output of all modes; empty: mode_shapes
     std::vector<double> counts;                       ///< friction coefficients for mode counts by the argument principle
 
     MapParameter map_parameter             = MapParameter::none;
-    ValueRange   map_values                = {100., 10000., 11}; ///< [N] or [rad/s]
+    ValueRange   map_values                = {100., 10000., 11}; ///< values of the map parameter [N] or [rad/s]
     unsigned int map_friction_coefficients = 19;
 
-    std::string parameter, second_parameter; ///< of a system file: "name, first, last, number"; empty: mu, none
+    std::string parameter, second_parameter; ///< of a system file: "name, first, last, number"; empty: mu, and no second one
 
     /// Friction coefficients for the complex plane.
     const std::vector<double> &complex_plane() const
@@ -73,7 +73,7 @@ namespace Squeal
 
     void declare(Declarations &declarations);
 
-    /// The varied parameter of a system file, and the second one of a map; nothing if there is none.
+    /// The varied parameter of a system file, and the second parameter of a map; empty if there is none.
     NamedRange                varied_parameter() const;
     std::optional<NamedRange> second_varied_parameter() const;
 

@@ -19,8 +19,8 @@ namespace Squeal
   };
 
   /**
-   * Galerkin projection of the coupled system on a basis T, n × r (eqs. (12) and (13) of the paper). The terms A of the system, TᵀAT, or
-   * LᵀT and RᵀT for low rank, are projected once and reused for all values of their coefficients: friction, load and speed.
+   * Galerkin projection of the coupled system on a basis T, n × r (eqs. (12) and (13) of the paper). The terms A of the system are
+   * projected once, as TᵀAT, or as LᵀT and RᵀT for low rank, and reused for all values of their coefficients: friction, load and speed.
    *
    * extend() appends vectors to the basis and projects only these.
    */
@@ -33,7 +33,7 @@ namespace Squeal
     /// Appends the columns of @p vectors, n × k, to the basis.
     void extend(MultiVector vectors);
 
-    /// The matrices of the model on the basis TZ, Z: r × k; it has no basis of its own.
+    /// The matrices of the model on the basis TZ, Z: r × k; basis() is not available.
     ReducedModel restricted(const DenseMatrix &Z) const;
 
     /// r
@@ -42,7 +42,7 @@ namespace Squeal
       return mass_matrix.rows();
     }
 
-    /// T, n × r; not of a restricted model.
+    /// T, n × r; not available for a restricted model.
     const MultiVector &basis() const
     {
       return *T;
@@ -56,7 +56,7 @@ namespace Squeal
     /// Σ θ TᵀAT, grouped by powers of λ.
     ReducedPencil at(const ParameterValues &values) const;
 
-    /// The model as a system of r dofs with terms TᵀAT, and FᵀT of the factors of low-rank terms with weights; other low-rank terms are
+    /// The model as a system of r dofs with terms TᵀAT. Low-rank terms with weights keep their factors, as FᵀT; other low-rank terms are
     /// multiplied out.
     CoupledSystem system() const;
 
@@ -92,7 +92,7 @@ namespace Squeal
 
     const CoupledSystem                         *full;
     std::shared_ptr<MultiVector>                 T;        ///< null in a restricted model
-    std::vector<DenseMatrix>                     matrices; ///< TᵀAT of each term; empty for terms with weights
+    std::vector<DenseMatrix>                     matrices; ///< TᵀAT of each term; empty for low-rank terms with weights
     std::map<const LowRankFactor *, DenseMatrix> factors;
     DenseMatrix                                  mass_matrix, stiffness_matrix;
     mutable std::shared_ptr<const Modal>         modes; ///< null until requested
@@ -102,6 +102,6 @@ namespace Squeal
   {
     std::vector<double> squares; ///< ω² of (TᵀK_cT, TᵀM_cT), ascending
     DenseMatrix         vectors; ///< V, r × r, VᵀTᵀM_cTV = I
-    ReducedModel        model;   ///< on the basis T V
+    ReducedModel        model;   ///< the model on the basis T V
   };
 } // namespace Squeal

@@ -28,14 +28,14 @@ namespace Squeal
    * with short vectors y, z. The columns of W are A T for sparse terms θ A, with rows (θ λ^p − σ) φ_r of y, where σ A is the part of the
    * term in S; terms that cancel are omitted. Low-rank terms θ L diag(d) Rᵀ contribute their factors if the weights d are parameters or if
    * a factor has fewer columns than all its terms: L with rows θ λ^p diag(d) RᵀT φ_r of y, R with rows θ λ^p diag(d) LᵀT ψ_r of z;
-   * otherwise L RᵀT for y and R LᵀT for z. Residuals of reduced modes are orthogonal to T, so that their part along S T is known to cancel
-   * that of W y, and
+   * otherwise L RᵀT for y and R LᵀT for z. Residuals of reduced modes are orthogonal to T, so that S T φ_r cancels the component of W y
+   * along S T, and
    *
    *   Lᵀ S⁻¹ R = zᵀ (Wᵀ S⁻¹ W − Wᵀ T (TᵀST)⁻¹ TᵀW) y.
    *
-   * Terms with the same power of λ have the same rows up to their coefficients: at an operating point y = C c and z = D d, with
-   * combinations C, D of blocks that all modes share, and the bracket B is reduced to Dᵀ B C first, which costs no more than reading B. The
-   * remaining cancellation error is that of the bracket, about 10⁻¹⁵ of φᴴKφ: errors |δλ|/|λ| are reliable well below 10⁻¹².
+   * Terms with the same power of λ have the same rows up to their coefficients: at an operating point y = C c and z = D d, where C and D
+   * combine blocks in the same way for all modes. The bracket B is therefore reduced to Dᵀ B C first, which costs no more than reading B.
+   * The remaining cancellation error is that of the bracket, about 10⁻¹⁵ of φᴴKφ: errors |δλ|/|λ| are reliable well below 10⁻¹².
    */
   class ProjectedResiduals
   {
@@ -54,8 +54,8 @@ namespace Squeal
      *
      *   Lᵀ S⁻¹ R ≈ (VᵀL)ᵀ (VᵀR),   VᵀR = Z y,   Z = VᵀW − VᵀST (TᵀST)⁻¹ TᵀW.
      *
-     * Z has s rows in place of the columns of W, and a larger basis requires no further solves. As many independent vectors choose the
-     * principal_responses(). The standard deviation of a norm is 6 % of it, that of a product 9 % of the product of the norms. Call before
+     * Z has s rows in place of the columns of W, and a larger basis requires no further solves. principal_responses() uses another s
+     * independent vectors. The standard deviation of a norm is 6 % of it, that of a product 9 % of the product of the norms. Call before
      * extend().
      *
      * @return false if the library of the factor cannot draw V: products remain exact
@@ -88,19 +88,19 @@ namespace Squeal
     /**
      * S⁻¹ W C, n × p: components of right and left displacement residuals outside the basis, as principal axes in the norm of S; axes below
      * @p tolerance times the largest are dropped. Each mode, scaled to unit strain energy, is weighted by the error of its λ. The axes are
-     * computed from the small matrices, so that block solves are needed per axis, not per residual; the result may contain components in
-     * the span of the basis. Nothing if all residuals vanish; not available for a member of a family. Collective.
+     * computed from the small matrices, so that the number of solves equals the number of axes, not of residuals. The result may contain
+     * components in the span of the basis; it is empty if all residuals vanish. Not available for a member of a family. Collective.
      */
     std::optional<MultiVector> principal_responses(const ReducedModel &model, const std::vector<ModesAt> &modes, double tolerance) const;
 
   private:
-    /// Coefficients y, or z of the transposed problem, with zeros for columns that do not contribute; real and imaginary halves.
+    /// Coefficients y, or z of the transposed problem, with zeros for columns that do not contribute; real parts, then imaginary parts.
     DenseMatrix coefficients(const ParameterValues                   &values,
                              const std::vector<std::complex<double>> &lambda,
                              const ComplexDenseMatrix                &vectors,
                              bool                                     transposed) const;
 
-    /// Coefficients of right and left residuals side by side, each for a mode of unit strain energy, without zero columns.
+    /// Coefficients of right, then of left residuals, each for a mode of unit strain energy, without zero columns.
     DenseMatrix coordinates(const ModesAt &modes) const;
 
     /// Products of the factors with a block of vectors.
@@ -110,9 +110,9 @@ namespace Squeal
     struct Sparse
     {
       const Term              *term;
-      std::size_t              number;          ///< among the terms of the system
+      std::size_t              number;          ///< index among the terms of the system
       double                   sign;            ///< Aᵀ = sign A
-      double                   sigma;           ///< part of the term in S; for the difference between K_c and S, zero
+      double                   sigma;           ///< σ, the coefficient in S; zero for the difference between K_c and S
       DenseMatrix              projected;       ///< TᵀA T
       DenseMatrix              factor_products; ///< products of the factors with S⁻¹ A T
       std::vector<DenseMatrix> products;        ///< (A' T)ᵀ S⁻¹ A T with each sparse term A'
@@ -145,8 +145,8 @@ namespace Squeal
       {
         double               scale;
         int                  power;
-        const LowRankFactor *motions;  ///< F; null: none
-        const Term          *weighted; ///< null: none
+        const LowRankFactor *motions;  ///< F; null: no factor
+        const Term          *weighted; ///< term with the weights; null: no weights
       };
 
       std::vector<std::pair<const Block *, double>> blocks; ///< blocks and their factors
@@ -161,7 +161,7 @@ namespace Squeal
                                                const std::vector<std::complex<double>> &lambda,
                                                const ComplexDenseMatrix                &vectors) const;
 
-    /// Z y or Z z; real and imaginary halves.
+    /// Z y or Z z; real parts, then imaginary parts.
     DenseMatrix sketches(const ParameterValues                   &values,
                          const std::vector<std::complex<double>> &lambda,
                          const ComplexDenseMatrix                &vectors,
@@ -169,7 +169,7 @@ namespace Squeal
 
     int number_of(const LowRankFactor &factor) const;
 
-    /// True if W contains products of a factor with those of its terms instead of the factor.
+    /// True if W contains L RᵀT or R LᵀT of the terms of a factor instead of the factor itself.
     bool has_columns(const LowRankFactor &factor) const;
 
     void find_blocks() const;
@@ -186,10 +186,10 @@ namespace Squeal
     int                                          r = 0;       ///< size of the basis
     DenseMatrix                                  pencil;      ///< TᵀST
     mutable std::vector<Block>                   blocks;
-    mutable int                                  n_columns   = 0; ///< of W
+    mutable int                                  n_columns   = 0; ///< number of columns of W
     mutable bool                                 is_prepared = false;
-    mutable DenseMatrix                          bracket;         ///< none with a sketch
-    std::optional<MultiVector>                   sketch;          ///< V, n × 2 s: for products, and for principal_responses()
+    mutable DenseMatrix                          bracket;         ///< B; empty with a sketch
+    std::optional<MultiVector>                   sketch;          ///< V, n × 2 s: s columns for products, s for principal_responses()
     DenseMatrix                                  sketched_pencil; ///< VᵀS T
     mutable DenseMatrix                          Z;               ///< 2 s × n_columns
   };

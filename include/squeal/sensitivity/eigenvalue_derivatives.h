@@ -28,8 +28,8 @@ namespace Squeal
   Eigentriples on_bodies(const ContactOperators &contact, double friction_coefficient, const Eigentriples &coupled);
 
   /// Products of the terms of Q(λ; p) = Σ θ_k(p) λ^p_k A_k with right and left vectors, for derivatives with respect to all parameters. A
-  /// direction s is given by rates, a ParameterValues with dp/ds: one rate for a number, one for each entry of a list, such as the damping
-  /// coefficients of contact nodes.
+  /// direction s is given by rates dp/ds in a ParameterValues: one rate for a number, one for each entry of a list (for example, the
+  /// damping coefficients of contact nodes).
   class TermProducts
   {
   public:
@@ -49,7 +49,7 @@ namespace Squeal
     /// Products of one term.
     struct Product
     {
-      Term               term;        ///< without its matrices
+      Term               term;        ///< the term without its matrices
       ComplexDenseMatrix value;       ///< ψ_iᵀ A φ_j; empty for a term with weights
       ComplexDenseMatrix left, right; ///< Lᵀψ and Rᵀφ of a term with weights, m × k
     };
@@ -71,8 +71,9 @@ namespace Squeal
    *   dλ_i/dp = −N_ii / D_ii
    *
    * (P. Lancaster, *On eigenvalues of matrices dependent on a parameter*, Numerische Mathematik 6 (1964) 377–387). If a pair nearly
-   * coalesces, D_ii tends to zero, and neither eigenvalue has a derivative at the exceptional point. Their mean and the square of their
-   * difference do: on the span of the vectors the pencil is a matrix Λ, and Λ' = −D⁻¹ N in the basis of the φ.
+   * coalesces, D_ii tends to zero, and neither eigenvalue has a derivative at the exceptional point. Their mean and their squared
+   * difference are differentiable: on the span of the vectors, the pencil is represented by a matrix Λ, and Λ' = −D⁻¹ N in the basis of the
+   * φ.
    */
   std::complex<double> eigenvalue_derivative(const ComplexDenseMatrix &N, const ComplexDenseMatrix &D, int mode);
 
@@ -84,8 +85,8 @@ namespace Squeal
                                                      const ComplexDenseMatrix                &D,
                                                      const std::vector<std::complex<double>> &lambda);
 
-  /// Value at 0 of an even function, or of an even part, extrapolated from its values at h, 2h, 3h (means of both sides), and the
-  /// difference from the extrapolation by two values: an upper bound of the error unless the function has a singularity nearby.
+  /// Value at 0 of the even part of a function, extrapolated from its means at ±h, ±2h and ±3h. The error is the difference from the
+  /// extrapolation of two means, an upper bound unless the function has a singularity nearby.
   struct ValueAtCentre
   {
     std::complex<double> value;

@@ -10,13 +10,13 @@
 
 namespace Squeal
 {
-  /// Motion of the nodes of a mesh with a length or angle of the geometry; the topology is unchanged.
+  /// Motion of the nodes of a mesh when a length or angle of the geometry changes; the topology is unchanged.
   struct MeshMotion
   {
-    std::string              parameter; ///< "Geometry/Pin height"
+    std::string              parameter; ///< name, for example "Geometry/Pin height"
     std::string              pin;       ///< the only pin that moves; empty: all
     std::string              unit;
-    double                   value;         ///< of the parameter, in this unit
+    double                   value;         ///< value of the parameter in this unit
     std::vector<Mesh::Point> velocity;      ///< dx/dp of each node [m per unit]
     bool                     moves_contact; ///< contact nodes move in the plane of the disc
   };
@@ -33,10 +33,10 @@ namespace Squeal
    *   radius of a pin      ρ e_r(c)
    *   angle of a pin       ρ π/180 e_z × x
    *
-   * In the disc the last three vary linearly from the face of the pin to zero on the opposite face. The derivative of an eigenvalue of the
-   * continuum does not depend on the motion of interior nodes; that of a mesh depends on it by its discretisation error.
+   * In the disc, the last three motions vary linearly from the face of the pin to zero on the opposite face. The derivative of an
+   * eigenvalue of the continuum does not depend on the motion of interior nodes; that of a mesh depends on it by its discretisation error.
    *
-   * Empty if the mesh is not that of these parameters, or if pins touch each other or a rim.
+   * Empty if the mesh does not match these parameters, or if pins touch each other or a rim.
    */
   std::vector<MeshMotion> mesh_motions(const Mesh &mesh, const GeometryParameters &parameters);
 

@@ -36,9 +36,9 @@ namespace Squeal
    *
    *   φ_iᵀ C_m' φ_j = (φ_iᵀ K' φ_j − β_ij φ_iᵀ M' φ_j) g_ij + (d_i + d_j)/2 φ_iᵀ M' φ_j
    *
-   * Equal frequencies need no special treatment, because g is smooth; pairs of undamped modes vanish. Pairs of a damped mode and an
-   * unknown one beyond the computed modes are computed in a Krylov space of (K_c + s² M_c)⁻¹ M_c, from the components of the vectors
-   * outside the known modes.
+   * Equal frequencies need no special treatment, because g is smooth; pairs of undamped modes contribute nothing. Contributions of a damped
+   * mode and modes beyond the computed ones are found in a Krylov space of (K_c + s² M_c)⁻¹ M_c, started from the components of the vectors
+   * outside the computed modes.
    */
   class ModalDampingDerivatives
   {
@@ -47,7 +47,8 @@ namespace Squeal
      * @param undamped system with the modes Φ: its stiffness, mass and kernel. Must outlive this object, as must inverse and modes
      * @param inverse  (K_c + s² M_c)⁻¹
      * @param modes    all modes in the band and its margin
-     * @param n_damped number of damped modes, the lowest ones. Throws SolverError if the next mode has an equal frequency
+     * @param n_damped number of damped modes, the lowest ones. Throws SolverError if the next mode has the same frequency as the last
+     *                 damped one
      */
     ModalDampingDerivatives(const CoupledSystem     &undamped,
                             const LinearOperator    &inverse,
@@ -70,9 +71,9 @@ namespace Squeal
     const SymmetricModes   &modes;
     const DampingParameters damping;
     const int               n_damped;
-    std::vector<double>     d;              ///< of each known mode [rad/s]; zero if undamped
+    std::vector<double>     d;              ///< d_j of each computed mode [rad/s]; zero if undamped
     MultiVector             M_modes, apart; ///< M_c Φ, and T_c Φ on the dofs of the bodies
-    DenseMatrix             g;              ///< g_ij of known modes [s/rad]
+    DenseMatrix             g;              ///< g_ij of computed modes [s/rad]
 
     mutable std::map<std::shared_ptr<const SparseMatrix>, DenseMatrix> forms; ///< Φᵀ X Φ, computed on demand
   };

@@ -35,26 +35,26 @@ namespace Squeal
   struct ShapePoints
   {
     DenseMatrix                         positions;     ///< x, y and z [m], n_points × 3, the same on every process
-    std::shared_ptr<const SparseMatrix> displacements; ///< from the dofs: 3 n_points × n, rows x, y and z of each point in turn
+    std::shared_ptr<const SparseMatrix> displacements; ///< from dofs to displacements, 3 n_points × n: rows x, y, z of each point in turn
 
-    /// Distribution with the three rows of each point on one process.
+    /// Distribution that keeps the three rows of each point on one process.
     static RowMap rows_of(int n_points, MPI_Comm communicator);
   };
 
   /// Q(λ; p) = Σ_k θ_k(p) λ^(p_k) A_k in a folder: `system.json` with parameters and terms, and a Matrix Market file for each matrix.
   struct SystemFile
   {
-    std::string                path; ///< of system.json
+    std::string                path; ///< path of system.json
     std::string                description;
     std::vector<FileParameter> parameters;
 
     /// Symmetric, skew or low-rank; an unsymmetric matrix is split into its symmetric and its skew part.
     std::vector<Term>          terms;
-    ParameterValues            weights; ///< of low-rank terms
+    ParameterValues            weights; ///< weights of low-rank terms
     std::vector<DofGroup>      groups;
     std::optional<ShapePoints> points;
-    std::string                measured_modes; ///< CSV file for a fit; empty: none
-    RowMap                     map;            ///< of the dofs
+    std::string                measured_modes; ///< CSV file of measured modes for a fit; empty: none
+    RowMap                     map;            ///< distribution of the dofs
 
     const FileParameter *find(const std::string &parameter) const;
 
@@ -78,10 +78,10 @@ namespace Squeal
   /// Writes a file of the folder: name and content.
   using WriteFile = std::function<void(const std::string &name, const std::function<void(std::ostream &)> &content)>;
 
-  /// Data of a reduced model: its basis, n × r, the tolerance of its estimated errors, and a table of them.
+  /// Files of a reduced model: its basis, n × r, and a table of estimated errors at points, with their tolerance.
   struct Reduction
   {
-    std::string basis, points; ///< files
+    std::string basis, points; ///< file names
     double      tolerance;
   };
 

@@ -73,7 +73,7 @@ namespace Squeal
     virtual std::string text() const = 0;
   };
 
-  /// θ(p) of a term: a monomial of named parameters such as −μ ρ, another function of them, or a product of such.
+  /// θ(p) of a term: a monomial of named parameters such as −μ ρ, another function of them, or a product of both.
   class Coefficient
   {
   public:
@@ -112,15 +112,15 @@ namespace Squeal
     skew ///< Aᵀ = −A
   };
 
-  /// A term of Q(λ; p) = Σ_k θ_k(p) λ^(p_k) A_k, with a coefficient θ_k that depends on named parameters p. A_k is sparse, or has low rank,
-  /// L diag(d) Rᵀ, with d a list parameter.
+  /// A term of Q(λ; p) = Σ_k θ_k(p) λ^(p_k) A_k, with a coefficient θ_k that depends on named parameters p. A_k is a sparse matrix or the
+  /// low-rank matrix L diag(d) Rᵀ, where d is a list parameter.
   struct Term
   {
-    std::string                          name;      ///< for messages
+    std::string                          name;      ///< name for messages
     int                                  power = 0; ///< p_k: 0, 1 or 2
     Coefficient                          coefficient;
     std::shared_ptr<const SparseMatrix>  matrix;                         ///< A, n × n; null if A has low rank
-    Symmetry                             symmetry = Symmetry::symmetric; ///< of the matrix
+    Symmetry                             symmetry = Symmetry::symmetric; ///< symmetry of the matrix
     std::shared_ptr<const LowRankFactor> left = {}, right = {};          ///< L and R, n × m
     std::string                          weights = {};                   ///< list parameter with d; empty: ones
     TermKind                             kind    = TermKind::body;
@@ -174,7 +174,7 @@ namespace Squeal
                      std::string                          weights = "",
                      TermKind                             kind    = TermKind::body);
 
-  /// Symmetric and skew part of the matrix of a term, as terms with its coefficient. A part that is a rounding error of the other one is
+  /// Symmetric and skew part of the matrix of a term, as terms with its coefficient. A part within the rounding errors of the other part is
   /// dropped.
   std::vector<Term> split_by_symmetry(const Term &term);
 
@@ -206,18 +206,18 @@ namespace Squeal
   /// form.
   SecondOrderSystem sparse_matrices(const std::vector<Term> &terms, const ParameterValues &values);
 
-  /// Σ ‖θ A‖_∞ ≥ ‖Σ θ A‖_∞ over the terms with a power of λ, all of which must have a sparse form.
+  /// Σ ‖θ A‖_∞ ≥ ‖Σ θ A‖_∞ over the terms with a power of λ; all these terms must have a sparse form.
   double norm_bound(const std::vector<Term> &terms, const ParameterValues &values, int power);
 
-  /// The same sum at these values with as few terms as possible: one sparse term for each power and symmetry, with a coefficient of one,
+  /// The same Q at these values with as few terms as possible: one sparse term for each power and symmetry, with a coefficient of one,
   /// without zero terms. Low-rank terms are not allowed.
   std::vector<Term> merged(const std::vector<Term> &terms, const ParameterValues &values);
 
   /// Common terms of several systems, the members of a family, which differ only in coefficients.
   struct TermFamily
   {
-    std::vector<Term>            terms;   ///< with coefficients of one, or a scale if members differ
-    ParameterValues              values;  ///< of the scales in the middle of the family: ones
+    std::vector<Term>            terms;   ///< terms with coefficient one, or with a scale parameter if members differ
+    ParameterValues              values;  ///< scales of the averaged system: ones
     std::vector<ParameterValues> members; ///< values of the scales for each member
   };
 

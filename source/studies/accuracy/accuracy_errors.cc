@@ -22,7 +22,7 @@ namespace Squeal
 
     ConvergedMode converged(const int                              number,
                             const std::vector<const SolvedMesh *> &members,
-                            const std::vector<ModePairing>        &pairings) // of every member except the last, with the last
+                            const std::vector<ModePairing>        &pairings) // each member but the last, paired with the last
     {
       const SolvedMesh   &finest = *members.back();
       ConvergedMode       mode{finest.labels[number], false, {}, {}, {}};
@@ -120,7 +120,7 @@ namespace Squeal
       return result;
     }
 
-    /// Marks the Pareto-optimal methods in CPU time and error, ignoring lost modes.
+    /// Marks the Pareto-optimal methods with respect to CPU time and error, ignoring lost modes.
     void mark_front(std::vector<ComparedMethod> &methods)
     {
       const auto beats = [](const ComparedMethod &a, const ComparedMethod &b) {

@@ -17,7 +17,7 @@ namespace Squeal
   {
     constexpr const char *full_order = "full order";
 
-    /// Starts measuring the additional memory of all processes, without that left by other meshes [byte].
+    /// Starts measuring the memory used by all processes for one mesh, without memory retained from other meshes [byte].
     std::function<double()> memory_meter(const MPI_Comm communicator, const double resident_before)
     {
       const bool   has_peak       = reset_peak_memory();
@@ -39,14 +39,14 @@ namespace Squeal
       return errors;
     }
 
-    /// Cost of the frictionless modes without factorisation and real modes, which are charged to bases individually.
+    /// Cost of the frictionless modes without factorisation and real modes, which are charged to each basis separately.
     Cost before_modes(const Cost &frictionless, const FrictionlessModes &modes)
     {
       return {frictionless.seconds - modes.factorisation.seconds - modes.solution.seconds,
               frictionless.cpu_seconds - modes.factorisation.cpu_seconds - modes.solution.cpu_seconds, frictionless.peak_memory};
     }
 
-    /// @p before: cost shared by all bases.
+    /// @p before: cost of the steps shared by all bases.
     ModesByMethod reduced(const BasisRecipe             &recipe,
                           ReductionSets                 &sets,
                           const ComplexModes            &full,
@@ -101,7 +101,7 @@ namespace Squeal
       result.geometry.outlines                = mesh.outlines;
       result.discretization.element           = mesh.element;
       result.discretization.maximum_frequency = (1. + result.accuracy.margin) * result.discretization.maximum_frequency;
-      result.reduction                        = {}; // section of another study
+      result.reduction                        = {}; // clears the parameters of the study of reduced bases
       result.reduction.problem                = ReductionProblem::friction;
       result.reduction.bases                  = result.accuracy.bases;
       result.reduction.grown_tolerances       = {result.accuracy.grown_tolerance};
@@ -181,7 +181,7 @@ namespace Squeal
           {
             leave_out(error.reason);
           }
-        catch (const std::runtime_error &error) // on another process
+        catch (const std::runtime_error &error) // thrown for an error on another process
           {
             leave_out(error.what());
           }

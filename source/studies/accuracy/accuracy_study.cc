@@ -69,7 +69,7 @@ namespace Squeal
       const ModeErrors     *mode;
     };
 
-    /// Empty if a mode has no counterpart.
+    /// A value of the counterpart of a mode; empty if there is none.
     template <typename Function>
     auto if_found(const Function &value)
     {
@@ -81,7 +81,7 @@ namespace Squeal
       return row.mode->number < 0 ? "none" : row.mode->in_cluster ? "in a cluster" : "by shape";
     }
 
-    /// Every mesh, element and method with its size, cost and largest errors.
+    /// One row for each mesh, element and method: size, cost and largest errors.
     Table accuracy_table(const std::vector<ComparedMethod> &methods)
     {
       using Row                 = ComparedMethod;
@@ -120,7 +120,7 @@ namespace Squeal
         front);
     }
 
-    /// Every mode for every mesh and method, with the reference.
+    /// One row for each mode, mesh and method, with the reference.
     Table accuracy_mode_table(const std::vector<ComparedMethod> &methods)
     {
       std::vector<ModeRow> rows;
@@ -156,7 +156,7 @@ namespace Squeal
       {
         const ConvergedFamily *family;
         const ConvergedMode   *mode;
-        const ConvergedMode   *counterpart; ///< in the reference; null if there is none
+        const ConvergedMode   *counterpart; ///< counterpart in the reference; null if there is none
       };
       std::vector<Row> rows;
       for (const ConvergedFamily &family : families)
@@ -169,7 +169,7 @@ namespace Squeal
                 rows.push_back({&family, &family.modes[j], partner >= 0 ? &reference.modes[partner] : nullptr});
               }
         }
-      // For sequences of three or more meshes; empty if no order was observed
+      // Order of sequences of three or more meshes; empty if none was observed
       const auto order = [](const std::optional<Extrapolation> &sequence) {
         return sequence && !sequence->observed_orders.empty() ? Entry(sequence->observed_orders.back()) : Entry();
       };
@@ -202,7 +202,7 @@ namespace Squeal
                    rows);
     }
 
-    /// Meshes and elements without a solution: element, outlines, mesh factor, reason.
+    /// Meshes and elements that were not solved: element, outlines, mesh factor, reason.
     Table left_out_table(const std::vector<LeftOut> &meshes)
     {
       return Table(mesh_columns<LeftOut>([](const LeftOut &row) -> const MeshAndElement & { return row.mesh; }) +
@@ -244,8 +244,8 @@ namespace Squeal
     }
   } // namespace
 
-  /// `Study = accuracy`: the model on coarser and finer meshes, with every element, at full order and with reduced bases; errors of every
-  /// mode relative to the extrapolated modes of the best family, with their contributions, and costs.
+  /// `Study = accuracy`: solves the model on coarser and finer meshes, with every element, at full order and with reduced bases. Reports
+  /// the errors of every mode relative to the extrapolated modes of the best family, with their contributions, and the costs.
   static void run_accuracy_study(Scene &, Run &run)
   {
     const double       maximum_frequency = run.parameters.discretization.maximum_frequency;

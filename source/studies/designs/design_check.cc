@@ -13,7 +13,7 @@ namespace Squeal
   {
     using dealii::Utilities::split_string_list;
 
-    /// Parameters of the solution method, not of the designs.
+    /// Parameters of the solution method, which define no designs.
     constexpr const char *of_the_solution[] = {"Study",
                                                "Designs/",
                                                "Search/",
@@ -27,7 +27,8 @@ namespace Squeal
                                                "Geometry/Meshing time limit",
                                                "Geometry/Meshing memory limit"};
 
-    /// Reason why a parameter has no effect on a design; empty if it has. @p as_written: the design without the changes by Accuracy.
+    /// Reason why a parameter has no effect on a design; empty if it has an effect. @p as_written: the design without the changes by
+    /// Accuracy.
     std::string why_unused(const std::string &name, const Parameters &design, const Parameters &as_written)
     {
       const std::string path = dealii::Utilities::trim(name.substr(0, name.find('[')));
@@ -43,11 +44,11 @@ namespace Squeal
         }
       catch (const MeshError &)
         {
-          return ""; // the geometry does not exist, which is reported for the design
+          return ""; // the error is reported when the design is solved
         }
     }
 
-    /// The same for a variable: reason if none of its parameters is used.
+    /// Reason why a variable has no effect: that of its first parameter if none is used; empty otherwise.
     std::string why_all_unused(const std::string &variable, const Parameters &design, const Parameters &as_written)
     {
       std::string reason;
@@ -80,7 +81,7 @@ namespace Squeal
                            "remove it, or change the parameters on which its effect depends");
     }
 
-    /// True if designs that differ in some of the variables have equal values of the others.
+    /// True if two designs differ only in the unused variables.
     bool are_equal_but_for(const std::vector<UnusedParameter> &unused, const DesignPlan &plan)
     {
       std::map<std::vector<std::string>, std::vector<std::string>> seen;
@@ -95,7 +96,7 @@ namespace Squeal
       return false;
     }
 
-    /// Reason why a design is rejected; nothing if it is not.
+    /// Reason why a design is rejected; empty if it is accepted.
     std::optional<ParameterError> refusal(const Parameters               &parameters,
                                           const std::vector<std::string> &names,
                                           const std::vector<std::string> &values)
@@ -103,7 +104,7 @@ namespace Squeal
       try
         {
           Parameters design          = with_design(parameters, names, values);
-          design.study               = &sweep_study; // its check does not call this function
+          design.study               = &sweep_study; // avoids recursion: the check of sweeps does not check designs
           design.sweep.map_parameter = MapParameter::none;
           design.check();
           return {};
@@ -160,7 +161,7 @@ namespace Squeal
               }
             catch (const ParameterError &)
               {
-                return false; // reported in the row of the design
+                return false; // the error is reported in the row of the design
               }
           });
         if (!is_used && !reason.empty())

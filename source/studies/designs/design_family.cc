@@ -29,7 +29,7 @@ namespace Squeal
       }
     plan = std::make_unique<SweepPlan>(sweep_plan(scene, lines, run));
 
-    // Which kinds of damping the contact has is the same for all designs
+    // All designs of a family have the same kinds of contact damping
     ContactRegime        &regime = plan->regimes.front();
     const OperatingPoint &most   = most_damped(regime);
     SystemFamily          family =
@@ -40,9 +40,9 @@ namespace Squeal
       plan->lines[d].values = family.terms.members[d];
     model = std::make_unique<SweepModel>(*plan, regime, run, std::move(family.middle));
     model->reduced->estimate_without_cancellation();
-    model->sharpens_thresholds = false; // every design would add its vectors
+    model->sharpens_thresholds = false; // otherwise the basis would grow with every design
 
-    // Compressed where friction changes the modes most
+    // Train the basis at the largest friction coefficients, where friction changes the modes most
     std::vector<OperatingPoint> ends;
     for (std::size_t d = 0; d < designs.size(); ++d)
       ends.push_back(points_of(d).back());
@@ -82,7 +82,7 @@ namespace Squeal
   DesignFamily::Member DesignFamily::solve(const std::size_t design)
   {
     const std::vector<OperatingPoint> points = points_of(design);
-    model->known.clear(); // the vectors of all designs may exceed the memory
+    model->known.clear(); // free memory: the vectors of all designs may exceed it
     solve(points, {});
 
     run.progress.begin("Mode count");

@@ -18,7 +18,7 @@ namespace Squeal
   namespace
   {
     constexpr const char *key_file = "study.key";
-    constexpr const char *title    = "squeal designs 4\n"; ///< with the version of the format
+    constexpr const char *title    = "squeal designs 4\n"; ///< includes the version of the format
 
     std::string content(const fs::path &file)
     {
@@ -53,8 +53,8 @@ namespace Squeal
     /// Designs solved by one process, one after the other.
     struct Worker
     {
-      std::vector<int>               designs; ///< all designs
-      std::vector<int>               left;    ///< designs without a result so far
+      std::vector<int>               designs; ///< all designs of this worker
+      std::vector<int>               left;    ///< designs that have no result yet
       std::unique_ptr<WorkerProcess> process;
       Stopwatch                      stopwatch;
     };
@@ -70,7 +70,7 @@ namespace Squeal
 
   std::string checkpoint_folder(const std::string &output)
   {
-    // A trailing slash belongs to the folder name, not to a file in it
+    // Remove a trailing slash, so that the checkpoint is next to the folder, not in it
     return (fs::path(output) / "").lexically_normal().parent_path().string() + ".checkpoint";
   }
 
@@ -172,7 +172,7 @@ namespace Squeal
       };
       worker.left.erase(std::remove_if(worker.left.begin(), worker.left.end(), is_found), worker.left.end());
     };
-    /// If a process ends early, its next design has failed
+    /// If a process ends early, mark the next design in its list as failed
     const auto blame_next = [&](Worker &worker, const std::string &end) {
       DesignResult result = unfinished(worker.left.front());
       result.reason       = "its process was " + end;

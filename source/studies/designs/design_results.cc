@@ -22,14 +22,14 @@ namespace Squeal
       return overlap ? Entry(std::round(1e6 * *overlap) / 1e6) : Entry();
     }
 
-    /// A value of solved designs only.
+    /// A value that only solved designs have.
     template <typename Value>
     std::function<Entry(const DesignResult &)> of_solved(Value value)
     {
       return [value](const DesignResult &row) { return row.outcome == DesignOutcome::solved ? Entry(std::invoke(value, row)) : Entry(); };
     }
 
-    /// A value at one of the friction coefficients, if the design has it.
+    /// A value at one of the friction coefficients; empty if the design has no such value.
     template <typename Value>
     std::function<Entry(const DesignResult &)> at(boost::optional<DesignGrowth> DesignResult::*growth,
                                                   Value DesignGrowth::*value,

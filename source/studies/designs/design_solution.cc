@@ -37,13 +37,13 @@ namespace Squeal
     {
       const std::vector<Branch>      &branches = chart.chart.branches;
       std::vector<ReferenceName>      result(branches.size());
-      std::map<int, std::vector<int>> branches_from; // by their first points
+      std::map<int, std::vector<int>> branches_from; // branches by the index of their first point
       for (std::size_t b = 0; b < branches.size(); ++b)
         branches_from[branches[b].begin()].push_back(static_cast<int>(b));
       const Linearisation &linearisation = model.frictionless.linearisation;
       for (const auto &[i, members] : branches_from)
         {
-          // All modes of the point: they determine which part of a mode belongs to others
+          // Compare all modes of the point: names are assigned to modes jointly
           const ChartPoint &point = chart.chart.points[i];
           ComplexModes      modes;
           std::vector<int>  all(point.lambda.size());
@@ -74,8 +74,8 @@ namespace Squeal
       return name.in_cluster || name.name.empty() ? boost::optional<double>() : name.overlap;
     }
 
-    /// Adds the results of a chart to its design. There are several charts, over parts of the friction coefficients, if the contact set
-    /// changes.
+    /// Adds the results of a chart to its design. There are several charts, each for a part of the friction coefficients, if the contact
+    /// set changes.
     void take_over(SweepModel           &model,
                    const SweepChart     &sweep,
                    const ReferenceModes &reference,
@@ -120,7 +120,7 @@ namespace Squeal
                 mode.verdict                   = to_string(point.verdicts[j]);
                 mode.largest_divergence_rate   = std::max(mode.largest_divergence_rate, quantities.divergence_rate);
                 grows                          = grows || point.verdicts[j] == Verdict::unstable;
-                // Refinement points are at coalescences, where errors of λ are large and not representative
+                // Skip refinement points: they lie near coalescences, where errors of λ are large and not representative
                 if (!chart.is_refinement[i])
                   {
                     result.largest_error    = std::max(result.largest_error, point.errors[j]);
@@ -149,13 +149,14 @@ namespace Squeal
       result.n_undecided           = model.n_of(last, Verdict::undecided);
     }
 
-    /// Compares the modes in the band at the first friction coefficient with the real ones counted by inertia, including rigid-body modes.
+    /// Compares the number of modes in the band at the first friction coefficient with the number of real modes counted by inertia,
+    /// including rigid-body modes.
     void compare_counts(const SweepModel &model, const SweepChart &sweep, const int n_counted, DesignResult &result)
     {
       const ChartCount &first = sweep.chart.counts.front();
       result.n_modes          = first.n_modes + first.n_overdamped;
       result.n_counted        = n_counted - model.frictionless.real.n_rigid_body;
-      // Damping and friction move modes across the end of the band
+      // Compare only without damping and friction, which move modes across the end of the band
       if (first.friction_coefficient == 0. && !model.frictionless.linearisation.coupled.has_damping())
         result.is_complete = result.is_complete && result.n_modes == result.n_counted;
     }
@@ -179,7 +180,7 @@ namespace Squeal
   {
     const Linearisation &linearisation = modes.linearisation;
     const Model         &model         = *linearisation.scene->model;
-    constexpr int        of_rule       = 0; // points at the centres of cells
+    constexpr int        of_rule       = 0; // this rule has points at the centres of cells
     ReferenceModes       result{body_frames(model), common_points(model, materials, of_rule), {}, {}, {}};
     const auto           E = displacements_at(result.points, model, Directions::cylindrical);
     result.shapes          = gather(*E * (*linearisation.coupled.kernel * *modes.real.vectors));
@@ -245,7 +246,7 @@ namespace Squeal
 
     const SweepPlan                      plan = sweep_plan(scene, part);
     std::vector<std::vector<SweepChart>> charts(plan.lines.size());
-    double                               largest_friction_coefficient = 0.; // over all charts so far
+    double                               largest_friction_coefficient = 0.; // maximum over all charts so far
     DesignResult                         result                       = begun_result(scene);
     for (const ContactRegime &regime : plan.regimes)
       {

@@ -74,7 +74,7 @@ namespace Squeal
         }
       catch (const FileError &)
         {
-          throw; // not caused by the design
+          throw; // the design is not the cause
         }
       catch (const Error &error)
         {
@@ -148,16 +148,16 @@ namespace Squeal
     }
   } // namespace
 
-  /// `Study = geometry`: sweeps of many designs, each remeshed, with their thresholds; modes are labelled by the most similar modes of the
-  /// given model. Each design is solved in a worker process, which runs this study for one design; designs on a common mesh are solved
-  /// together in one worker process.
+  /// `Study = geometry`: sweeps of many designs, each remeshed, with their thresholds. Modes are labelled by the most similar modes of the
+  /// given model. Each design is solved in a worker process, which runs this study for that design; designs on a common mesh share a worker
+  /// process.
   static void run_design_study(Scene &scene, Run &run)
   {
     const DesignWork           work = work_of(run);
     std::vector<DesignResult>  results;
     std::optional<DesignStore> store;
-    const fs::path             above = fs::path(run.folder().name()).parent_path();
-    const bool is_part = fs::exists(above / DesignStore::reference_file); // of a study that has stored its reference modes there
+    const fs::path             above   = fs::path(run.folder().name()).parent_path();
+    const bool                 is_part = fs::exists(above / DesignStore::reference_file); // the study has stored its reference modes there
     if (is_part)
       {
         solve_part(run, work, design_reference(scene, run, above / DesignStore::reference_file), DesignStore(above));
@@ -192,7 +192,7 @@ namespace Squeal
     });
   }
 
-  /// For a system file: its modes at lists of parameter values, by one reduced model.
+  /// `Study = geometry` for a system file: modes at lists of parameter values, by one reduced model.
   static void run_designs_of_system(Run &run)
   {
     SystemFile       file = read_system(run);

@@ -25,10 +25,10 @@ namespace Squeal
     /// Relative extension of the reference modes beyond the band, so that modes of stiffer and softer designs find counterparts [-].
     constexpr double reference_margin = 0.2;
 
-    /// Typical number of vectors in the basis of a family of designs.
+    /// Typical number of basis vectors of a family of designs.
     constexpr double usual_family_basis = 500.;
 
-    /// Values of the variables in a design, or of the given model if the design does not set them.
+    /// Values of the variables in a design; a variable that it does not set has the value of the given model.
     std::vector<std::string> shown_values(const Parameters &parameters, const DesignPlan &plan, const std::vector<std::string> &values)
     {
       std::vector<std::string> result = values;
@@ -38,7 +38,7 @@ namespace Squeal
       return result;
     }
 
-    /// Number of designs solved concurrently per MPI process, limited by cores and by memory.
+    /// Number of designs that each MPI process solves concurrently, limited by cores and memory.
     unsigned int n_side_by_side(const Scene &scene, const Run &run, const bool has_families)
     {
       if (run.parameters.designs.n_processes > 0)
@@ -53,14 +53,15 @@ namespace Squeal
       return static_cast<unsigned int>(std::max(1., std::floor(std::min(by_cores, by_memory))));
     }
 
-    /// Smaller families are solved individually: sharing costs more than it saves.
+    /// Minimum number of designs in a family; sharing costs more than it saves in smaller families, which are solved individually.
     constexpr std::size_t least_family = 4;
 
-    /// Largest number of designs solved by one process in turn; independent of the number of processes, as results must be.
+    /// Maximum number of designs that a process solves in turn. Independent of the number of processes, because results must not depend on
+    /// it.
     constexpr std::size_t largest_batch = 25;
 
-    /// Assigns designs to worker processes: those on a common mesh in turn, in parts of nearly equal size; the others individually.
-    /// Rejected designs need no process.
+    /// Assigns designs to worker processes: designs on a common mesh are solved in turn, in parts of nearly equal size; other designs
+    /// individually. Rejected designs need no process.
     std::vector<std::vector<int>> batches_of(const Run &run, const DesignWork &work)
     {
       std::map<std::string, std::vector<int>> families;
@@ -163,7 +164,7 @@ namespace Squeal
     run.progress.begin("Reference modes");
     Progress   silent;
     Parameters parameters             = run.parameters;
-    parameters.solvers.complex_solver = ComplexSolver::residual_iteration; // which needs no attachment modes in advance
+    parameters.solvers.complex_solver = ComplexSolver::residual_iteration; // this solver needs no attachment modes in advance
     Run                     part(parameters, run, silent);
     const FrictionlessModes modes  = frictionless_modes(linearised_scene(scene, part), part, reference_margin);
     ReferenceModes          result = reference_modes(modes, run.parameters.materials);
@@ -198,7 +199,7 @@ namespace Squeal
           mine.push_back(batches[i]);
           n_mine += std::count_if(batches[i].begin(), batches[i].end(), [&](const int design) { return !store.find(design); });
         }
-    std::vector<DesignResult> refused; // rejected parameters
+    std::vector<DesignResult> refused; // designs with rejected parameters
     if (run.is_root)
       for (const int design : work.designs)
         if (DesignResult result = unfinished(run, work.plan, design);
@@ -254,7 +255,7 @@ namespace Squeal
   void write_parameter_file(Parameters design, const std::string &name, const Run &run)
   {
     const GeometryCopy copy = copy_of(design.geometry.path());
-    // Relative to the file; a geometry that was not copied is found by its name from anywhere
+    // Write the path of a copied geometry relative to the file; a geometry that was not copied is found by its name
     const bool is_below  = name.find('/') != std::string::npos;
     design.geometry.file = (is_below && !copy.files.empty() ? "../" : "") + copy.name;
     design.designs       = {};

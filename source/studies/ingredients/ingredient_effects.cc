@@ -9,11 +9,11 @@ namespace Squeal
 {
   namespace
   {
-    /// |λ_1 − λ_2| / |λ_1| up to which modes with the same label may be counterparts, whatever their shapes [-].
+    /// |λ_1 − λ_2| / |λ_1| up to which modes with the same label may be counterparts regardless of their shapes [-].
     constexpr double same_name_within = 0.1;
 
-    /// Pairs modes with the same label that have no counterpart by shape, closest λ first: members of a doublet or of equal pins, which a
-    /// change may mix until one shape represents both.
+    /// Pairs modes that have the same label but no counterpart by shape, closest λ first. These are modes of a doublet or of equal pins,
+    /// whose shapes a change may mix.
     void pair_by_name(std::vector<PairedMode> &pairs, const FrictionModes &first, const FrictionModes &second)
     {
       std::vector<int>  left_1, left_2;
@@ -29,7 +29,7 @@ namespace Squeal
       if (left_1.empty() || left_2.empty())
         return;
 
-      // At least as many columns as rows; additional columns have no gain
+      // Add columns without gain if there are fewer columns than rows
       const std::size_t n_columns = std::max(left_1.size(), left_2.size());
       const auto        gain      = [&](const int row, const int column) {
         if (column >= static_cast<int>(left_2.size()))
@@ -60,10 +60,10 @@ namespace Squeal
       return result;
     }
 
-    /// Largest effect that meets the accuracy.
+    /// Largest relative effect that meets the accuracy.
     constexpr double allowed = 1.;
 
-    /// The next change after @p number of the same ingredient that meets the accuracy with a smaller effect.
+    /// The next change of the same ingredient after @p number that meets the accuracy and has a smaller effect.
     std::optional<int> next_of_ingredient(const std::vector<CheaperChange> &changes, const int number)
     {
       const double bound = std::min(allowed, changes[number].severity);

@@ -6,9 +6,9 @@ namespace Squeal
 {
   namespace
   {
-    /// Real modes of a basis with upper modes extend to (1 + this) times the end of the band.
+    /// Factor of the end of the band, in addition to one, up to which a basis with upper modes has real modes.
     constexpr double upper_modes = 0.5;
-    /// End of the narrower band, as a fraction of the given one.
+    /// End of the narrower band, as a fraction of the band in the parameters.
     constexpr double shorter_band = 0.5;
 
     // Names of values ------------------------------------------------------------
@@ -44,7 +44,8 @@ namespace Squeal
 
     using P = const Parameters &;
 
-    /// Option @p value of the parameter found by @p member. Present if the parameter has this value, unless @p is_present says otherwise.
+    /// Ingredient that sets the parameter found by @p member to @p value. It is present if the parameter has this value, unless @p
+    /// is_present says otherwise.
     template <typename Member, typename Value>
     Ingredient option(const char                                    *name,
                       const Member                                  &member,
@@ -70,7 +71,7 @@ namespace Squeal
               obstacle};
     }
 
-    /// Complex modes from a reduced basis instead of full order.
+    /// Ingredient that computes complex modes from a reduced basis instead of at full order.
     Ingredient from_basis(const std::function<std::string(const Parameters &)> &tried, const char *basis, const double margin = 0.)
     {
       return {"complex modes",

@@ -12,7 +12,7 @@ namespace Squeal
 {
   namespace
   {
-    /// A column with values only if the change was made.
+    /// A column that is empty for changes that could not be made.
     template <typename Value>
     Column<IngredientResult> where_made(const std::string &name, const std::string &unit, const Value &value, const int digits = 3)
     {
@@ -51,8 +51,8 @@ namespace Squeal
               }};
     }
 
-    /// One row for each change: the change, its largest effects, the verdict, its cost relative to the reference; fewer columns for the
-    /// screen.
+    /// One row for each change: the change, its largest effects, the verdict, and its cost relative to the reference; the screen shows
+    /// fewer columns.
     Table ingredient_table(const std::vector<IngredientResult> &results, const ReferenceModel &reference, const bool is_short)
     {
       using Row            = IngredientResult;
@@ -94,7 +94,7 @@ namespace Squeal
       return Table(columns, results);
     }
 
-    /// Every mode of every variant with its counterpart in the reference.
+    /// One row for each mode of each variant, with its counterpart in the reference.
     Table ingredient_mode_table(const std::vector<IngredientResult> &results)
     {
       std::vector<IngredientMode> rows;
@@ -142,7 +142,7 @@ namespace Squeal
       return verdict(model.friction, model.parameters.discretization.maximum_frequency);
     }
 
-    /// Solves a variant and compares it, as a step of the run; an error becomes an obstacle.
+    /// Solves a variant and compares it with the reference, as a step of the run; an error becomes an obstacle.
     void measure(IngredientResult &result, const ReferenceModel &reference, const Variation &variation, Run &run)
     {
       run.progress.begin(result.name + ": " + result.tried);
@@ -155,7 +155,7 @@ namespace Squeal
           result.n_dofs             = variant.scene->model->free_map().n();
           result.answer             = answer_of(variant);
         }
-      // An impossible model is also a result
+      // Report an impossible model as a result
       catch (const Error &error)
         {
           result.obstacle = error.reason;
@@ -177,7 +177,7 @@ namespace Squeal
       return result;
     }
 
-    /// True for a change that the cheapest model may make.
+    /// True if the cheapest model may include this change.
     bool makes_cheaper(const IngredientResult &result, const ReferenceModel &reference)
     {
       if (!result.obstacle.empty())
@@ -201,7 +201,7 @@ namespace Squeal
     {
       std::vector<const IngredientResult *> changes;
       std::vector<const IngredientResult *> put_back;
-      IngredientResult                      together; ///< all changes combined; empty if there is none
+      IngredientResult                      together; ///< result of all changes combined; empty if there are no changes
       Parameters                            parameters;
     };
 
@@ -251,7 +251,7 @@ namespace Squeal
           run.progress.note("  not tried: " + result.name + " = " + result.tried + ": " + result.obstacle);
     }
 
-    /// Reports missing features of the model with an effect above the required accuracy, one line each.
+    /// Reports features that the model lacks and whose effect exceeds the required accuracy, one line each.
     void note_missing(const std::vector<IngredientResult> &results, Run &run)
     {
       for (const IngredientResult &result : results)
@@ -260,7 +260,7 @@ namespace Squeal
                             " changes by up to " + largest_changes(result.effect));
     }
 
-    /// Writes the used non-default parameters as a parameter file.
+    /// Writes the non-default parameters that are used as a parameter file.
     void write_changed_parameters(std::ostream &stream, Parameters parameters)
     {
       Declarations declarations;
@@ -274,7 +274,7 @@ namespace Squeal
         {
           const auto slash = path.find('/');
           if (slash == std::string::npos || unused.count(path) > 0)
-            continue; // already the default study
+            continue; // `stability` is the default study
           if (path.substr(0, slash) != section)
             {
               end_section();
@@ -318,8 +318,8 @@ namespace Squeal
     }
   } // namespace
 
-  /// `Study = ingredients`: varies each model feature individually: effects on every mode and on the verdict, and costs. Writes the
-  /// cheapest model that preserves the verdict within the required accuracy, as a parameter file.
+  /// `Study = ingredients`: varies each model feature individually and reports the effects on every mode and on the verdict, and the costs.
+  /// Writes the cheapest model that preserves the verdict within the required accuracy as a parameter file.
   static void run_ingredients_study(Scene &scene, Run &run)
   {
     const Parameters    &p         = run.parameters;
@@ -356,7 +356,7 @@ namespace Squeal
   extern const Study ingredients_study = [] {
     Study study{"ingredients", run_ingredients_study, {"Ingredients/"}};
     study.rules = {{"Output/", [](const Parameters &) { return "the study writes no mode shapes"; }}};
-    // The study varies contact states, dissipation, speeds and solvers itself, and the cheapest model may use them
+    // Count these parameters as used: variants change contact states, dissipation, speeds and solvers
     const auto of_use = [](const Parameters &) -> Reason { return nullptr; };
     for (const char *path : {"Operation/Load per side", "Operation/Rotation speed", "Steady sliding/", "Complex modes/"})
       study.rules.push_back({path, of_use});

@@ -21,7 +21,7 @@ namespace Squeal
       return result;
     }
 
-    /// Decisions must use the same times on all processes.
+    /// Broadcasts costs: decisions must use the same times on all processes.
     void agree(MPI_Comm communicator, StepCosts &costs)
     {
       for (Cost StepCosts::*step : {&StepCosts::mesh, &StepCosts::assembly, &StepCosts::sliding, &StepCosts::modes, &StepCosts::friction})
@@ -29,7 +29,7 @@ namespace Squeal
           Squeal::agree(communicator, &(costs.*step.*quantity), 1);
     }
 
-    /// Steady sliding state; nothing for equal shares of the load.
+    /// Steady sliding state; empty for equal shares of the load.
     std::optional<SlidingState> sliding_state(const Scene &scene, StepCosts &costs, Run &run)
     {
       costs.sliding = {};
@@ -81,7 +81,7 @@ namespace Squeal
   {
     ReferenceModel result;
     result.parameters = run.parameters;
-    for (const StepRecord &step : run.progress.steps()) // so far those of the mesh
+    for (const StepRecord &step : run.progress.steps()) // steps so far: those of the mesh
       {
         result.costs.mesh.seconds += step.seconds;
         result.costs.mesh.cpu_seconds += step.cpu_seconds;
@@ -130,7 +130,7 @@ namespace Squeal
 
     // ---------------------------------------------------------------------- modes
     const bool shares_modes = variation.departure != Departure::mesh && variation.departure != Departure::modes &&
-                              // A shifted inverse contains the damping
+                              // A shifted inverse includes the damping
                               reference.frictionless.shift == 0. && linearisation.closed == reference.frictionless.linearisation.closed &&
                               variation.margin == 0.;
     FrictionlessModes frictionless = shares_modes ?

@@ -9,7 +9,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Right and left vectors of unit norm, real and imaginary parts.
+    /// Right and left vectors of unit norm: real parts, then imaginary parts.
     MultiVector snapshot(const ComplexModes &modes)
     {
       MultiVector               left_re = *modes.left_real_part, left_im = *modes.left_imaginary_part;
@@ -22,7 +22,7 @@ namespace Squeal
       return join({modes.real_part.get(), modes.imaginary_part.get(), &left_re, &left_im});
     }
 
-    /// Modes of the reduced model beyond the band as well, since they may be counterparts.
+    /// Modes of the reduced model, including modes beyond the band, which may be counterparts.
     ReducedModes modes_of(const ReducedModel &model, const double value, const double omega_max, Run &run)
     {
       constexpr double   margin = 0.3;

@@ -12,7 +12,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Repeated solutions of a reduced problem; the fastest is reported.
+    /// Number of timed solutions of a reduced problem; the shortest time is reported.
     constexpr int n_timed_solutions = 3;
 
     std::vector<double> disc_shares_of(const FrictionlessModes &frictionless, const ComplexModes &modes)
@@ -21,7 +21,7 @@ namespace Squeal
       return disc_shares(*scene.model, scene.system, *frictionless.linearisation.coupled.kernel, modes);
     }
 
-    /// Labels of some real coupled modes among the modes of the pins, even if the disc moves more.
+    /// Labels of some real coupled modes as pin modes, even if the disc moves more.
     std::vector<ModeLabel> pin_labels(const FrictionlessModes &frictionless, const ComplexModes &modes)
     {
       const SparseMatrix    &mass = *frictionless.linearisation.scene->system.mass;
@@ -110,8 +110,8 @@ namespace Squeal
       return candidate;
     }
 
-    /// Measures all bases: of component modes for every truncation, of real coupled modes for every frequency, bases grown from the real
-    /// modes of the band, and bases of snapshots.
+    /// Measures all bases: bases of component modes for every truncation, of real coupled modes for every frequency, of snapshots, and
+    /// bases grown from the real modes of the band.
     std::vector<MeasuredBasis> all_measured(ReductionSets               &sets,
                                             const ReferenceSolution     &reference,
                                             std::vector<TruncatedModes> &truncations)
@@ -185,8 +185,8 @@ namespace Squeal
     }
   } // namespace
 
-  /// `Study = reduction`: reduced bases compared with full-order modes, those of Tables 2, 4 and 5 of the paper and additional ones: sizes,
-  /// ranks, errors by groups of modes, error estimates with their verdicts, and costs.
+  /// `Study = reduction`: compares reduced bases with full-order modes: the bases of Tables 2, 4 and 5 of the paper and additional ones.
+  /// Reports sizes, ranks, errors by groups of modes, error estimates with their verdicts, and costs.
   static void run_reduction_study(Scene &scene, Run &run)
   {
     const ReductionPlan     plan         = reduction_plan(run.parameters);

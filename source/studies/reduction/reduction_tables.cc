@@ -10,13 +10,13 @@ namespace Squeal
 {
   namespace
   {
-    /// Factor of the true error within which estimates count as good.
+    /// An estimate counts as good if it differs from the true error by at most this factor.
     constexpr double good_factor = 3.;
 
-    /// Relative differences of λ below this are rounding errors of the reference, too small to assess an estimate [-].
+    /// Smallest relative difference of λ for which an estimate is assessed; smaller differences are rounding errors of the reference [-].
     constexpr double reference_accuracy = 1e-11;
 
-    /// A condition number; empty if the matrix is singular to rounding.
+    /// A condition number; empty if the matrix is numerically singular.
     Entry condition_cell(const double condition)
     {
       return std::isfinite(condition) ? Entry(condition) : Entry();

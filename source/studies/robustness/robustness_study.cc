@@ -20,7 +20,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Size of the first batch of samples, and ratio of each later batch to all previous ones.
+    /// Size of the first batch of samples, and ratio of each later batch to all previous batches.
     constexpr std::size_t first_set = 32, growth_of_sets = 4;
 
     constexpr int n_training_samples = 8;
@@ -44,9 +44,9 @@ namespace Squeal
 
     constexpr const char *stored_samples = "samples-";
 
-    using StoredSamples = std::vector<std::pair<int, Sample>>; ///< by index
+    using StoredSamples = std::vector<std::pair<int, Sample>>; ///< samples with their indices
 
-    /// Takes the samples that an interrupted run has stored.
+    /// Reads the samples that an interrupted run has stored.
     void take_known(const Checkpoint &checkpoint, std::vector<std::optional<Sample>> &samples, Run &run)
     {
       StoredSamples known;
@@ -82,7 +82,7 @@ namespace Squeal
         StoredSamples found(kept.size());
         const auto    one = [&](const int k) { found[k] = {points[kept[k].first].line, modes_of(model, kept[k].second)}; };
         if (!kept.empty())
-          one(0); // extends products with the references to the latest basis
+          one(0); // the first call extends the products with the component modes to the latest basis
         run_tasks(static_cast<int>(kept.size()) - 1, [&](const int k) { one(k + 1); });
         if (checkpoint && model.run.is_root && !found.empty())
           checkpoint->keep(text(stored_samples, found.front().first, ".result"), found);
@@ -283,8 +283,8 @@ namespace Squeal
     return result;
   }
 
-  /// `Study = robustness`: complex modes of samples of uncertain parameters by one reduced model, with estimated errors at every sample;
-  /// gives the probability of squeal and the influence of the parameters.
+  /// `Study = robustness`: complex modes of samples of uncertain parameters by one reduced model, with estimated errors at every sample.
+  /// Reports the probability of squeal and the influence of the parameters.
   static void run_robustness_study(Scene &scene, Run &run)
   {
     check_bands(run.parameters);

@@ -30,7 +30,7 @@ namespace Squeal
     {
       double   first, last; ///< [Hz]
       Estimate squeal;
-      double   undecided; ///< fraction of samples without an unstable mode, but with an undecided mode, or without results
+      double   undecided; ///< fraction of samples that have no unstable mode but an undecided one, or no results
     };
 
     BandProbability band_probability(const SamplePlan &plan, const Samples &samples, const double first, const double last)
@@ -80,22 +80,22 @@ namespace Squeal
     {
       std::string         label;
       std::vector<double> frequencies, growth_rates; ///< ascending
-      int                 usual_number = 0;          ///< most frequent number in a sample
-      int                 n_unusual    = 0;          ///< samples with another number: labels have changed
+      int                 usual_number = 0;          ///< most frequent number of such modes in a sample
+      int                 n_unusual    = 0;          ///< samples with another number, in which labels have changed
       Estimate            grows{};                   ///< probability that a mode with this label grows
     };
 
     std::vector<NamedMode> named_modes(const SamplePlan &plan, const Samples &samples)
     {
       std::map<std::string, NamedMode>          modes;
-      std::map<std::string, std::map<int, int>> numbers; // samples by the number of modes with the label
+      std::map<std::string, std::map<int, int>> numbers; // number of samples by the number of modes with the label
       std::map<std::string, int>                n_growing;
       int                                       n_known = 0;
       for (int s = 0; s < plan.n_independent; ++s)
         if (samples[s])
           {
             ++n_known;
-            std::map<std::string, std::pair<int, bool>> here; // number of modes with a label, and whether one grows
+            std::map<std::string, std::pair<int, bool>> here; // for each label: number of modes, and whether one of them grows
             for (const SampledMode &mode : *samples[s])
               {
                 const ModalQuantities quantities = modal_quantities(mode.lambda);
@@ -167,7 +167,7 @@ namespace Squeal
       Estimate    first, total;
     };
 
-    /// Indices of the largest divergence rate, and of frequency and growth rate of each mode that occurs once in every sample.
+    /// Indices of the largest divergence rate, and of frequency and growth rate of the modes that occur exactly once in every sample.
     std::vector<IndexRow> indices(const SamplePlan &plan, const Samples &samples, const std::vector<NamedMode> &modes)
     {
       std::vector<IndexRow> result;
@@ -176,7 +176,7 @@ namespace Squeal
         for (auto first = outputs.begin(); first != outputs.end(); first += n)
           if (const auto [least, largest] = std::minmax_element(first, first + n);
               !(*largest - *least > 1e-12 * std::max(std::abs(*least), std::abs(*largest))))
-            return; // the output has no variance
+            return; // indices are undefined without variance
         const SobolIndices found = sobol_indices(plan.values, outputs);
         for (std::size_t j = 0; j < plan.numbers.size(); ++j)
           result.push_back({name, plan.numbers[j].name, found.first[j], found.total[j]});

@@ -12,16 +12,16 @@ namespace Squeal
 {
   namespace
   {
-    /// Onsets of instability of the modes with a label, over all samples.
+    /// Onsets of instability of the modes with one label, over all samples.
     struct OnsetDistribution
     {
       std::string         label;           ///< empty: the first onset of any mode
-      double              divergence_rate; ///< threshold that is exceeded above the onset [-]
-      int                 n_samples;       ///< samples that meet the tolerance at all points
-      std::vector<double> onsets;          ///< of the samples in which the threshold is exceeded, ascending
+      double              divergence_rate; ///< divergence rate that is exceeded above the onset [-]
+      int                 n_samples;       ///< number of samples that meet the tolerance at all points
+      std::vector<double> onsets;          ///< onsets of the samples in which the divergence rate is exceeded, ascending
       double              uncertainty;     ///< largest uncertainty of an onset
 
-      /// @p p-quantile of the onsets over all samples; nothing if a smaller fraction of the samples has an onset.
+      /// @p p-quantile of the onsets over all samples; empty if the fraction of samples with an onset is smaller than @p p.
       Entry quantile_of_all(const double p) const
       {
         std::vector<double> all = onsets;
@@ -48,7 +48,7 @@ namespace Squeal
       return result;
     }
 
-    /// Distributions of the first onset of any mode, then of each label with an onset, most frequent first; each for both thresholds.
+    /// Distributions of the first onset of any mode, then of each label with an onset, most frequent first; each for both divergence rates.
     std::vector<OnsetDistribution> distributions(const std::vector<FollowedSample> &followed)
     {
       std::set<std::string> labels;
@@ -187,7 +187,7 @@ namespace Squeal
         const std::vector<SquealOnset> onsets = mode_onsets(model, s);
         followed[s].onsets.insert(followed[s].onsets.end(), onsets.begin(), onsets.end());
         n_onsets += onsets.size();
-        model.known.clear(); // the vectors of all samples may exceed the memory
+        model.known.clear(); // free memory: the vectors of all samples may exceed it
       }
     const std::string how = model.reduced ? text(model.reduced->size(), " vectors") : "full order";
     run.progress.finish(text(followed.size(), " samples, ", how, ", ", n_onsets, " onsets"));

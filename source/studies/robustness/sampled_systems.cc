@@ -21,7 +21,7 @@ namespace Squeal
 
     constexpr const char *where_uncertain = "parameter Robustness/Distributions";
 
-    /// The model with a separate, equal material for each pin.
+    /// The model in which each pin has its own material with the same constants.
     Parameters with_single_pins(Parameters parameters, const std::vector<UncertainNumber> &numbers)
     {
       std::vector<VolumeMaterial> &volumes = parameters.materials.volumes;
@@ -40,7 +40,7 @@ namespace Squeal
       return result;
     }
 
-    /// Throws ParameterError if a parameter affects more than coefficients of terms.
+    /// Throws ParameterError if an uncertain parameter affects more than coefficients of terms.
     void check_coefficients(const Parameters &parameters, const SamplePlan &samples)
     {
       const std::string scene = text_without_coefficients(parameters);
@@ -248,7 +248,7 @@ namespace Squeal
           {
             const ParameterValues &values = family.terms.members[i];
             regime.points[i].values.insert(values.begin(), values.end());
-            // Equal in every contact set: the bodies do not vary if there are several
+            // Values are the same in every contact set: with several contact sets, the bodies do not vary
             if (const int s = regime.points[i].line; s < samples.n_followed)
               result.plan.lines[s].values = values;
           }

@@ -156,7 +156,7 @@ namespace Squeal
     const double place = p * static_cast<double>(sorted.size() - 1);
     const auto   i     = static_cast<std::size_t>(place);
     const double part  = place - static_cast<double>(i);
-    // Avoids differences of values that may be infinite
+    // Avoid interpolating between values that may be infinite
     return i + 1 == sorted.size() || part == 0. || sorted[i + 1] == sorted[i] ? sorted[i] : sorted[i] + part * (sorted[i + 1] - sorted[i]);
   }
 } // namespace Squeal

@@ -15,16 +15,16 @@ namespace Squeal
 
   namespace
   {
-    /// Fewest designs to detect terms with coefficients in a fixed ratio and to train the initial basis.
+    /// Minimum number of initial designs, so that terms with coefficients in a fixed ratio are detected and the initial basis is trained.
     constexpr std::size_t fewest_first_designs = 4;
 
     /// Values of the variables of a design.
     using DesignValues = std::vector<std::string>;
 
-    /// Designs and samples of a mesh or a system file.
+    /// Access to the designs and samples of a mesh or of a system file.
     struct DesignSpace
     {
-      std::vector<std::string>                                           pins; ///< volumes of pins that may have individual numbers
+      std::vector<std::string>                                           pins; ///< volumes of pins that may have individual values
       std::function<Parameters(const DesignValues &)>                    design;
       std::function<Parameters(const SamplePlan &, int sample)>          sample;  ///< throws ParameterError for illegal values
       std::function<double(const Parameters &, const std::string &name)> nominal; ///< nominal value of a parameter
@@ -36,7 +36,7 @@ namespace Squeal
     {
       double rate      = std::numeric_limits<double>::infinity(); ///< largest divergence rate [-]; infinite if the tolerance is missed
       bool   grows     = false;                                   ///< at least one mode is unstable
-      bool   undecided = true;                                    ///< none is unstable, but at least one is undecided
+      bool   undecided = true;                                    ///< no mode is unstable, but at least one is undecided
     };
 
     SampleRate sample_rate(const SweepModel &model, const ChartPoint &point)
@@ -44,14 +44,14 @@ namespace Squeal
       SampleRate result{-std::numeric_limits<double>::infinity(), false, false};
       for (const int j : model.in_band(point))
         {
-          const bool is_neutral = point.verdicts[j] == Verdict::neutral; // its rate is rounding error
+          const bool is_neutral = point.verdicts[j] == Verdict::neutral; // divergence rates of neutral modes are rounding errors
           result.rate           = std::max(result.rate, is_neutral ? 0. : modal_quantities(point.lambda[j]).divergence_rate);
           result.grows          = result.grows || point.verdicts[j] == Verdict::unstable;
           result.undecided      = result.undecided || point.verdicts[j] == Verdict::undecided;
         }
       result.undecided = result.undecided && !result.grows;
       if (!std::isfinite(result.rate))
-        result.rate = 0.; // no modes in the band
+        result.rate = 0.; // the band contains no modes
       return result;
     }
 
@@ -62,12 +62,12 @@ namespace Squeal
       std::string  phase;
       Estimate     squeal;      ///< probability that a mode grows
       double       doubtful;    ///< fraction of undecided samples
-      double       quantile;    ///< of the largest divergence rates of the samples [-]
+      double       quantile;    ///< quantile of the largest divergence rates of the samples [-]
       double       worst_error; ///< largest estimated error of λ [-]
       int          n_vectors;   ///< size of the basis
       int          worst;       ///< sample with the largest rate; −1 if none meets the tolerance
 
-      /// Counts undecided samples as squeal, so that the search does not favour designs that cannot be judged [%].
+      /// Probability of squeal if undecided samples count as squeal, so that the search does not favour designs that cannot be judged [%].
       double probability_of_doubt() const
       {
         return 100. * (squeal.value + doubtful);
@@ -113,7 +113,7 @@ namespace Squeal
         begin();
       }
 
-      /// Objective at a point; nothing if it is new and Search/Evaluations is reached.
+      /// Objective at a point; empty if the point is new and Search/Evaluations is reached.
       std::optional<double> value(const SearchPoint &point)
       {
         const DesignValues values = values_at(point);
@@ -132,7 +132,7 @@ namespace Squeal
         return std::min_element(designs.begin(), designs.end(), smaller) - designs.begin();
       }
 
-      /// Evaluates a design with samples of another seed.
+      /// Evaluates a design with samples from another seed.
       RobustDesign solve_again(const DesignValues &values, const SamplePlan &other)
       {
         return solve(values, other, "other samples", "Other samples");
@@ -149,8 +149,8 @@ namespace Squeal
           options, [this](const std::string &name) { return space.nominal(run.parameters, name); }, space.pins);
       }
 
-      /// Samples of several designs: values of the variables, then uncertain numbers, where percentages refer to the values of the design.
-      /// Rows are ordered by sample, then by design.
+      /// Samples of several designs: values of the variables, then uncertain numbers; percentages refer to the values of the design. Rows
+      /// are ordered by sample, then by design.
       SamplePlan samples_of(const std::vector<DesignValues> &some, const SamplePlan &samples) const
       {
         SamplePlan result{{}, {}, 0, false};
@@ -192,7 +192,8 @@ namespace Squeal
         return result;
       }
 
-      /// Nominal value of an uncertain number in a design over that in the parameter file; 1 unless its distribution is in percent.
+      /// Ratio of the nominal value of an uncertain number in a design to that in the parameter file; 1 unless its distribution is in per
+      /// cent.
       double scale(const DesignValues &design, const UncertainNumber &number) const
       {
         return number.is_relative ? nominal_in(design, number) / space.nominal(run.parameters, number.parameter) : 1.;
@@ -210,7 +211,7 @@ namespace Squeal
           if (!number.is_relative && nominal_in(lowest, number) != nominal_in(highest, number))
             throw ParameterError(in_quotes(number.parameter) + " varies from design to design, but its distribution is absolute",
                                  number.where, "give the distribution in % of the value in the design");
-        // Before anything is computed: samples at the ends of the ranges
+        // Check the samples at the ends of the ranges before anything is computed
         for (const DesignValues &corner : {lowest, highest})
           {
             const SamplePlan samples = samples_of({corner}, inner);
@@ -272,7 +273,7 @@ namespace Squeal
 
       const DesignSpace            &space;
       Run                          &run;
-      const SamplePlan              inner; ///< of the nominal model
+      const SamplePlan              inner; ///< samples of the nominal model
       std::optional<SampledSystems> systems;
       std::unique_ptr<SweepModel>   model;
     };
@@ -333,7 +334,7 @@ namespace Squeal
       return Table(columns, rows);
     }
 
-    /// The best design, with the samples of the search and with those of another seed.
+    /// The best design, evaluated with the samples of the search and with samples of another seed.
     Table best_design_table(const std::vector<std::pair<unsigned int, RobustDesign>> &by_seed, const SearchParameters &search)
     {
       using Row                                 = std::pair<unsigned int, RobustDesign>;
@@ -410,7 +411,7 @@ namespace Squeal
     const std::vector<DesignVariable> variables  = search_variables(parameters.designs);
     const SystemFile                  file       = read_system(run);
     for (const DesignVariable &variable : variables)
-      value_in(file, variable.name, parameters); // throws if the file has no such parameter
+      value_in(file, variable.name, parameters); // throws ParameterError if the file has no such parameter
     const auto design = [&](const DesignValues &values) {
       Parameters result  = parameters;
       result.system.file = std::filesystem::absolute(result.system.path()).string();

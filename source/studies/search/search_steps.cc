@@ -60,7 +60,7 @@ namespace Squeal
                        const SearchPoint                                               &start,
                        const std::function<std::optional<double>(const SearchPoint &)> &value)
   {
-    std::exception_ptr                               error; // saved because NLopt would replace it by its own exception
+    std::exception_ptr                               error; // rethrown later, because NLopt would replace it by its own exception
     const std::function<double(const SearchPoint &)> guarded = [&](const SearchPoint &x) {
       try
         {

@@ -37,7 +37,7 @@ namespace Squeal
       {
         for (const DesignVariable &variable : variables)
           plan.names.push_back(variable.name);
-        // Load all at once: the rounds of the interrupted search are repeated in sequence
+        // Load all stored results at once: they are needed in the order of the interrupted search
         std::vector<int> designs(run.parameters.search.n_evaluations);
         std::iota(designs.begin(), designs.end(), 1);
         if (const std::size_t n_known = store.n_known(designs); n_known > 0)
@@ -51,7 +51,7 @@ namespace Squeal
         return place == plan.designs.end() ? std::nullopt : std::optional(objective(results[place - plan.designs.begin()], run.parameters));
       }
 
-      /// Solves the unknown ones of some points concurrently; false if the budget is exceeded.
+      /// Solves those of some points that are not known, concurrently; false if this would exceed the number of evaluations.
       bool solve(const std::vector<SearchPoint> &points)
       {
         DesignWork work{plan, {}};
@@ -75,7 +75,7 @@ namespace Squeal
       const std::vector<DesignVariable> variables;
       const DesignStore                 store;
       DesignPlan                        plan;
-      std::vector<DesignResult>         results; ///< in the order of their numbers
+      std::vector<DesignResult>         results; ///< results in the order of their numbers
 
     private:
       /// Values of the variables at a point.
@@ -89,7 +89,7 @@ namespace Squeal
 
       void solve(const DesignWork &work)
       {
-        // Worker processes read the designs from a file, in which rejected designs have no values
+        // Worker processes read the designs from a file; rejected designs have no values there
         const fs::path file   = store.folder / "designs.csv";
         DesignPlan     listed = plan;
         for (std::size_t i = 0; i < plan.designs.size(); ++i)
@@ -106,15 +106,15 @@ namespace Squeal
       }
     };
 
-    /// Next point at which a method needs the objective; nothing if it has ended, and then the reason, for a sentence.
+    /// Next point at which a method needs the objective; if the method has ended, no point, but the reason as part of a sentence.
     struct NextStep
     {
       std::optional<SearchPoint> asked;
       std::string                end;
     };
 
-    /// Runs a method from a start until it needs an unknown point. Methods are deterministic, so that a search continues once the point is
-    /// solved, and the points of several searches can be solved concurrently.
+    /// Runs a method from a start until it needs an unknown point. Methods are deterministic: once the point is solved, the search is
+    /// repeated and continues, so that the points of several searches can be solved concurrently.
     NextStep next_step(const SearchPoint &start, const Evaluations &evaluations)
     {
       NextStep result;
@@ -182,8 +182,8 @@ namespace Squeal
     }
   } // namespace
 
-  /// `Study = search`: a quiet design within the ranges of the variables, with a limited number of evaluations: samples, then a
-  /// derivative-free method from the best two of them, and the best design at full order.
+  /// `Study = search`: finds a quiet design within the ranges of the variables with a limited number of evaluations. Evaluates samples,
+  /// runs a derivative-free method from the best two of them, and solves the best design at full order.
   static void run_search_study(Scene &scene, Run &run)
   {
     if (is_robust(run.parameters.search))

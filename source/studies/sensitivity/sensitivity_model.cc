@@ -7,14 +7,14 @@ namespace Squeal
 {
   namespace
   {
-    /// Relative step of parameters of the operation: contact damping is a product of their powers, or nearly so [-].
+    /// Relative step of parameters of the operation: contact damping is nearly a product of powers of them [-].
     constexpr double operation_step = 1e-4;
 
-    /// Smallest friction coefficient [-], and slope [s/m], as reference for steps.
+    /// Minimum reference values for steps: friction coefficient [-] and slope [s/m].
     constexpr double least_of_operation = 1e-2;
 
-    /// f' = −K' u + μ (P_t')ᵀ r of reaction_rates() for each parameter, n × parameters. A disc that is held only by its drive has the
-    /// friction moment on its inertia, which also changes; this is neglected, because torsion of a body of revolution moves no contact node
+    /// f' = −K' u + μ (P_t')ᵀ r of reaction_rates() for each parameter, n × parameters. If only its drive holds the disc, inertia balances
+    /// the friction moment; the change of this inertia load is neglected, because torsion of a body of revolution moves no contact node
     /// along its normal.
     MultiVector force_rates(const SlidingModel                      &sliding,
                             const SlidingState                      &state,
@@ -60,11 +60,11 @@ namespace Squeal
     const Eigentriples    apart   = on_bodies(sweep.frictionless.linearisation.contact, mu, triples);
     const TermProducts    of_contact(coupled.terms, triples), of_bodies(bodies.terms, apart);
 
-    const Eigentriples alone = on_bodies(sweep.frictionless.linearisation.contact, 0., triples); // without friction in the left vectors
+    const Eigentriples alone = on_bodies(sweep.frictionless.linearisation.contact, 0., triples); // left vectors without friction
     const auto         k     = static_cast<int>(modes.size());
     const auto         r_n   = normal_reactions(coupled, triples.lambda, view(triples.right, 0, k), view(triples.right, k, k));
 
-    // C_m acts in coupled coordinates and does not contribute to the reactions
+    // C_m acts on coupled coordinates and does not affect the reactions
     const auto of_damped_modes = modal_damping ? modal_damping->along(body_rates(), triples) : std::vector<ComplexDenseMatrix>();
 
     const std::vector<ParameterValues> &by_reactions = damping_rates(mu);
@@ -113,7 +113,7 @@ namespace Squeal
         const ContactOperators contact = !all     ? contact_operators(*scene.model, closed) :
                                          is_after ? motion.operators_after :
                                                     motion.operators_before;
-        // Friction: −μ P_tᵀ r_n. The reactions of a mode are constant, because the normals are
+        // Friction: −μ P_tᵀ r_n. The reactions of a mode do not change, because the normals do not
         const ComplexDenseMatrix slip = from_halves(replicate(*contact.tangential * apart.left));
         result -= sign / motion.step * friction_coefficient * (slip.transpose() * reactions);
         const ContactDamping damping = selected(state_of_contact(*scene.model, interface, state, operation).damping, sweep.regime.closed);
@@ -160,7 +160,7 @@ namespace Squeal
     const DenseMatrix rates = reaction_rates(*plan.sliding, operation, plan.sliding_parameters, state,
                                              force_rates(*plan.sliding, state, friction_coefficient, parameters, body_rates()), gaps);
 
-    // Both types of damping are proportional to |r|, and r ≤ 0
+    // Evaluate both types of damping for r = −1: they are proportional to |r|, and r ≤ 0
     const std::vector<double> units(interface.size(), -1.);
     const ContactDamping      per_newton{radial_dissipation(interface, units, operation), sliding_dissipation(interface, units, operation)};
     for (std::size_t p = 0; p < parameters.size(); ++p)
@@ -217,7 +217,7 @@ namespace Squeal
             }
           reduced.extend(*vectors);
         }
-    // Discard points evaluated with a smaller basis
+    // Discard points that were evaluated with a smaller basis
     if (reduced.size() > size)
       sweep.known.clear();
     else if (obstacle.empty())

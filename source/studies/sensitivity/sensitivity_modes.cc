@@ -12,13 +12,13 @@ namespace Squeal
   {
     using Complex = std::complex<double>;
 
-    /// Condition number κ above which an eigenvalue is differentiated together with the one it is about to coalesce with [-].
+    /// Condition number κ above which an eigenvalue is differentiated together with the eigenvalue with which it nearly coalesces [-].
     constexpr double coalescing_condition = 1000.;
 
     /// Maximum number of extensions of the basis.
     constexpr int most_growths = 6;
 
-    /// Eigenvalues that are differentiated together, that of the requested mode first.
+    /// Eigenvalues that are differentiated together, starting with that of the requested mode.
     struct ModeGroup
     {
       std::vector<int> modes; ///< indices of modes of a point
@@ -64,7 +64,7 @@ namespace Squeal
       return result;
     }
 
-    /// For each λ the nearest mode of a point, each used once.
+    /// For each λ, the nearest mode of a point; each mode is used once.
     std::vector<int> nearest_modes(const ChartPoint &point, const std::vector<ModeSensitivity> &modes)
     {
       std::vector<int> result;
@@ -107,7 +107,7 @@ namespace Squeal
     const auto real_part      = [](const Complex &z) { return z.real(); };
     const auto imaginary_part = [](const Complex &z) { return z.imag(); };
 
-    /// Stores the changes since an earlier basis; returns the largest one relative to the largest derivative of its mode.
+    /// Stores the changes relative to an earlier basis; returns the largest change relative to the largest derivative of its mode.
     double compare(std::vector<ModeSensitivity>            &modes,
                    const std::vector<ModeSensitivity>      &before,
                    const std::vector<SensitivityParameter> &parameters)
@@ -120,7 +120,7 @@ namespace Squeal
             mode.changes.push_back(mode.derivatives[p] - before[m].derivatives[p]);
           result =
             std::max(result, largest(parameters, mode.changes, imaginary_part) / largest(parameters, mode.derivatives, imaginary_part));
-          // Growth rates of neutral modes, and their derivatives, are rounding errors
+          // Skip growth rates of neutral modes: they and their derivatives are rounding errors
           if (const double scale = largest(parameters, mode.derivatives, real_part); scale > negligible_divergence * std::abs(mode.lambda))
             result = std::max(result, largest(parameters, mode.changes, real_part) / scale);
         }

@@ -10,11 +10,11 @@ namespace Squeal
 {
   namespace
   {
-    /// Step of Poisson's ratio relative to the distance from its limits, and of other constants relative to their size: the relative error
-    /// of a central difference is about its square [-].
+    /// Step of Poisson's ratio relative to the distance from its limits, and of other constants relative to their size [-]. The relative
+    /// error of a central difference is about its square.
     constexpr double relative_step = 1e-4;
 
-    /// A constant of an orthotropic material that is not a factor of the terms. E1 is a factor: all moduli scale with it.
+    /// A constant of an orthotropic material that is not a factor of terms. E1 is a factor: all moduli are proportional to it.
     struct OrthotropicConstant
     {
       const char *name;
@@ -40,8 +40,8 @@ namespace Squeal
       return result;
     }
 
-    /// (X(c + h) − X(c − h)) / 2h for the stiffness of some volumes with a material and one of its constants, and for their
-    /// stiffness-proportional damping.
+    /// Derivative (X(c + h) − X(c − h)) / 2h of the stiffness of some volumes, and of their stiffness-proportional damping, with respect to
+    /// a material constant c.
     SensitivityParameter of_constant(SensitivityParameter                       result,
                                      const Scene                               &scene,
                                      const Material                            &material,
@@ -93,17 +93,17 @@ namespace Squeal
                          material, constant, h, {volume});
     }
 
-    /// Largest motion of a node in a step, relative to the radius of the disc [-].
+    /// Largest displacement of a node in a step, relative to the radius of the disc [-].
     constexpr double motion_step = 3e-6;
 
-    /// The bodies and all contact nodes on a mesh with moved nodes.
+    /// The bodies and all contact nodes on a mesh with displaced nodes.
     struct MovedScene
     {
       BodyTerms        bodies;
       ContactInterface interface;
     };
 
-    /// The matrix without zero entries: fixed nodes contribute nothing.
+    /// The matrix without zero entries, which come from nodes that do not move.
     std::shared_ptr<const SparseMatrix> without_zeros(const SparseMatrix &A)
     {
       return std::make_shared<SparseMatrix>(A.rows(), A.columns(), [&](const int i, SparseMatrix::Row &row) {
@@ -141,7 +141,7 @@ namespace Squeal
     const MaterialParameters  &materials = parameters.materials;
     const OperationParameters &operation = parameters.operation;
 
-    std::vector<std::vector<std::string>> shared(2); // volumes with the material of the disc, or of the pins
+    std::vector<std::vector<std::string>> shared(2); // for disc and pins: volumes with the common material
     std::vector<std::string>              single;    // volumes with their own material, and all pins
     for (const std::string &volume : scene.model->volume_names())
       {
@@ -175,7 +175,7 @@ namespace Squeal
     for (const MountParameter &mount : mount_parameters(materials))
       result.push_back({mount.path, "", mount.unit, mount.value, {{mount.name, {1.}}}, {}});
 
-    // With steady sliding, contact damping would depend on it as well
+    // Contact stiffnesses are parameters only without steady sliding, where contact damping would depend on them as well
     const auto &pairs = parameters.contact.pairs;
     for (unsigned int pair = 0; pair < pairs.size(); ++pair)
       if (pairs[pair].normal_stiffness > 0. && !(parameters.needs_steady_sliding() && parameters.has_contact_damping()))

@@ -16,11 +16,11 @@ namespace Squeal
     /// Change of a mode per 1 % and per unit of a parameter.
     struct SensitivityRow
     {
-      int                         mode; ///< from 0
+      int                         mode; ///< index of the mode, from 0
       const ModeSensitivity      *of;
       const SensitivityParameter *parameter;
       Complex                     derivative; ///< dλ/dp
-      std::optional<Complex>      change;     ///< by the last extension of the basis
+      std::optional<Complex>      change;     ///< change by the last extension of the basis
 
       double growth_per_percent() const
       {
@@ -58,7 +58,7 @@ namespace Squeal
       for (std::size_t m = 0; m < modes.size(); ++m)
         for (const Row &row : rows_of(modes[m], static_cast<int>(m), parameters))
           rows.push_back(row);
-      // No change per 1 % of a zero parameter
+      // Empty for a parameter that is zero, which has no relative change
       const auto percent = [](double (Row::*value)() const) {
         return [value](const Row &row) { return row.parameter->value != 0. ? Entry((row.*value)()) : Entry(); };
       };
@@ -104,7 +104,7 @@ namespace Squeal
       std::vector<Row> rows;
       for (const ThresholdSensitivity &threshold : thresholds)
         for (std::size_t p = 0; p < (threshold.obstacle.empty() ? parameters.size() : 1); ++p)
-          // The threshold itself is a friction coefficient
+          // Omit the friction coefficient, which is the threshold itself
           if (parameters[p].operation != &OperationParameters::friction_coefficient)
             rows.push_back({&threshold, parameters[p], p});
       const auto of_threshold = [](const auto &value) { return [value](const Row &row) { return Entry(value(*row.of->threshold)); }; };
@@ -140,8 +140,8 @@ namespace Squeal
                    rows);
     }
 
-    /// Parameters sorted by the effect of one per cent on the divergence rate of a mode; at most @p most rows, 0: all. Optionally with
-    /// individual pins.
+    /// Parameters sorted by the effect of one per cent on the divergence rate of a mode, in at most @p most rows; 0: all. Individual pins
+    /// are optional.
     Table ranking_table(const ModeSensitivity                   &mode,
                         const std::vector<SensitivityParameter> &parameters,
                         const bool                               with_single_pins,

@@ -9,14 +9,14 @@ namespace Squeal
   {
     using Complex = std::complex<double>;
 
-    /// Largest distance from a coalescence, relative to the distance from the next event of either branch: δ² is nearly linear within it
-    /// [-].
+    /// Largest distance from a coalescence, relative to the distance from the next event of either branch. Within this distance, δ² is
+    /// nearly linear [-].
     constexpr double first_distance = 0.03;
 
     /// Number of reductions of the distances by a factor of ten if modes cannot be followed.
     constexpr int most_attempts = 3;
 
-    /// Modes of a point that continue those of another one; nothing if this cannot be decided.
+    /// Modes of a point that continue the modes of another point; empty if this cannot be decided.
     std::optional<std::vector<int>> followed(const ChartPoint       &from,
                                              const std::vector<int> &modes,
                                              const ChartPoint       &to,
@@ -29,7 +29,7 @@ namespace Squeal
         if (std::any_of(block.first.begin(), block.first.end(),
                         [&](const int j) { return std::find(modes.begin(), modes.end(), j) != modes.end(); }))
           {
-            // Blocks with other modes do not identify them either
+            // A block that also contains other modes does not identify the continuation
             for (const int j : block.first)
               if (const auto found = std::find(rest.begin(), rest.end(), j); found != rest.end())
                 rest.erase(found);
@@ -42,7 +42,7 @@ namespace Squeal
       return result;
     }
 
-    /// Point of a chart closest to a friction coefficient at which all of some branches have modes; −1: none.
+    /// Point of a chart closest to a friction coefficient at which all these branches have modes; −1: none.
     int nearest_point(const StabilityChart &chart, const double friction_coefficient, const std::vector<int> &branches)
     {
       int result = -1;
@@ -185,7 +185,7 @@ namespace Squeal
       const StabilityChart  &chart;
       const Threshold       &threshold;
       const std::vector<int> branches;
-      double                 step; ///< of the friction coefficient
+      double                 step; ///< step of the friction coefficient
       ThresholdSensitivity   result;
     };
   } // namespace

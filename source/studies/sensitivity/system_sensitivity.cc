@@ -13,7 +13,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Estimated relative error of λ required for left and right vectors, whose own errors are about its square root [-].
+    /// Required relative error of λ for left and right vectors; the errors of the vectors are about its square root [-].
     constexpr double tolerance_of_vectors = 1e-12;
   } // namespace
 

@@ -55,13 +55,13 @@ namespace Squeal
       columns.insert(columns.end(), energies.begin(), energies.end());
       if (!modes.estimated_errors.empty())
         columns.push_back({"estimated error of lambda", "-", [&](const int j) { return modes.estimated_errors[j]; }, 1, true});
-      if (more.empty()) // otherwise the verdict includes the discretisation error
+      if (more.empty()) // With additional columns, the verdict among them includes the discretisation error
         columns.push_back({"verdict", "", [&](const int j) { return to_string(friction.verdicts[j]); }});
       columns.insert(columns.end(), more.begin(), more.end());
       return Table(columns, boost::irange<int>(0, friction.labels.size()));
     }
 
-    /// Growing modes, the largest divergence rate first: label, frequency, growth and divergence rate, share. At most @p n_largest rows.
+    /// Growing modes, largest divergence rate first: label, frequency, growth and divergence rate, share. At most @p n_largest rows.
     Table unstable_table(const FrictionModes &friction, const std::size_t n_largest)
     {
       std::vector<int> growing;

@@ -39,8 +39,8 @@ namespace Squeal
       return {{"wave with rotation", "-", wave(&WaveShares::positive), 3}, {"wave against rotation", "-", wave(&WaveShares::negative), 3}};
     }
 
-    /// Additional columns of the table of complex modes with estimated discretisation errors: errors, whether they are within the limits of
-    /// a goal, and the verdict.
+    /// Additional columns of the table of complex modes for estimated discretisation errors: the errors, whether they are within the limits
+    /// of a goal, and the verdict.
     Columns<int> mesh_error_columns(const std::vector<DiscretisationError> &errors, const AccuracyGoal goal)
     {
       const auto known = [&errors](const double DiscretisationError::*error) {
@@ -67,8 +67,8 @@ namespace Squeal
     {
       int                   mode;
       std::string           body;
-      std::optional<double> friction, into_disc, into_pin, radial, sliding; ///< of pins
-      double                damping;                                        ///< of the material, or modal damping
+      std::optional<double> friction, into_disc, into_pin, radial, sliding; ///< contributions of pins
+      double                damping;                                        ///< contribution of the material, or of modal damping
 
       double sum() const
       {
@@ -119,8 +119,8 @@ namespace Squeal
       return result;
     }
 
-    /// `energy.csv`: contributions of disc, pins, friction and damping to the divergence rate of each growing mode. No table without a
-    /// growing mode.
+    /// Writes `energy.csv`: contributions of disc, pins, friction and damping to the divergence rate of each growing mode. Writes nothing
+    /// if no mode grows.
     void write_power_table(const Linearisation &linearisation, const FrictionModes &friction, const PowerBalances &balances, Run &run)
     {
       if (balances.empty())
@@ -169,7 +169,7 @@ namespace Squeal
       };
       write(*system.mass, "M", MatrixMarketSymmetry::symmetric);
       write(*system.stiffness, "K", MatrixMarketSymmetry::symmetric);
-      // An empty matrix without damping, so that readers need no special case
+      // Write an empty matrix if there is no damping, so that readers need no special case
       const SparseMatrix zero(model.free_map(), model.free_map(), [](int, SparseMatrix::Row &) {});
       const Term        *symmetric = nullptr;
       for (const Term &term : scene.bodies)
@@ -221,16 +221,16 @@ namespace Squeal
 
   } // namespace
 
-  /// `Study = stability`: component modes, real coupled modes and complex modes at one friction coefficient, about equal shares of the load
-  /// or about steady sliding, with tables and mode shapes; with an accuracy goal or a coarser mesh also their discretisation errors. A dry
-  /// run generates, checks and counts the mesh, and writes nothing.
+  /// `Study = stability`: component modes, real coupled modes and complex modes at one friction coefficient, for equal shares of the load
+  /// or for steady sliding, with tables and mode shapes; with an accuracy goal or a coarser mesh, also discretisation errors. A dry run
+  /// generates and checks the mesh, counts its dofs, and writes nothing.
   static void run_stability_study(Scene &scene, Run &run)
   {
     const Parameters          &parameters = run.parameters;
     const OperationParameters &operation  = parameters.operation;
     const double               omega_max  = circular_frequency(parameters.discretization.maximum_frequency);
 
-    // Process 0 writes the mesh; the others have their parts in the model, and need only the names
+    // Process 0 keeps the whole mesh to write it; the others need only its names, because the model has their parts
     if (Mesh names; !run.is_root)
       {
         names.volume_names = scene.mesh.volume_names;
@@ -269,7 +269,7 @@ namespace Squeal
     run.finish();
   }
 
-  /// `Study = stability` for a system file: groups of dofs instead of bodies, and shapes at its points.
+  /// `Study = stability` for a system file: groups of dofs replace bodies, and shapes are written at the points of the file.
   static void run_stability_of_system(Run &run)
   {
     const GivenSystem given = given_system(run);

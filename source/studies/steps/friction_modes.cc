@@ -9,7 +9,8 @@ namespace Squeal
 {
   namespace
   {
-    /// Modes with a larger R/ω grow by a factor of more than e^(2π) per period: divergence rather than a vibration that could be heard [-].
+    /// Largest R/ω of a vibration: beyond it, modes grow by a factor of more than e^(2π) per period, which is divergence rather than
+    /// audible vibration [-].
     constexpr double fastest_oscillating_divergence = 1.;
 
     /// Summary of the unstable modes; the first one named is the fastest growing oscillating mode.
@@ -47,7 +48,7 @@ namespace Squeal
   {
     FrictionModes result{std::move(modes), {}, {}, {}};
     result.labels = frictionless.identify(*result.modes.real_part, result.modes.imaginary_part.get());
-    std::vector<double> growth; // zero for modes that do not grow
+    std::vector<double> growth; // growth rates; zero for modes that do not grow
     for (std::size_t j = 0; j < result.unstable.size(); ++j)
       growth.push_back(result.unstable[j] ? result.modes.lambda[j].real() : 0.);
     mark_doublets(result.labels, growth);

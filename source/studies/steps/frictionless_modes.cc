@@ -9,14 +9,14 @@ namespace Squeal
 {
   namespace
   {
-    /// Component modes extend beyond the band by this factor, to label the coupled modes at its end [-].
+    /// Component modes are computed up to this multiple of the end of the band, to label the coupled modes near its end [-].
     constexpr double label_band = 1.2;
 
-    /// Work of a mount relative to its stiffness and the displacements of a motion of zero frequency, below which it is a rounding error
-    /// [-].
+    /// Work of a mount during a zero-frequency motion, relative to its stiffness and displacements, below which it counts as a rounding
+    /// error [-].
     constexpr double no_work = 1e-12;
 
-    /// Warns if motions count as those of a free body although a mount holds them.
+    /// Warns if a motion counts as a free rigid-body motion although a mount resists it.
     void warn_of_hidden_mounts(const FrictionlessModes &modes, Run &run)
     {
       const CoupledSystem &coupled = modes.linearisation.coupled;
@@ -34,7 +34,7 @@ namespace Squeal
                       " Hz. Raise Mounts/Elastic mounts, or remove these directions if the body is meant to be free"));
     }
 
-    /// Rejects a speed above the critical one, where K − Ω² ρ N has negative or zero eigenvalues: it has no Cholesky factor.
+    /// Rejects speeds above the critical one: K − Ω² ρ N then has eigenvalues ≤ 0 and no Cholesky factor.
     void check_speed(const CoupledSystem &coupled, const Parameters &parameters)
     {
       if (!parameters.operation.rotating_disc || !parameters.has_friction())
@@ -56,7 +56,7 @@ namespace Squeal
       const Scene &scene     = *linearisation.scene;
       const double omega_max = circular_frequency(run.parameters.discretization.maximum_frequency);
       run.progress.begin("Component modes");
-      double pins_shift = 0.; // for bodies that a mount leaves free
+      double pins_shift = 0.; // shift for bodies that mounts do not constrain
       for (unsigned int body = 1; body < scene.model->component_names().size(); ++body)
         if (free_motions(*scene.model, scene.system, body))
           pins_shift = omega_max / band_per_stabilizing_shift;
@@ -64,7 +64,7 @@ namespace Squeal
         const bool            is_disc = component == Component::disc;
         SymmetricModesOptions options =
           real_modes_options(run.parameters.solvers, name, is_disc ? stabilizing_shift(*scene.model, scene.system, omega_max) : pins_shift);
-        // Equal pins cause clusters: every mode occurs once per pin, bending modes twice. Solving pins individually avoids them
+        // Solve pins individually: equal pins would cause clusters, in which every mode occurs once per pin, bending modes twice
         options.by_parts = !is_disc;
         run.progress.update(name);
         return component_modes(*scene.model, scene.interface, linearisation.interface, scene.system, component, boundary,
@@ -169,7 +169,7 @@ namespace Squeal
     const ModeCount count = number_of_modes(coupled, (1. + margin) * omega_max, parameters.solvers, run.progress);
     find_component_modes(linearisation, result, run);
 
-    // Equal pins cause clusters with as many modes as there are pins
+    // Equal pins cause clusters that contain as many modes as there are pins
     const int block_size               = std::clamp(static_cast<int>(scene.n_pins()), 8, 16);
     static_cast<SystemModes &>(result) = system_modes(coupled, stabilizing_shift(*scene.model, coupled, omega_max), omega_max, count,
                                                       block_size, parameters.solvers, run.progress);

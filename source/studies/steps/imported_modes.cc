@@ -141,7 +141,7 @@ namespace Squeal
     const MultiVector &re = *modes.real_part, &im = *modes.imaginary_part;
     const auto mass = given.coupled.mass ? given.coupled.mass : sparse_matrices(given.coupled.terms, given.coupled.at(given.value)).mass;
     const MultiVector M_re = *mass * re, M_im = *mass * im;
-    const DenseMatrix energies = re.local().cwiseProduct(M_re.local()) + im.local().cwiseProduct(M_im.local()); // for each dof
+    const DenseMatrix energies = re.local().cwiseProduct(M_re.local()) + im.local().cwiseProduct(M_im.local()); // at each dof
     DenseMatrix       shares   = DenseMatrix::Zero(static_cast<Eigen::Index>(file.groups.size()), energies.cols());
     for (std::size_t g = 0; g < file.groups.size(); ++g)
       for (const auto &[first, last] : file.groups[g].ranges)

@@ -10,7 +10,7 @@ namespace Squeal
     /// Maximum number of modes listed in a warning.
     constexpr std::size_t n_named = 5;
 
-    /// Warns of unconverged modes, the first ones as "A0-4 at 2315 Hz (0.3 %, 0.05 points)".
+    /// Warns of modes that are not converged; lists the first ones as "A0-4 at 2315 Hz (0.3 %, 0.05 points)".
     void warn_of_unconverged(const std::vector<DiscretisationError> &errors,
                              const FrictionModes                    &friction,
                              const AccuracyLimits                   &limits,
@@ -32,7 +32,7 @@ namespace Squeal
                       n > n_named ? ", ..." : "", "; refine the mesh to decide whether they grow"));
     }
 
-    /// File name of a mode: type, row in the table, counted from 1, and label.
+    /// File name of a mode: type, row in the table from 1, and label.
     std::string file_name(const std::string &kind, const std::size_t row, const ModeLabel &label)
     {
       std::ostringstream name;
@@ -51,7 +51,7 @@ namespace Squeal
       return {displacement.col(0).begin(), displacement.col(0).end()};
     }
 
-    /// Contributions of friction and damping to ξ at all contact nodes, per area [1/m²]; zero at open ones.
+    /// Contributions of friction and damping at each contact node to ξ, per area [1/m²]; zero at open nodes.
     std::vector<double> energy_input(const Linearisation &linearisation, const PowerBalance &balance)
     {
       std::vector<double> result(linearisation.scene->interface.size(), 0.);
@@ -93,7 +93,7 @@ namespace Squeal
         writer.write_list("modes", list);
       if (!animated.empty())
         writer.write_animation("unstable_modes", animated, animation_options(output));
-      std::string growth; // e^{2π ξ n} in n periods
+      std::string growth; // the amplitude grows by e^{2π ξ n} in n periods
       if (const double exponent = 2. * M_PI * highest; output.animation_growth && highest > 0.)
         growth = text("; the fastest grows by a factor of ", std::exp(exponent * output.animation_periods), ", and of e in ", 1. / exponent,
                       " periods");
@@ -118,8 +118,8 @@ namespace Squeal
       run.progress.finish(text(list.size(), " modes"));
     }
 
-    /// Points of this process. The component of a point is the index of the group with the largest displacement there; points without a
-    /// group have the last index.
+    /// Points of this process. The component of a point is the index of the group that moves most at this point; points without a group
+    /// have the last index.
     std::vector<Node> nodes_of(const ShapePoints &points, const std::vector<DofGroup> &groups)
     {
       const SparseMatrix       &displacements = *points.displacements;
@@ -157,7 +157,7 @@ namespace Squeal
     {
       const double omega_max = circular_frequency(run.parameters.discretization.maximum_frequency);
       const auto   listed    = listed_component_modes(modes, omega_max * omega_max);
-      // Disc and pins are different meshes: each set has its own list
+      // Disc and pins have different meshes, so that each set has its own list
       std::map<std::string, std::vector<ListedMode>> lists;
       run.progress.begin("Component mode shapes");
       for (std::size_t row = 0; row < listed.size(); ++row)
@@ -209,7 +209,7 @@ namespace Squeal
   {
     auto result = discretisation_errors(coarser.modes, modes_at(coarser.points, frictionless, friction), error_by_difference(goal),
                                         friction.modes.estimated_errors);
-    // Modes that are undecided by rounding remain so
+    // Modes that are undecided because of rounding errors remain undecided
     for (std::size_t j = 0; j < result.size(); ++j)
       if (friction.verdicts[j] == Verdict::undecided)
         result[j].verdict = Verdict::undecided;

@@ -30,7 +30,7 @@ namespace Squeal
       return p.output.animation_frames == 0 ? "Output/Animation frames = 0" : no_complex_shapes(p);
     };
 
-    /// Rules for all studies without their own rule.
+    /// Rules for studies that have no rule of their own for a parameter.
     const std::vector<UsageRule> &general_rules()
     {
       static const std::vector<UsageRule> table = {
@@ -50,13 +50,13 @@ namespace Squeal
         {"Operation/Rotation", no_friction},
         {"Operation/Sliding direction", no_friction},
         {"Operation/Rotation speed",
-         // Tables of the steady sliding state contain the sliding speeds
+         // The sliding speed is used by tables of the steady sliding state
          [](const Parameters &p) { return p.needs_steady_sliding() ? nullptr : no_sliding_speed(p); }},
         {"Operation/Gyroscopic forces",
          [](const Parameters &p) { return unless(p.has_friction(), "the frictionless problem does not include rotation"); }},
         {"Operation/Load per side",
          [](const Parameters &p) {
-           // Pins without an entry in Steady sliding/Loads share this load
+           // The load per side is used by pins that have no entry in Steady sliding/Loads
            const bool is_shared = p.needs_steady_sliding() && p.sliding.control == BackplateControl::load_per_pin;
            return unless(is_shared || (p.uses_load_per_side() && (p.has_friction() || p.needs_steady_sliding())),
                          p.needs_steady_sliding() ? "Steady sliding/Control = displacement" : "no contact damping");
@@ -83,14 +83,14 @@ namespace Squeal
         {"Complex modes/Maximum basis", no_iteration},
 
         {"Output/Animation frames",
-         // Zero frames are used even without animation
+         // The value 0 has an effect even without animation
          [](const Parameters &p) { return p.output.animation_frames == 0 ? nullptr : no_complex_shapes(p); }},
         {"Output/Animation periods", no_frames},
         {"Output/Animation growth", no_frames}};
       return table;
     }
 
-    /// Usage rules for a system file.
+    /// True if a run for a system file uses the parameter.
     bool is_used_with_system(const std::string &path, const Parameters &parameters)
     {
       for (const char *used : {"System", "System values", "Study", "Band/", "Real modes/", "Complex modes/", "Linear algebra/",
@@ -112,7 +112,7 @@ namespace Squeal
       return false;
     }
 
-    /// Reason why a run does not use a parameter, except for the geometry; empty if it does.
+    /// Reason why a run does not use a parameter other than a geometry parameter; empty if the run uses it.
     std::string why_unused(const std::string &path, const Parameters &parameters)
     {
       if (parameters.system && !is_used_with_system(path, parameters))
@@ -164,7 +164,7 @@ namespace Squeal
   std::vector<UnusedParameter> unused_among(const std::vector<std::string> &paths, const Parameters &parameters)
   {
     const auto                           variables = parameters.geometry.script_variables();
-    std::optional<std::set<std::string>> used; // determined only if needed
+    std::optional<std::set<std::string>> used; // computed only if needed
     std::vector<UnusedParameter>         unused;
     for (const std::string &path : paths)
       {

@@ -12,7 +12,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Eigenproblem of the bases.
+    /// Properties of the eigenproblem that decide which bases apply.
     struct Problem
     {
       explicit Problem(const Parameters &p)
@@ -32,7 +32,7 @@ namespace Squeal
              (problem.has_definite_part || recipe.is_pod);
     }
 
-    /// Bases named in the parameters; if none is named, all that fit.
+    /// Bases named in the parameters; if none is named, all bases that fit the eigenproblem.
     std::vector<const BasisRecipe *> chosen_recipes(const Parameters &p, const Problem &problem)
     {
       const std::vector<std::string>  &names = p.reduction.bases;
@@ -76,7 +76,7 @@ namespace Squeal
       return unless(measures(p, BasisSource::snapshots) || p.solves_by(ComplexSolver::krylov), "of the solver Krylov");
     };
 
-    /// Largest multiple of the band's end for finding the requested numbers of component modes [-].
+    /// Largest frequency, as a multiple of the end of the band, in the search for the requested number of component modes [-].
     constexpr double furthest_band = 16.;
   } // namespace
 
@@ -223,7 +223,7 @@ namespace Squeal
 
   void ReductionSets::charge_coupled_factor()
   {
-    // The inverse computes the factor of K_c together with K_c⁻¹ A, which not every basis needs: measure that part separately
+    // The inverse computes the factor of K_c and K_c⁻¹ A together. Measure the factor separately, because not every basis needs K_c⁻¹ A
     if (system.n_contact() == 0)
       {
         book({BasisSource::coupled_factor, "", {}, {}, {}, frictionless.factorisation.cpu_seconds});
@@ -329,7 +329,7 @@ namespace Squeal
         n[source] = keep_lowest({source, truncation.text(), {}, {}, {}}, component, boundary, frequency, count);
     };
 
-    // In a basis, the disc has as many sliding as free modes (Table 3)
+    // The disc has as many sliding as free modes in a basis (Table 3)
     using Source      = BasisSource;
     const bool slides = plan.rests_on(Source::disc_sliding);
     compute_if(slides || plan.rests_on(Source::disc_free), Source::disc_free, Component::disc, ContactBoundary::free, truncation.disc);
@@ -369,7 +369,7 @@ namespace Squeal
     const Scene          &scene   = *linearisation.scene;
     SymmetricModesOptions options = real_modes_options(
       run.parameters.solvers, what, is_disc ? stabilizing_shift(*scene.model, scene.system, plan.largest_circular_frequency) : 0.);
-    options.by_parts = !is_disc; // equal pins are solved individually to avoid repeated eigenvalues
+    options.by_parts = !is_disc; // solve equal pins individually to avoid multiple eigenvalues
 
     const auto   T = component_kernel(*scene.model, linearisation.interface, component, boundary);
     const auto   K = congruence(*scene.system.stiffness, *T), M = congruence(*scene.system.mass, *T);

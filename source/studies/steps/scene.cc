@@ -14,8 +14,8 @@ namespace Squeal
 {
   namespace
   {
-    /// Poisson's ratio above which trilinear elements lock: bending frequencies of pins on the default mesh are then 1.4 % higher, relative
-    /// to quadratic elements, than at 0.25; 3.6 % at 0.499.
+    /// Poisson's ratio from which trilinear elements are reported to lock: relative to quadratic elements, bending frequencies of pins on
+    /// the default mesh rise by 1.4 % from a ratio of 0.25 to this value, and by 3.6 % to 0.499.
     constexpr double locking_poisson_ratio = 0.47;
 
     void warn_of_locking(Run &run)
@@ -59,11 +59,11 @@ namespace Squeal
     run.progress.begin("Mesh");
     GeometryParameters geometry = parameters.geometry;
     if (parameters.discretization.element == Element::quadratic)
-      geometry.outlines = Outlines::inscribed; // curved edges have the area of the circle
+      geometry.outlines = Outlines::inscribed; // curved edges already have the area of the circle
     std::vector<std::string> surfaces = parameters.materials.mounted_surfaces();
     if (parameters.needs_steady_sliding())
       for (const std::string &face : parameters.sliding.pressed_faces)
-        if (face != PhysicalNames::pin_clamp) // a clamp is not a mount
+        if (face != PhysicalNames::pin_clamp) // clamped surfaces have no mount
           surfaces.push_back(face);
     scene.mesh                = generate_mesh(geometry, surfaces, run.communicator, parameters.contact);
     const MeshQuality quality = check_mesh(scene.mesh);
@@ -80,7 +80,7 @@ namespace Squeal
       run.progress.note("  note: " + note);
     warn_of_linear_cells(scene.mesh, run);
     summarise_scene(scene.mesh, run);
-    // After the summary, because an unresolved mesh is often caused by lengths or moduli in other units
+    // Check after the summary: an unresolved mesh is often caused by lengths or moduli in other units
     check_wave_resolution(scene.mesh, parameters.materials, degree_of(parameters.discretization.element),
                           circular_frequency(parameters.discretization.maximum_frequency));
     if (!run.is_dry)
@@ -95,7 +95,7 @@ namespace Squeal
     if (parameters.needs_steady_sliding())
       check_sliding(*scene.model, scene.interface, parameters.operation, parameters.sliding);
     if (parameters.sliding.state == ContactState::equal_load && parameters.has_contact_damping())
-      equal_load_shares(*scene.model, scene.interface, parameters.operation); // throws for bodies without a direction of travel
+      equal_load_shares(*scene.model, scene.interface, parameters.operation); // throws if a body has no direction of travel
     const int n = scene.model->free_map().n(), n_coupled = scene.contact.kernel->n_columns();
     run.count("dofs, clamped included", scene.model->n_dofs());
     run.count("dofs", n);

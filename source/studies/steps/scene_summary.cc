@@ -21,18 +21,18 @@ namespace Squeal
 
     constexpr double alike = 1e-3; ///< relative difference below which pins count as equal
 
-    /// Number of modes assumed for the memory estimate, in which they matter little; they are counted later.
+    /// Number of modes assumed for the memory estimate, which depends little on it; modes are counted later.
     constexpr double typical_modes = 70.;
 
     /// Summary of the disc, or of equal pins.
     struct Body
     {
       std::vector<std::string> names;
-      double                   inner_radius = std::numeric_limits<double>::infinity(), outer_radius = 0.; ///< of nodes about z [m]
+      double                   inner_radius = std::numeric_limits<double>::infinity(), outer_radius = 0.; ///< of its nodes about z [m]
       double                   height = 0., contact_area = 0., volume = 0.; ///< extent along z [m]; [m²]; [m³]
-      double                   mass           = 0.;                         ///< of each of them [kg]
+      double                   mass           = 0.;                         ///< mass of each body [kg]
       double                   bar_speed      = 0.;                         ///< √(E/ρ), speed of longitudinal waves in a bar [m/s]
-      bool                     is_orthotropic = false;                      ///< the bar lies along axis 1
+      bool                     is_orthotropic = false;                      ///< orthotropic: the bar lies along material axis 1
 
       bool is_like(const Body &other) const
       {

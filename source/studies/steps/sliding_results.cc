@@ -26,11 +26,11 @@ namespace Squeal
                    pins);
     }
 
-    /// Residuals of a steady sliding state, and its uniqueness.
+    /// Residuals of a steady sliding state, and whether it is unique.
     Table sliding_table(const SlidingState &state, const std::vector<PinContact> &pins)
     {
       std::vector<std::pair<std::string, Entry>> rows;
-      std::map<std::string, double>              loads; // lower before upper side
+      std::map<std::string, double>              loads; // sorted: the lower side comes before the upper side
       for (const PinContact &pin : pins)
         loads[pin.side == 0 ? pin.pin : pin.side > 0 ? "the upper side" : "the lower side"] += pin.load;
       for (const auto &[part, load] : loads)

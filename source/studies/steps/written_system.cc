@@ -18,7 +18,7 @@ namespace Squeal
   {
     constexpr double largest_friction_coefficient = 10.;
 
-    /// Ranges extend by this factor below and above the value.
+    /// Parameter ranges extend by this factor below and above the value.
     constexpr double range_factor = 100.;
 
     /// Converts to lower case and replaces each run of non-alphanumeric characters by _.
@@ -39,7 +39,7 @@ namespace Squeal
       return {identifier(name), value, lower, upper, unit, description};
     }
 
-    /// Names the material constants; volumes with the material of the disc or the pins share its parameters.
+    /// Names the material constants; volumes that use the common material of the disc or the pins share its parameters.
     void name_materials(NamedParameters &named, const std::vector<std::string> &volumes, const MaterialParameters &materials)
     {
       for (const std::string &volume : volumes)
@@ -86,7 +86,7 @@ namespace Squeal
       return result;
     }
 
-    /// The coupled system in the parameters of the file.
+    /// The coupled system as a function of the parameters of the file.
     CoupledSystem system_with_parameters(const Linearisation &linearisation, const NamedParameters &named, const Parameters &parameters)
     {
       const Model &model  = *linearisation.scene->model;

@@ -8,7 +8,8 @@ namespace Squeal
 {
   namespace
   {
-    /// Every mode of the band at every point of a chart, including refinement: branch, λ, residuals, error, verdict and growth.
+    /// One row for every mode of the band at every point of a chart, including refinement points: branch, λ, residuals, error, verdict and
+    /// growth.
     Table branch_table(const SweepChart &line, const double largest_circular_frequency, const SweepAxis &axis)
     {
       struct Row : ModalQuantities
@@ -64,7 +65,7 @@ namespace Squeal
                    line.chart.thresholds);
     }
 
-    /// Crossings of the band's edge by branches.
+    /// Crossings of the end of the band by branches.
     Table crossing_table(const SweepChart &line, const SweepAxis &axis)
     {
       using Row = BandCrossing;
@@ -77,7 +78,7 @@ namespace Squeal
                    line.chart.crossings);
     }
 
-    /// Number of modes in the band at every point, and number implied by the crossings.
+    /// Number of modes in the band at every point, and the number expected from the crossings.
     Table count_table(const StabilityChart &chart, const SweepAxis &axis)
     {
       using Row = ChartCount;

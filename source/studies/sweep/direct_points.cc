@@ -49,7 +49,7 @@ namespace Squeal
       int    n_other       = 0;  ///< modes of the reduced model in the band without counterpart at full order
     };
 
-    /// Each mode at full order has the nearest reduced mode that is not yet taken as its counterpart.
+    /// Errors of the reduced modes: each full-order mode is paired with the nearest reduced mode that is not yet paired.
     Differences differences(const SweepModel &model, const ChartPoint &point, std::vector<std::complex<double>> reduced)
     {
       Differences result;
@@ -91,7 +91,7 @@ namespace Squeal
     const Band           band((1. + band_margin) * model.largest_circular_frequency, run.parameters.discretization.maximum_rate);
 
     run.progress.begin("Reduced model");
-    // Values of the sweep train the basis, those of the search for thresholds only verify it
+    // Train the basis at values of the sweep; points from the search for thresholds only verify it
     std::vector<SweepModel::Place> places;
     for (const OperatingPoint &point : model.regime.points)
       places.emplace_back(point.line, point.friction_coefficient);
@@ -179,7 +179,7 @@ namespace Squeal
       result.uncertainties.push_back(result.errors[j] * std::abs(result.lambda[j]));
     result.right = gathered(*modes.real_part, *modes.imaginary_part, listed);
     result.left  = gathered(*modes.left_real_part, *modes.left_imaginary_part, listed);
-    // First-order correction of λ by the residuals, since ψ is dual to φ
+    // Correct λ to first order with the residuals; valid because ψ is the left vector that belongs to φ
     const int         n         = static_cast<int>(modes.lambda.size());
     const MultiVector residuals = force_residuals(system, values, modes.lambda, *modes.real_part, *modes.imaginary_part);
     result.corrections          = -result.left.transpose() * gathered(view(residuals, 0, n), view(residuals, n, n), listed);

@@ -7,7 +7,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Known friction coefficients of a line, in parts with the same contact set.
+    /// Known friction coefficients of a line, split into parts with the same contact set.
     std::vector<std::vector<double>> stretches(const SweepModel &model, const int line)
     {
       std::vector<std::vector<double>> result;
@@ -25,11 +25,11 @@ namespace Squeal
     }
 
     /// Extends the basis by the missing components of the modes on both sides of all thresholds of an unrefined chart, and discards the
-    /// results there, which used the smaller basis.
+    /// results at these points, which were computed with the smaller basis.
     void sharpen(SweepModel &model, const int line, const StabilityChart &chart, const std::vector<double> &grid)
     {
       // Use grid values next to the thresholds: closer to a coalescence the vectors of both modes are nearly parallel
-      std::map<int, std::set<int>> modes_at; // by point of the chart
+      std::map<int, std::set<int>> modes_at; // by index of the point in the chart
       for (const Threshold &threshold : chart.thresholds)
         {
           const int above = std::upper_bound(grid.begin(), grid.end(), threshold.friction_coefficient) - grid.begin();
@@ -51,13 +51,13 @@ namespace Squeal
         model.known.erase({line, set.point.friction_coefficient});
     }
 
-    /// Labels branches by their first modes; the branch of a doublet with the largest growth over the chart is plus.
+    /// Labels branches by their first modes; the branch of a doublet with the largest growth over the chart is labelled +.
     std::vector<ModeLabel> branch_labels(const SweepModel &model, const StabilityChart &chart)
     {
       const int                       n_branches = chart.branches.size();
       std::vector<ModeLabel>          result(n_branches);
       std::vector<double>             growth(n_branches, 0.); // largest growth rate [1/s]; zero for a branch that never grows
-      std::map<int, std::vector<int>> branches_from;          // by their first points
+      std::map<int, std::vector<int>> branches_from;          // branches by the index of their first point
       for (int b = 0; b < n_branches; ++b)
         {
           const std::vector<int> &modes = chart.branches[b].modes;
@@ -83,7 +83,7 @@ namespace Squeal
       return result;
     }
 
-    /// Largest friction coefficient with known modes on a line below a part of it, for any contact set; 0: none.
+    /// Largest known friction coefficient on a line below @p first, for any contact set; 0: none.
     double value_before(const SweepModel &model, const int line, const double first)
     {
       double result = 0.;
@@ -103,7 +103,7 @@ namespace Squeal
       return result;
     }
 
-    /// Evaluates modes of a line for its chart.
+    /// Function that evaluates the modes of a line for its chart.
     EvaluateChart evaluation(SweepModel &model, const int line)
     {
       return [&model, line](const std::vector<double> &friction_coefficients) { return model.evaluate(line, friction_coefficients); };
@@ -117,7 +117,7 @@ namespace Squeal
       return stability_chart(grid, evaluate, options_of(model), predict);
     }
 
-    /// Compares the number of modes without friction with the inertia count.
+    /// Compares the number of modes without friction with the count by inertia.
     void compare_with_inertia(const SweepModel &model, const StabilityChart &chart)
     {
       Progress             &progress = model.run.progress;
@@ -148,8 +148,8 @@ namespace Squeal
     };
     run.progress.begin("Branches");
     const ChartOptions options = options_of(model);
-    // Thresholds need more accuracy than λ: for weakly interacting modes, μ_c is sensitive to small errors. The grid determines the modes
-    // of all thresholds; all are treated, because a selection by uncertainty would depend on rounding
+    // Thresholds need more accuracy than λ: for weakly interacting modes, μ_c is sensitive to small errors. Extend the basis for all
+    // thresholds found on the grid: a selection by uncertainty would depend on rounding
     ChartOptions coarse        = options;
     coarse.maximum_refinements = 0;
     if (model.reduced && model.sharpens_thresholds)
@@ -183,7 +183,7 @@ namespace Squeal
   {
     const EvaluateChart                                   evaluate = evaluation(model, line);
     const ChartOptions                                    options  = options_of(model);
-    std::map<std::pair<std::string, double>, SquealOnset> first; // by label and divergence rate
+    std::map<std::pair<std::string, double>, SquealOnset> first; // first onset by label and divergence rate
     for (const std::vector<double> &grid : stretches(model, line))
       {
         const StabilityChart         chart  = chart_of(model, line, grid, evaluate);
@@ -225,10 +225,10 @@ namespace Squeal
                       const double                   largest_circular_frequency,
                       const std::string             &parameter)
   {
-    double          at = 0.; // friction coefficient with the fastest growing mode
+    double          at = 0.; // friction coefficient of the fastest growing mode
     ModalQuantities most{};
     std::string     label;
-    std::size_t     n_known = 0; // number of the requested values
+    std::size_t     n_known = 0; // number of requested values that are known
     for (const SweepChart &line : charts)
       {
         const StabilityChart &chart = line.chart;
@@ -253,7 +253,7 @@ namespace Squeal
     std::string result = "  squeal";
     for (const auto &[rate, onset, of_onset] : onsets)
       {
-        // Uncertainty visible in the digits shown
+        // Report an uncertainty that is visible in the digits shown
         const bool is_uncertain = onset.uncertainty > 1e-3 * onset.friction_coefficient;
         result += text(rate > 0. ? text(", divergence rate exceeds ", 100. * rate, " %") : " begins", " at ", parameter, " = ",
                        onset.friction_coefficient, is_uncertain ? text(" +- ", onset.uncertainty) : "", " (", to_string(of_onset), ")");

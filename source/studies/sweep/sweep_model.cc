@@ -21,7 +21,7 @@ namespace Squeal
       return sum;
     }
 
-    /// Training points: ends, middle and quarters of the outer lines; the others are evaluated later.
+    /// Training points: ends, middle and quarters of the first and last lines; other points are evaluated later.
     std::vector<int> training(const ContactRegime &regime)
     {
       const auto [first, last] = std::minmax_element(regime.points.begin(), regime.points.end(),
@@ -111,7 +111,7 @@ namespace Squeal
     const Linearisation       damped    = linearise(*plan.scene, plan.sliding_state(operation), operation);
 
     check_countable(damped.coupled, run);
-    // Real modes and factor do not include damping
+    // Real modes and factor are computed without damping
     Linearisation bare         = damped;
     bare.coupled               = undamped(damped.coupled);
     frictionless               = frictionless_modes(bare, run, band_margin);
@@ -171,7 +171,7 @@ namespace Squeal
   std::vector<ShapeShares> SweepModel::shape_shares(const ChartPoint &point, const std::vector<int> &modes) const
   {
     const ReducedModel &model = reduced->reduced();
-    // The basis only grows once modes are named
+    // Once modes have been named, the basis only grows: compute products for the new vectors
     const int n_known = reference_products.empty() ? 0 : static_cast<int>(reference_products.front().cols());
     if (n_known < model.size())
       {
@@ -266,8 +266,8 @@ namespace Squeal
                              " vectors, estimated error ", sweep.worst_error));
     run.count("basis vectors", model.reduced->size());
     run.measure("largest estimated error of lambda [-]", sweep.worst_error);
-    // Conditioning at the last value: friction makes eigenvalues ill-conditioned. The basis causes errors up to the tolerance, to which
-    // rounding may add
+    // Report conditioning at the last value, where friction makes eigenvalues most ill-conditioned. The basis causes errors up to the
+    // tolerance; rounding errors may add to them
     if (last >= 0)
       {
         const auto [modes, products] = modes_in_band(model, model.known.at({points[last].line, points[last].friction_coefficient}));

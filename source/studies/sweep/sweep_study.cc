@@ -19,8 +19,8 @@ namespace Squeal
       double                         friction_coefficient; ///< [-]
       double                         value;                ///< load [N] or speed [rad/s]
       std::size_t                    n_open;               ///< number of open contact nodes
-      std::optional<ModalQuantities> leading;              ///< fastest growing, or least damped, mode; nothing if not computed
-      ModeLabel                      label;                ///< of that mode
+      std::optional<ModalQuantities> leading;              ///< fastest growing, or least damped, mode; empty if not computed
+      ModeLabel                      label;                ///< label of this mode
       int                            n_unstable  = 0;
       int                            n_undecided = 0;  ///< number of undecided modes
       double                         error       = 0.; ///< largest estimated |δλ| / |λ| [-]
@@ -41,12 +41,12 @@ namespace Squeal
     struct CountAt
     {
       double       friction_coefficient;
-      int          n_found; ///< number in the rectangle
+      int          n_found; ///< number in the rectangle found by the sweep
       ContourCount count;
       bool         has_real_modes; ///< the system has a definite part
     };
 
-    /// Label of the most similar branch at the nearest point of the chart.
+    /// Label of the branch with the most similar mode at the nearest point of the chart.
     ModeLabel nearest_label(const SweepChart &main, const ChartPoint &point, const int mode)
     {
       const auto &points   = main.chart.points;
@@ -57,7 +57,7 @@ namespace Squeal
       return branch >= 0 ? main.labels[branch] : ModeLabel();
     }
 
-    /// Modes of a line at one of the requested friction coefficients; notes if they miss the tolerance.
+    /// Modes of a line at a requested friction coefficient; prints a note if they miss the tolerance.
     ChartPoint modes_at(SweepModel &model, const double mu, const int line = 0)
     {
       const bool       is_new    = model.known.count({line, mu}) == 0;
@@ -69,7 +69,7 @@ namespace Squeal
       return point;
     }
 
-    /// Appends the points of the map in a contact set; modes are labelled by the branches of the chart @p main, unless it is null.
+    /// Appends the points of the map in a contact set; modes are labelled by the branches of the chart @p main unless it is null.
     void append_map_cells(const SweepModel &model, const SweepChart *main, std::vector<MapCell> &cells)
     {
       for (const OperatingPoint &operating : model.regime.points)
@@ -100,8 +100,8 @@ namespace Squeal
         }
     }
 
-    /// Appends the modes of the band at those friction coefficients of the complex plane that belong to the contact set, on the main line
-    /// and on the line without radial dissipation, without extending the basis: charts do not change.
+    /// Appends the modes of the band at the friction coefficients of the complex plane that belong to the contact set, on the main line and
+    /// on the line without radial dissipation. The basis is not extended, so that charts do not change.
     void append_plane_modes(SweepModel &model, std::vector<PlaneMode> &modes)
     {
       for (const double mu : model.run.parameters.sweep.complex_plane())
@@ -193,7 +193,7 @@ namespace Squeal
                              "set it to load per side or pressure, or Sweep/Map parameter = none");
     }
 
-    /// Reports requested friction coefficients with contact sets that do not occur at any value of the sweep.
+    /// Reports requested friction coefficients at which the contact set differs from those at all values of the sweep.
     void note_unknown_contact(const SweepPlan &plan, Run &run)
     {
       const SweepParameters                                                  &sweep  = run.parameters.sweep;
@@ -250,7 +250,7 @@ namespace Squeal
                    cells);
     }
 
-    /// Modes at the friction coefficients of the complex plane, in the order of the parameter, lines without dissipation last.
+    /// Modes at the friction coefficients of the complex plane, sorted by the parameter; lines without dissipation come last.
     Table plane_table(const std::vector<PlaneMode> &modes, const SweepAxis &axis)
     {
       using Row           = PlaneMode;
@@ -327,15 +327,15 @@ namespace Squeal
     run.finish();
   }
 
-  /// `Study = sweep`: complex modes over a range of the friction coefficient, with and without radial dissipation, their thresholds, and
-  /// maps over load or speed.
+  /// `Study = sweep`: complex modes over a range of the friction coefficient, with and without radial dissipation, with their thresholds,
+  /// and maps over load or speed.
   static void run_sweep_study(Scene &scene, Run &run)
   {
     assemble_scene(scene, run);
     run_plan(sweep_plan(scene, run), run);
   }
 
-  /// `Study = sweep` for a system file: over one parameter, and a map over two.
+  /// `Study = sweep` for a system file: varies one parameter, or two in a map.
   static void run_sweep_of_system(Run &run)
   {
     run_plan(sweep_plan_of_system(run), run);

@@ -3,7 +3,7 @@
 #include <squeal/base/groups.h>
 #include <squeal/studies/updating/least_squares.h>
 
-#define GLOG_USE_GLOG_EXPORT // required by the headers of glog 0.7
+#define GLOG_USE_GLOG_EXPORT // the headers of glog 0.7 require this macro
 #include <ceres/cost_function.h>
 #include <ceres/manifold.h>
 #include <ceres/problem.h>
@@ -22,10 +22,10 @@ namespace Squeal
     /// A parameter within this distance of an end of the unit interval is at its limit.
     constexpr double at_limit = 1e-6;
 
-    /// Gauss-Newton step left at a minimum [-]: less is left to rounding and to the curvature of the residuals.
+    /// Largest Gauss-Newton step at a minimum [-]: rounding errors and the curvature of the residuals cause smaller steps.
     constexpr double step_at_minimum = 1e-3;
 
-    /// Parameters at limits beyond which |r| would decrease.
+    /// Parameters at a limit that would decrease |r| if they could go beyond it.
     std::vector<int> held_by_limits(const std::vector<double> &x, const Residuals &residuals)
     {
       const Eigen::VectorXd gradient = residuals.J.transpose() * residuals.r;
@@ -36,7 +36,7 @@ namespace Squeal
       return result;
     }
 
-    /// Parameters that are not fixed at a limit.
+    /// Parameters that are not held by a limit.
     std::vector<Eigen::Index> free_parameters(const std::vector<double> &x, const Residuals &residuals)
     {
       const std::vector<int>    held = held_by_limits(x, residuals);
@@ -47,10 +47,10 @@ namespace Squeal
       return result;
     }
 
-    /// Singular values up to this fraction of the largest are attributed to errors of the derivatives.
+    /// Singular values below this fraction of the largest one are attributed to errors of the derivatives.
     constexpr double smallest_singular_value = 1e-7;
 
-    /// Largest component of the Gauss-Newton step of the free parameters, in directions that the data determine.
+    /// Largest component of the Gauss-Newton step of the free parameters, in the directions that the data determine.
     double remaining_step(const std::vector<double> &x, const Residuals &residuals)
     {
       const std::vector<Eigen::Index> free = free_parameters(x, residuals);
@@ -62,10 +62,10 @@ namespace Squeal
       return svd.solve(residuals.r).cwiseAbs().maxCoeff();
     }
 
-    /// A parameter is undetermined if the square of its component in undetermined directions exceeds this.
+    /// A parameter is undetermined if the squared norm of its component in undetermined directions exceeds this value.
     constexpr double undetermined_square = 1e-4;
 
-    /// Undetermined parameters form a group if the cosine between them, in the undetermined directions, exceeds this.
+    /// Undetermined parameters form a group if the cosine between their components in undetermined directions exceeds this value.
     constexpr double act_alike = 0.1;
 
     /// Residuals for Ceres, cached so that each point is computed once.
@@ -130,7 +130,7 @@ namespace Squeal
     options.gradient_tolerance                = 1e-16;
     options.min_trust_region_radius           = tolerance * tolerance;
     options.max_num_consecutive_invalid_steps = maximum_iterations;
-    // Steps truncated at a limit end the search too early: fix the parameters at limits and continue with the others
+    // Steps truncated at a limit end the search too early: fix the parameters at limits and continue with the free ones
     std::vector<int>  held;
     const std::size_t most_changes = 4 * start.size();
     for (std::size_t change = 0;; ++change)
@@ -168,7 +168,7 @@ namespace Squeal
 
     const auto                          n_free = static_cast<Eigen::Index>(free.size()), m = residuals.r.size();
     const Eigen::JacobiSVD<DenseMatrix> svd(DenseMatrix(residuals.J(Eigen::placeholders::all, free)), Eigen::ComputeFullV);
-    Eigen::VectorXd                     S = Eigen::VectorXd::Zero(n_free); // zero-padded if there are fewer data than parameters
+    Eigen::VectorXd                     S = Eigen::VectorXd::Zero(n_free); // padded with zeros if there are fewer data than parameters
     S.head(svd.singularValues().size())   = svd.singularValues();
     const DenseMatrix &V                  = svd.matrixV();
     const bool         has_scale          = !is_relative || m > n_free;

@@ -78,7 +78,7 @@ namespace Squeal
           throw ParameterError("missing column " + in_quotes(known_columns[i]), file.where_names, "the columns are " + known);
     }
 
-    /// Relative deviation below which numbers cannot be told apart.
+    /// Smallest relative deviation; smaller ones are below the resolution of numbers.
     constexpr double smallest_deviation = 1e-12;
 
     MeasuredMode mode_of(const Row &row)
@@ -188,15 +188,15 @@ namespace Squeal
     struct WeightedModes
     {
       std::vector<const ComputedMode *> modes;
-      std::vector<double>               weights; ///< sum 1
-      double                            mac;     ///< of the measured shape and its projection on theirs [-]
+      std::vector<double>               weights; ///< weights with sum 1
+      double                            mac;     ///< MAC of the measured shape and its projection on the span of the shapes [-]
     };
 
-    /// Relative difference of frequencies up to which friction and other parameters mix the shapes of two modes, such as a doublet.
+    /// Relative difference of frequencies up to which two modes, such as a doublet, may mix their shapes.
     constexpr double mixing_difference = 0.02;
 
-    /// The mode of the state whose shape is most similar to a measured one, together with the mode with which it may mix: x ≈ c_1 y_1 + c_2 y_2
-    /// by least squares, weights |c_j|² ‖y_j‖². The shape of a single mode gives that mode the weight 1.
+    /// The mode of the state whose shape is most similar to a measured shape, and a second mode with which it may mix: x ≈ c_1 y_1 + c_2
+    /// y_2 by least squares, weights |c_j|² ‖y_j‖². If the measured shape equals that of one mode, its weight is 1.
     WeightedModes most_similar(const MeasuredMode &mode, const MeasuredModes &measured, const std::vector<ComputedMode> &modes)
     {
       const Eigen::VectorXcd &shape = measured.sensors.shapes.at(mode.label);

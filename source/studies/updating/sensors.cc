@@ -18,7 +18,7 @@ namespace Squeal
   namespace
   {
     constexpr const char *parameter_of_sensors = "Updating/Sensors";
-    constexpr const char *imaginary            = " imaginary"; ///< ending of the column of an imaginary part
+    constexpr const char *imaginary            = " imaginary"; ///< suffix of columns with imaginary parts
 
     const std::vector<std::string> place_columns = {"x [m]", "y [m]", "z [m]", "direction x", "direction y", "direction z"};
 

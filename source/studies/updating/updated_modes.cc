@@ -93,7 +93,7 @@ namespace Squeal
     if (measured.has(MeasuredState::component))
       throw ParameterError("a system file has no component modes", "parameter Updating/Measured modes",
                            "use the states coupled and complex only");
-    std::shared_ptr<const SparseMatrix> sensors; // rows of their responses
+    std::shared_ptr<const SparseMatrix> sensors; // matrix from dofs to responses of the sensors
     if (!measured.sensors.shapes.empty())
       {
         if (!file.points)

@@ -21,12 +21,13 @@ namespace Squeal
 
   namespace
   {
-    /// Step of the difference quotients to either side, as a fraction of the range. Quotients of factors, the most common case, are exact.
+    /// Half step of the difference quotients, as a fraction of the range. For factors of terms, the most common case, the quotients are
+    /// exact.
     constexpr double step_of_rates = 1e-4;
 
     constexpr const char *where_fitted = "parameter Designs/Variables";
 
-    /// What a parameter changes.
+    /// Part of the model that a parameter changes.
     enum class Action
     {
       factor,   ///< coefficients of terms
@@ -39,7 +40,7 @@ namespace Squeal
       throw ParameterError(what, where_fitted, change);
     }
 
-    /// Parameters of a solution at full order.
+    /// Parameters for a solution at full order.
     Parameters solved_parameters(Parameters parameters)
     {
       parameters.study    = &stability_study;
@@ -49,7 +50,7 @@ namespace Squeal
       return parameters;
     }
 
-    /// (p2 − p1)/h of lists of numbers; missing entries count as zero.
+    /// (p2 − p1)/h of lists of numbers; a missing entry counts as zero.
     ParameterValues difference_quotient(const ParameterValues &before, const ParameterValues &after, const double h)
     {
       ParameterValues result;
@@ -162,7 +163,7 @@ namespace Squeal
         const FittedParameter &parameter = parameters[p];
         const std::string      lower     = text_without_coefficients(with_value(base, p, parameter.lower)),
                           upper          = text_without_coefficients(with_value(base, p, parameter.upper));
-        // Parameters joined by + may have different values in the parameter file
+        // Compare with the start value: parameters joined by + may have different values in the parameter file
         if (lower == upper && lower == text_without_coefficients(with_value(base, p, parameter.start)))
           return Action::factor;
         for (const char *section : {"Disc material/", "Pin material/", "Materials/", "Mounts/"})
@@ -196,7 +197,7 @@ namespace Squeal
         return result;
       }
 
-      /// Assembles the bodies of a design. Remeshes only if more than coefficients change.
+      /// Assembles the bodies of a design. Remeshes only if more than coefficients of terms changes.
       void assemble(const Parameters &design, Run &quiet)
       {
         const std::string matrices = text_without_coefficients(design);
@@ -230,7 +231,7 @@ namespace Squeal
         return merged(result.terms, result.values);
       }
 
-      /// Difference quotients within the range; exact for factors.
+      /// Difference quotients within the range; exact for factors of terms.
       EquationRates rates_of(const std::size_t                  p,
                              const double                       value,
                              const Parameters                  &design,
@@ -266,7 +267,7 @@ namespace Squeal
         return result;
       }
 
-      /// Model on the mesh with its nodes moved by the change of a parameter.
+      /// Model on the mesh with displaced nodes for a change of a parameter.
       Model moved_model(const std::size_t p, const double change, const Parameters &design) const
       {
         Mesh mesh = scene.mesh;
@@ -353,10 +354,10 @@ namespace Squeal
       const MeasuredModes                &measured;
       Run                                &run;
       const Parameters                    base;
-      std::string                         meshed; ///< text_without_coefficients() of the current mesh
+      std::string                         meshed; ///< text_without_coefficients() of the parameters that were meshed
       BodyTerms                           bodies;
       std::vector<Action>                 actions;
-      std::shared_ptr<const SparseMatrix> sensors; ///< rows of their responses; null without sensors
+      std::shared_ptr<const SparseMatrix> sensors; ///< matrix from dofs to responses of the sensors; null without sensors
     };
   } // namespace
 

@@ -24,9 +24,9 @@ namespace Squeal
     struct FittedNumber
     {
       const MeasuredMode *mode;
-      bool                is_damping; ///< else a frequency
+      bool                is_damping; ///< true: a damping ratio; false: a frequency
       double              start = 0., updated = 0.;
-      Counterpart         partner = {}; ///< after the fit
+      Counterpart         partner = {}; ///< counterpart after the fit
 
       const Measured &measured() const
       {
@@ -105,7 +105,7 @@ namespace Squeal
         return {result, computed};
       }
 
-      /// Residuals; nothing if the modes cannot be computed or paired.
+      /// Residuals; empty if the modes cannot be computed or paired.
       std::optional<Residuals> try_to_evaluate(const std::vector<double> &x)
       {
         try
@@ -130,8 +130,8 @@ namespace Squeal
       const ModesAtValues                                     modes_at;
       Run                                                    &run;
       int                                                     n_evaluations = 0;
-      std::map<std::vector<double>, std::vector<Counterpart>> computed_at; ///< the numbers at each point
-      std::string why_failed; ///< reason at the last point without residuals; empty if there is none
+      std::map<std::vector<double>, std::vector<Counterpart>> computed_at; ///< computed counterparts at each point
+      std::string                                             why_failed;  ///< reason why the last point has no residuals; empty if it has
     };
 
     // --------------------------------------------------------------------- results
@@ -347,7 +347,7 @@ namespace Squeal
       run.finish();
     }
 
-    /// The modes of Updating/Measured modes, else those of a file that a system names.
+    /// The modes of Updating/Measured modes or, if there is no such file, of the file named by a system.
     MeasuredModes given_modes(const Parameters &parameters, const std::string &of_system = "")
     {
       const std::string &name      = parameters.updating.measured_modes;
@@ -430,7 +430,7 @@ namespace Squeal
         {
           auto values            = run.parameters.system.values;
           values[parameter.name] = end;
-          file.values(values); // throws if the range exceeds that of the file
+          file.values(values); // throws ParameterError if the range exceeds that of the file
         }
     const auto write = [&](const std::vector<double> &values) {
       Parameters updated = without_fit(run.parameters);

@@ -22,7 +22,7 @@ namespace Squeal
     std::string family() const;
   };
 
-  /// Eigenvalues by one method: the counterparts of the full-order modes.
+  /// Eigenvalues computed by one method: the counterparts of the full-order modes.
   struct ModesByMethod
   {
     std::string                       method; ///< "full order", or the name of a basis
@@ -30,7 +30,7 @@ namespace Squeal
     Cost                              cost;   ///< from meshing to modes; memory of all processes
     std::vector<std::complex<double>> lambda; ///< [rad/s]
 
-    /// Estimated |δλ| / |λ| due to the eigensolver: ½ √ε_res, with eq. (16) of the paper, to first order for well separated modes [-].
+    /// Estimated |δλ| / |λ| due to the eigensolver [-]: ½ √ε_res with eq. (16) of the paper, valid to first order for well separated modes.
     std::vector<double> algebraic_errors;
   };
 
@@ -42,7 +42,7 @@ namespace Squeal
     ModesAtPoints              modes; ///< full-order modes in the band and its margin
     std::vector<ModeLabel>     labels;
     std::size_t                n_unstable;
-    std::vector<ModesByMethod> methods; ///< full order first
+    std::vector<ModesByMethod> methods; ///< first method: full order
   };
 
   /// A mesh and element that could not be solved.
@@ -66,15 +66,15 @@ namespace Squeal
   /// Limit of a quantity of a mode for vanishing mesh width.
   struct Limit
   {
-    std::optional<Extrapolation> sequence; ///< nothing if only one mesh has the mode
+    std::optional<Extrapolation> sequence; ///< empty if only one mesh has the mode
     double                       value = 0., uncertainty = 0.;
   };
 
   /// A mode on all meshes of a family, and its limits.
   struct ConvergedMode
   {
-    ModeLabel        label;      ///< on the finest mesh
-    bool             in_cluster; ///< on any pair of meshes, see pair_modes()
+    ModeLabel        label;      ///< label on the finest mesh
+    bool             in_cluster; ///< mixes with other modes on any pair of meshes, see pair_modes()
     std::vector<int> numbers;    ///< index of the mode on every mesh; -1: no counterpart
     Limit            frequency;  ///< [Hz]
     Limit            divergence; ///< [-]
@@ -85,15 +85,14 @@ namespace Squeal
   {
     std::string                     name;
     std::vector<const SolvedMesh *> members; ///< the finest last
-    std::vector<ConvergedMode>      modes;   ///< of the finest mesh, in its order
+    std::vector<ConvergedMode>      modes;   ///< modes of the finest mesh, in their order
     double                          error;   ///< rms of the frequency errors on the finest mesh, including their uncertainty [-]
   };
 
   /**
-   * Extrapolates the modes of every family of two or more meshes to zero mesh width, frequencies and divergence rates separately, paired by
-   * shape with the modes of the finest mesh. If no order of convergence is observed, the limit is extrapolated with twice the degree of the
-   * element as order for two meshes; for more meshes it is the value of the finest one. In clusters it is also the value of the finest
-   * mesh.
+   * Extrapolates the frequencies and divergence rates of every family of two or more meshes to zero mesh width; modes are paired by shape
+   * with those of the finest mesh. If no order of convergence is observed, two meshes are extrapolated with twice the degree of the element
+   * as order, and more meshes have the value of the finest mesh as limit. In clusters, the limit is always the value of the finest mesh.
    */
   std::vector<ConvergedFamily> converged_families(const std::vector<SolvedMesh> &meshes, double maximum_frequency);
 
@@ -103,33 +102,33 @@ namespace Squeal
   /// Error contributions.
   struct ErrorKinds
   {
-    double total          = 0.; ///< relative to the extrapolated value
-    double discretisation = 0.; ///< of full order on this mesh, relative to the extrapolated value
-    double reduction      = 0.; ///< of the basis, relative to full order on this mesh
-    double algebraic      = 0.; ///< of the eigensolver, estimated from residuals
+    double total          = 0.; ///< error relative to the extrapolated value
+    double discretisation = 0.; ///< error of full order on this mesh, relative to the extrapolated value
+    double reduction      = 0.; ///< error of the basis, relative to full order on this mesh
+    double algebraic      = 0.; ///< error of the eigensolver, estimated from residuals
   };
 
-  /// A reference mode and its counterpart by one mesh and method.
+  /// A reference mode and its counterpart on one mesh by one method.
   struct ModeErrors
   {
     const ConvergedMode *reference;
     int                  number;           ///< index of the mode on the mesh; -1: no counterpart
-    double               overlap;          ///< of both shapes [-]
+    double               overlap;          ///< overlap of both shapes [-]
     bool                 in_cluster;       ///< one of several modes that mix from mesh to mesh
     double               frequency;        ///< [Hz]
     double               divergence;       ///< [-]
-    ErrorKinds           frequency_error;  ///< relative [-]
+    ErrorKinds           frequency_error;  ///< relative error [-]
     ErrorKinds           divergence_error; ///< difference of divergence rates [-]
   };
 
-  /// All modes of the band by one mesh and method, with errors.
+  /// All modes of the band on one mesh by one method, with errors.
   struct ComparedMethod
   {
     const SolvedMesh       *mesh;
     const ModesByMethod    *method;
     std::vector<ModeErrors> modes;
     ErrorKinds              largest_frequency;  ///< [-]
-    double                  rms_frequency;      ///< of the total errors [-]
+    double                  rms_frequency;      ///< rms of the total errors [-]
     ErrorKinds              largest_divergence; ///< for modes outside clusters [-]
     int                     n_in_cluster, n_lost;
     bool                    on_front = false; ///< Pareto-optimal: no faster method has a smaller largest frequency error

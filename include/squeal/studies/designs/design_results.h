@@ -18,9 +18,9 @@ namespace Squeal
   {
     double                  friction_coefficient = 0.;
     double                  uncertainty          = 0.;
-    std::string             event, mechanism, label; ///< of the growing mode
-    boost::optional<double> overlap;                 ///< with the reference mode of that label [-]; none in a cluster
-    std::string             partner;                 ///< empty: none
+    std::string             event, mechanism, label; ///< label of the growing mode
+    boost::optional<double> overlap;                 ///< overlap with the reference mode of this label [-]; empty in a cluster
+    std::string             partner;                 ///< label of the other mode; empty: none
     double                  frequency = 0.;          ///< [Hz]
 
     template <class Archive>
@@ -33,13 +33,13 @@ namespace Squeal
   /// A mode of a design, at the smallest and largest friction coefficients at which it is in the band.
   struct DesignMode
   {
-    std::string             label;     ///< label of the most similar reference mode; else its own
-    std::string             own_label; ///< from the component modes of the design
-    boost::optional<double> overlap;   ///< with the reference mode [-]; none in a cluster, whose members are mixed by rounding
+    std::string             label;     ///< label of the most similar reference mode; own_label if there is none
+    std::string             own_label; ///< label from the component modes of the design
+    boost::optional<double> overlap;   ///< overlap with the reference mode [-]; empty in a cluster, whose shapes are mixed by rounding
     double                  first_frequency = 0., last_friction_coefficient = 0., last_frequency = 0.; ///< [Hz]
     double                  last_growth_rate = 0., last_divergence_rate = 0., last_error = 0.;         ///< [1/s], [-], [-]
-    std::string             verdict;                                                                   ///< at the largest one
-    double                  largest_divergence_rate = 0.;                                              ///< at any friction coefficient [-]
+    std::string             verdict;                                                                   ///< for the last coefficient
+    double                  largest_divergence_rate = 0.;                                              ///< maximum over the sweep [-]
     boost::optional<double> onset; ///< smallest friction coefficient at which it grows
 
     template <class Archive>
@@ -54,7 +54,7 @@ namespace Squeal
   enum class DesignOutcome
   {
     solved,
-    refused, ///< rejected parameters or geometry
+    refused, ///< parameters or geometry were rejected
     failed   ///< meshing or solution failed
   };
 
@@ -67,7 +67,7 @@ namespace Squeal
   struct DesignGrowth
   {
     double      friction_coefficient = 0.;
-    double      uncertainty          = 0.; ///< of the friction coefficient; 0 if prescribed
+    double      uncertainty          = 0.; ///< uncertainty of the friction coefficient; 0 if it is prescribed
     std::string label;
     double      frequency       = 0.; ///< [Hz]
     double      divergence_rate = 0.; ///< [-]
@@ -84,19 +84,19 @@ namespace Squeal
   struct DesignResult
   {
     int                      number = 0; ///< counted from one
-    std::vector<std::string> values;     ///< of the variables; those of the given model if the design does not set them
+    std::vector<std::string> values;     ///< values of the variables; those of the given model if the design does not set them
     DesignOutcome            outcome = DesignOutcome::failed;
-    std::string              reason; ///< for rejection or failure
+    std::string              reason; ///< reason for rejection or failure
 
     int    n_dofs = 0, n_modes = 0, n_counted = 0; ///< modes in the band at the smallest friction coefficient; real modes by inertia
-    bool   is_complete = false;                    ///< these numbers agree, and the count is as expected at every friction coefficient
+    bool   is_complete = false;                    ///< both numbers agree, and the count is as expected at every friction coefficient
     int    n_unstable = 0, n_undecided = 0;        ///< at the largest friction coefficient
     int    n_growing     = 0;                      ///< number of modes that grow at any friction coefficient
     double largest_error = 0., largest_residual = 0.;
     int    n_doubtful = 0; ///< number of steps in which modes were distinguished only by frequency
 
     boost::optional<DesignGrowth> onset;      ///< smallest friction coefficient at which a mode grows
-    boost::optional<DesignGrowth> weak_onset; ///< smallest friction coefficient at which a divergence rate exceeds weak_divergence
+    boost::optional<DesignGrowth> weak_onset; ///< smallest friction coefficient with a divergence rate above weak_divergence
     boost::optional<DesignGrowth> worst;      ///< the largest divergence rate at any friction coefficient
     std::vector<DesignThreshold>  thresholds;
     std::vector<DesignMode>       modes;
@@ -113,7 +113,7 @@ namespace Squeal
   /// Outcome of a design, in a few words.
   std::string outcome_of(const DesignResult &result);
 
-  /// One row for each design; @p names of the variables.
+  /// One row for each design; @p names: names of the variables.
   Table design_table(const std::vector<std::string> &names, const std::vector<DesignResult> &designs);
 
   /// Thresholds of all designs.
@@ -122,9 +122,9 @@ namespace Squeal
   /// Modes of all designs.
   Table design_mode_table(const std::vector<DesignResult> &designs);
 
-  /// Designs without growth up to the largest friction coefficient, then those with the largest onsets; as many as fit on the screen.
+  /// Designs without growth up to the largest friction coefficient, then designs with the largest onsets; as many as fit on the screen.
   Table quietest_designs(const std::vector<std::string> &names, const std::vector<DesignResult> &designs);
 
-  /// Quietest and loudest designs, and numbers of rejected and failed ones, one line each.
+  /// Quietest and loudest designs, and numbers of rejected and failed designs, one line each.
   std::vector<std::string> verdict(const std::vector<std::string> &names, const std::vector<DesignResult> &designs);
 } // namespace Squeal

@@ -10,7 +10,7 @@
 
 namespace Squeal
 {
-  /// Frictionless modes of the given model, by which modes of its designs are labelled: displacements at the cell centres, in cylindrical
+  /// Frictionless modes of the given model, used to label the modes of its designs: displacements at the cell centres, in cylindrical
   /// components.
   struct ReferenceModes
   {
@@ -30,11 +30,11 @@ namespace Squeal
   /// Shapes are on process 0 only.
   ReferenceModes reference_modes(const FrictionlessModes &modes, const MaterialParameters &materials);
 
-  /// Reference mode that resembles a mode of a design.
+  /// Label of a mode of a design, from the reference mode that it resembles.
   struct ReferenceName
   {
-    std::string name;               ///< empty if there is none
-    double      overlap    = 0.;    ///< of both shapes [-]
+    std::string name;               ///< empty if no reference mode is similar
+    double      overlap    = 0.;    ///< overlap of both shapes [-]
     bool        in_cluster = false; ///< one of several modes that mix between designs
   };
 
@@ -44,34 +44,34 @@ namespace Squeal
                                       const SparseMatrix   &kernel,
                                       const ComplexModes   &modes);
 
-  /// Key of the parameters that designs must share to use the same mesh and matrices: all except coefficients of terms. Empty if a design
-  /// cannot share them.
+  /// Key of the parameters that designs must share to use the same mesh and matrices: all parameters except coefficients of terms. Empty if
+  /// a design cannot share them.
   std::string family_key(const Parameters &design);
 
   /**
    * One reduced model for several designs on one mesh, which differ in moduli, densities, Rayleigh coefficients, stiffnesses of mounts, load
    * and speed: coefficients θ of the terms of one system Q(λ; p) = Σ θ_k(p) λ^p A_k. Each design is a line of a sweep plan.
    *
-   * The basis starts from the real modes in the middle of the family, is compressed at the last friction coefficients of all designs, and
-   * grows where a point misses Sweep/Tolerance. The results of a design depend on those solved before it, within the tolerance.
+   * The basis starts from the real modes of the averaged design, is compressed at the last friction coefficients of all designs, and grows
+   * where a point misses Sweep/Tolerance. Within this tolerance, the results of a design depend on the designs solved before it.
    */
   class DesignFamily
   {
   public:
-    /// Meshes and assembles @p designs with the same family_key(), and computes the real modes in the middle. Designs and @p run must
-    /// outlive the object.
+    /// Meshes and assembles @p designs with the same family_key(), and computes the real modes of the averaged design. Designs and @p run
+    /// must outlive the object.
     DesignFamily(const std::vector<Parameters> &designs, Run &run);
 
-    /// The chart of a design by the model of the family.
+    /// The chart of a design, computed with the model of the family.
     struct Member
     {
       SweepModel &model;
       SweepChart  chart;
-      int         n_counted; ///< real modes in the band by inertia
+      int         n_counted; ///< number of real modes in the band by inertia
     };
 
-    /// Follows the modes of a design over the friction coefficients of its sweep. Throws SolverError if the design is too far from the
-    /// others for one basis.
+    /// Follows the modes of a design over the friction coefficients of its sweep. Throws SolverError if one basis is not sufficient for
+    /// this design and the previous ones.
     Member solve(std::size_t design);
 
     Scene scene;
@@ -90,8 +90,8 @@ namespace Squeal
   /// Parameters of the sweep of a design, without optional output of a single run.
   Parameters sweep_of(const Parameters &design);
 
-  /// Follows the modes over the friction coefficients of the sweep and extracts the results of a design, with labels by @p reference.
-  /// Throws Error if this fails.
+  /// Follows the modes over the friction coefficients of the sweep and extracts the results of a design; modes are labelled by @p
+  /// reference. Throws Error if this fails.
   DesignResult solve_design(const Parameters &parameters, const ReferenceModes &reference, Run &run);
 
   /// solve_design() for a member of a family.

@@ -16,8 +16,8 @@ namespace Squeal
   class Checkpoint
   {
   public:
-    /// Collective; the root creates the @p folder if necessary. @p key contains everything that affects results. Throws FileError if the
-    /// folder contains another study, or anything else.
+    /// Collective; the root process creates the @p folder if necessary. @p key contains everything that affects results. Throws FileError
+    /// if the folder contains another study or other files.
     Checkpoint(const std::filesystem::path &folder, const std::string &key, MPI_Comm communicator);
 
     /// Opens the checkpoint in a worker process of the study.
@@ -29,14 +29,14 @@ namespace Squeal
     Checkpoint(const Checkpoint &)            = delete;
     Checkpoint &operator=(const Checkpoint &) = delete;
 
-    /// Stores an object that Boost serialises; a killed run leaves a complete file or none.
+    /// Stores an object that Boost serialises. If the run is killed, the file is complete or absent.
     template <typename Object>
     void keep(const std::string &name, const Object &object) const
     {
       write(name, dealii::Utilities::pack(object, false));
     }
 
-    /// A stored object; nothing if there is none with this name.
+    /// A stored object; empty if no object has this name.
     template <typename Object>
     std::optional<Object> find(const std::string &name) const
     {
@@ -53,7 +53,7 @@ namespace Squeal
     bool is_creator = false;
   };
 
-  /// The reference modes and the finished designs of an unfinished study of designs.
+  /// The reference modes and the solved designs of an unfinished study of designs.
   class DesignStore : public Checkpoint
   {
   public:
@@ -65,7 +65,7 @@ namespace Squeal
     /// Stored result of a design; nothing if it is not finished.
     std::optional<DesignResult> find(int design) const;
 
-    /// Number of finished designs among some.
+    /// Number of @p designs that are finished.
     std::size_t n_known(const std::vector<int> &designs) const;
 
     /// Stores the result of a design.
@@ -76,11 +76,11 @@ namespace Squeal
   };
 
   /**
-   * Solves designs in separate, concurrent processes (base/worker_process.h). A failure is recorded in the result of the design and does
-   * not affect the others.
+   * Solves designs in separate, concurrent processes (base/worker_process.h). A failure is recorded in the result of its design and does
+   * not affect other designs.
    *
    * @param batches    designs that one process solves in turn; finished designs of a family are solved again to rebuild its basis
-   * @param unfinished initial result of a design
+   * @param unfinished initial result of a design, before it is solved
    * @param arguments  of the command line, from which worker processes read the designs
    */
   void solve_side_by_side(const std::vector<std::vector<int>>             &batches,
@@ -94,7 +94,7 @@ namespace Squeal
   struct DesignWork
   {
     DesignPlan       plan;
-    std::vector<int> designs; ///< counted from one
+    std::vector<int> designs; ///< numbers of the designs, from 1
   };
 
   /// Everything that affects the results of a study of a @p model: version, parameters and model.
@@ -103,10 +103,10 @@ namespace Squeal
   /// The mesh of a model, for study_key().
   std::string model_key(const Scene &scene);
 
-  /// Key of everything that affects the results of a study; @p plan: designs known beforehand.
+  /// Key of everything that affects the results of a study; @p plan: designs known in advance.
   std::string design_key(const Run &run, const Scene &scene, const DesignPlan &plan);
 
-  /// Parameters of the sweep of a design; nothing if it is rejected, with an optional @p reason.
+  /// Parameters of the sweep of a design; empty if it is rejected. @p reason receives the reason unless it is null.
   std::optional<Parameters> parameters_of(const Run &run, const DesignPlan &plan, int design, std::string *reason = nullptr);
 
   /// Initial result of a design, before it is solved.
@@ -115,18 +115,18 @@ namespace Squeal
   /// Message of an error, in one line.
   std::string in_one_line(const Error &error);
 
-  /// Reference modes for the labels of designs: from a file written by another process, or computed from the given model.
+  /// Reference modes for the labels of designs: read from the file if another process has written it, else computed from the given model.
   ReferenceModes design_reference(Scene &scene, Run &run, const std::filesystem::path &file);
 
-  /// Solves all designs that are not in the store, in separate processes. @p arguments of the command line let worker processes read the
-  /// same plan. Collective.
+  /// Solves all designs that are not in the store, in separate processes. Worker processes receive the command-line @p arguments, so that
+  /// they read the same plan. Collective.
   std::vector<DesignResult> solve_all(Scene                          &scene,
                                       Run                            &run,
                                       const DesignWork               &work,
                                       const DesignStore              &store,
                                       const std::vector<std::string> &arguments);
 
-  /// Writes the tables of designs and reports the quietest one.
+  /// Writes the tables of designs and reports the quietest design.
   void write_designs(const std::vector<std::string> &names, const std::vector<DesignResult> &results, Run &run);
 
   /// Creates a study of designs with the common parameters and usage rules; @p own_rules take precedence.
@@ -135,14 +135,14 @@ namespace Squeal
   /// Writes the parameter file NAME of a design, as a sweep.
   void write_parameter_file(Parameters design, const std::string &name, const Run &run);
 
-  /// Variables of a plan without effect on the designs, with the reason. Throws ParameterError as with_design() does.
+  /// Variables of a plan that have no effect on the designs, with the reason. Throws ParameterError as with_design() does.
   std::vector<UnusedParameter> unused_variables(const Parameters &parameters, const DesignPlan &plan);
 
-  /// Throws ParameterError if a variable is not a parameter; if it has no effect, so that formally different designs are equal; or if a
-  /// value is rejected both with all others unchanged and in every design that contains it. Invalid combinations are reported in the rows
-  /// of their designs.
+  /// Throws ParameterError if a variable is not a parameter; if it has no effect, so that designs that differ only in it are equal; or if a
+  /// value is rejected both with all other variables unchanged and in every design that contains it. Invalid combinations are reported in
+  /// the rows of their designs.
   void check_designs(const Parameters &parameters, const DesignPlan &plan);
 
-  /// check_designs() for a search in ranges: only the ends are checked, individually.
+  /// check_designs() for a search within ranges: checks the ends of each range individually.
   void check_ranges(const Parameters &parameters, const std::vector<DesignVariable> &variables);
 } // namespace Squeal

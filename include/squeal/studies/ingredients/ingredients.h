@@ -34,7 +34,7 @@ namespace Squeal
     Parameters                     parameters;
     std::shared_ptr<const Scene>   scene;
     FrictionModes                  friction;
-    std::shared_ptr<ModesAtPoints> shapes; ///< at the common points of the reference
+    std::shared_ptr<ModesAtPoints> shapes; ///< shapes at the common points of the reference
     StepCosts                      costs;
   };
 
@@ -42,8 +42,8 @@ namespace Squeal
   struct ReferenceModel : SolvedModel
   {
     FrictionlessModes                   frictionless;
-    CommonPoints                        points;        ///< of its own mesh
-    std::shared_ptr<const SparseMatrix> displacements; ///< at these points; see displacements_at()
+    CommonPoints                        points;        ///< points of its own mesh
+    std::shared_ptr<const SparseMatrix> displacements; ///< displacements at these points; see displacements_at()
   };
 
   /// Difference between a variant and the reference.
@@ -58,7 +58,7 @@ namespace Squeal
     /// Reduced model instead of the full one: name of a recipe; empty: none.
     std::string basis = "";
 
-    /// The basis has real modes up to (1 + margin) times the end of the band.
+    /// The basis contains real modes up to (1 + margin) times the end of the band.
     double margin = 0.;
   };
 
@@ -68,7 +68,7 @@ namespace Squeal
   /**
    * Solves a variant without output. Only the differing steps are computed; shared steps are charged at their cost in the reference.
    *
-   * Throws ParameterError, MeshError or SolverError if there is no such model.
+   * Throws ParameterError, MeshError or SolverError if the variant cannot be solved.
    */
   SolvedModel solve_variant(const ReferenceModel &reference, const Variation &variation, const Run &run);
 
@@ -77,8 +77,8 @@ namespace Squeal
   {
     removes, ///< simplifies the model: a candidate for the cheapest model
     adds,    ///< adds a feature that the model lacks
-    speeds,  ///< another method for the same modes: a candidate for the cheapest model if faster
-    shows    ///< for information only: no parameters describe such a model
+    speeds,  ///< another method for the same modes: a candidate for the cheapest model if it is faster
+    shows    ///< for information only: no parameter file can describe this model
   };
 
   /// A model feature that can be varied individually: removed, added or replaced.
@@ -92,7 +92,7 @@ namespace Squeal
     /// True if the model already has the trial value, so that there is nothing to try.
     std::function<bool(const Parameters &)> is_present;
 
-    /// Makes the change; changes that no parameter can express are made in the variation.
+    /// Makes the change in the parameters or, if no parameter can express it, in other members of the variation.
     std::function<void(Variation &)> change;
 
     ChangeKind kind;
@@ -108,25 +108,25 @@ namespace Squeal
   /// Ingredients that are not present in the model yet, in the order of the list.
   std::vector<const Ingredient *> ingredients_to_try(const Parameters &parameters);
 
-  /// The model with some ingredients changed, starting from their earliest departure.
+  /// The model with several ingredients changed, starting from their earliest departure.
   Variation combined(const Parameters &parameters, const std::vector<const Ingredient *> &changed);
 
   /// A mode of the reference and its counterpart in a variant; one of them may be missing.
   struct ModeChange
   {
-    ModeLabel                           label;              ///< in the reference; in the variant if there is no counterpart
+    ModeLabel                           label;              ///< label in the reference; in the variant if there is no counterpart
     std::optional<std::complex<double>> reference, variant; ///< λ [rad/s]
     bool                                unstable_reference = false, unstable_variant = false;
-    double                              overlap    = 0.;    ///< of both shapes; see PairedMode [-]
+    double                              overlap    = 0.;    ///< overlap of both shapes, see PairedMode [-]
     bool                                in_cluster = false; ///< no individual counterpart by shape: paired by λ within the cluster
 
-    /// Change of the frequency [%]; for a mode without counterpart, the distance to the end of the band at @p band_end [rad/s].
+    /// Change of the frequency [%]; for a mode without counterpart, the distance from @p band_end, the end of the band [rad/s].
     double frequency(double band_end) const;
 
-    /// Change of the divergence rate [percentage points]; nothing without counterpart.
+    /// Change of the divergence rate [percentage points]; empty without counterpart.
     std::optional<double> divergence() const;
 
-    /// True if one mode has a divergence rate above weak_divergence and the other one does not grow or is missing.
+    /// True if one of the two modes has a divergence rate above weak_divergence, and the other mode does not grow or is missing.
     bool changes_verdict() const;
   };
 
@@ -140,19 +140,19 @@ namespace Squeal
   /// Effect of a variant on all modes.
   struct Effect
   {
-    std::vector<ModeChange> modes;    ///< in the order of the reference, then modes of the variant only
-    double                  band_end; ///< of the variant [rad/s]
+    std::vector<ModeChange> modes;    ///< in the order of the reference, then modes that only the variant has
+    double                  band_end; ///< end of the band of the variant [rad/s]
     int                     n_growing_real_reference, n_growing_real_variant;
 
-    LargestChange frequency() const;  ///< over the modes in the band of both [%]
-    LargestChange divergence() const; ///< likewise [percentage points]
+    LargestChange frequency() const;  ///< over the modes in the bands of both models [%]
+    LargestChange divergence() const; ///< over the same modes [percentage points]
 
     std::size_t n_unstable(bool in_variant) const;
     std::size_t n_lost() const; ///< number of reference modes without counterpart
 
     bool changes_verdict() const;
 
-    /// Largest change relative to the required accuracy: acceptable up to 1; infinite if a verdict changes.
+    /// Largest change relative to the required accuracy, acceptable up to 1; infinite if a verdict changes.
     double severity(const IngredientsParameters &accuracy) const;
   };
 
@@ -162,7 +162,7 @@ namespace Squeal
   /// A change that makes a model cheaper.
   struct CheaperChange
   {
-    std::string ingredient; ///< at most one change of each ingredient is made
+    std::string ingredient; ///< name; at most one change of each ingredient is made
     double      severity;   ///< its individual effect relative to the required accuracy; acceptable up to 1
   };
 
@@ -172,13 +172,13 @@ namespace Squeal
     std::vector<int> changes;       ///< indices, ascending; empty: the model is unchanged
     std::vector<int> put_back;      ///< changes that are acceptable individually but not in combination, in the order of removal
     int              n_solved = 0;  ///< number of combinations tried
-    double           severity = 0.; ///< of the combination
+    double           severity = 0.; ///< severity of the combination
   };
 
   /**
-   * Combines all changes that are individually acceptable, for each ingredient the first one in the list. While the accuracy is not met,
-   * the change with the largest individual effect is replaced by the next one of its ingredient with a smaller effect, or removed if there
-   * is none.
+   * Combines the changes that are individually acceptable; of several changes of an ingredient, the first in the list is used. While the
+   * accuracy is not met, the change with the largest individual effect is replaced by the next change of its ingredient with a smaller
+   * effect, or removed if there is none.
    *
    * @param severity_of severity of a combination of at least two changes
    */

@@ -14,8 +14,8 @@ namespace Squeal
   struct MeasuredBasis
   {
     const BasisRecipe     *recipe;
-    std::string            name;       ///< with the variant if there are several
-    std::string            truncation; ///< of the component modes
+    std::string            name;       ///< name of the basis, with the variant if there are several
+    std::string            truncation; ///< truncation of the component modes
     ReducedBasis           basis;      ///< its vectors are freed after the measurement
     int                    n_r           = 0;
     double                 build_seconds = 0., solve_seconds = 0.;
@@ -34,10 +34,10 @@ namespace Squeal
   struct ReferenceSolution
   {
     ComplexModes                          modes;
-    std::vector<ModeLabel>                labels;      ///< of the modes
-    std::vector<double>                   disc_shares; ///< disc's share of their energy [-]; empty: there is no disc
+    std::vector<ModeLabel>                labels;      ///< labels of the modes
+    std::vector<double>                   disc_shares; ///< the disc's share of the energy of each mode [-]; empty: there is no disc
     std::vector<std::string>              groups;
-    std::vector<std::vector<std::string>> joined; ///< groups that the paper combines
+    std::vector<std::vector<std::string>> joined; ///< groups that the paper lists together
     std::vector<bool>                     unstable;
     double                                seconds; ///< CPU time of the solution, including its factorisation
   };
@@ -59,7 +59,7 @@ namespace Squeal
   /// Table of all modes of all bases and the reference.
   Table reduction_mode_table(const std::vector<MeasuredBasis> &candidates, const ReferenceSolution &reference);
 
-  /// Table of the reliability of the error estimates, which do not use the reference.
+  /// Table of the reliability of the error estimates, which are computed without the reference.
   Table reduction_estimate_table(const std::vector<MeasuredBasis> &candidates, const ReferenceSolution &reference);
 
   /// Table of the numbers of component modes of each truncation.

@@ -12,12 +12,12 @@ namespace Squeal
   /// An uncertain number.
   struct UncertainNumber
   {
-    std::string  name; ///< for tables: "Pin material/Density", with the pin if each pin has its own
+    std::string  name; ///< name for tables: "Pin material/Density", with the pin if each pin has its own value
     std::string  parameter;
-    std::string  pin; ///< volume with this number; empty: all volumes of the parameter
+    std::string  pin; ///< volume with this value; empty: all volumes of the parameter
     Distribution distribution;
-    bool         is_relative = false;                                ///< its distribution is in per cent of the nominal value
-    const char  *where       = "parameter Robustness/Distributions"; ///< for messages
+    bool         is_relative = false;                                ///< the distribution is in per cent of the nominal value
+    const char  *where       = "parameter Robustness/Distributions"; ///< parameter for messages
   };
 
   /// The samples of a study.
@@ -25,9 +25,9 @@ namespace Squeal
   {
     std::vector<UncertainNumber> numbers;
     DenseMatrix                  values;        ///< one row for each sample
-    int                          n_independent; ///< number of independent samples, the first ones, for probabilities
-    bool                         has_indices;   ///< all samples together are saltelli_samples()
-    int n_followed = 0; ///< number of independent samples, the first ones, with modes followed over the friction coefficient
+    int                          n_independent; ///< the first samples, which are independent and used for probabilities
+    bool                         has_indices;   ///< the samples are those of saltelli_samples()
+    int n_followed = 0; ///< number of samples followed over the friction coefficient: the first of the independent samples
 
     int n() const
     {
@@ -41,7 +41,7 @@ namespace Squeal
                          const std::function<double(const std::string &)> &current,
                          const std::vector<std::string>                   &pins);
 
-  /// Designs as samples: values for the parameters of a system file; missing values are those of the file.
+  /// Designs used as samples: values of the parameters of a system file; values that a design omits are those of the file.
   SamplePlan listed_samples(const DesignPlan &plan, const std::function<double(const std::string &)> &current);
 
   /// Nominal value of a parameter of a system file. Throws ParameterError if there is no such parameter.
@@ -50,7 +50,7 @@ namespace Squeal
   /// Nominal value of a parameter of a meshed model. Throws ParameterError unless it is a number.
   double nominal_value(const Parameters &parameters, const std::string &name, const char *where = "parameter Robustness/Distributions");
 
-  /// Volumes of pins without their own material.
+  /// Volumes of pins that use the common pin material.
   std::vector<std::string> alike_pins(const Scene &scene, const Parameters &parameters);
 
   /// Parameters of a sample. Throws ParameterError if they are invalid.
@@ -59,7 +59,7 @@ namespace Squeal
   /// Parameters of a system file at the values of a sample.
   Parameters system_with_sample(const Parameters &parameters, const SamplePlan &samples, int sample);
 
-  /// Samples as operating points of contact sets, each with one system: `line` of a point is the index of its sample.
+  /// Samples as operating points of contact sets; each contact set has one system. `line` of a point is the index of its sample.
   struct SampledSystems
   {
     SweepPlan                      plan;      ///< one line for each sample that is followed over the friction coefficient
@@ -67,7 +67,7 @@ namespace Squeal
     std::vector<std::size_t>       n_samples; ///< number of samples in each contact set, the first points; the others belong to lines
     std::vector<FamilyScales>      scales;    ///< of each contact set of a meshed model
 
-    /// Converts an additional sample to a point of the first contact set; its `line` is the index of the sample.
+    /// Converts an additional sample to a point of the first contact set; `line` of the point is the index of the sample.
     std::function<OperatingPoint(const SamplePlan &, int sample)> point;
   };
 
@@ -107,27 +107,28 @@ namespace Squeal
     std::vector<SquealOnset> onsets;       ///< one for each label and divergence rate in a contact set
     std::size_t              n_missed = 0; ///< number of friction coefficients that miss the tolerance
 
-    /// First onset of modes with this label, or of all modes if empty, for this divergence rate; null: none.
+    /// First onset of modes with this label, or of any mode if the label is empty, at this divergence rate; null: none.
     const SquealOnset *first(double divergence_rate, const std::string &label = "") const;
   };
 
   /// Results of the samples.
   struct SolvedSamples
   {
-    std::vector<std::optional<Sample>> samples;  ///< nothing if the tolerance is missed
-    std::vector<FollowedSample>        followed; ///< the first ones
+    std::vector<std::optional<Sample>> samples;  ///< empty for samples that miss the tolerance
+    std::vector<FollowedSample>        followed; ///< for the first samples
   };
 
-  /// Starts the model of a contact set of samples.
+  /// Creates the model of a contact set of samples.
   std::unique_ptr<SweepModel> sample_model(const SampledSystems &systems, std::size_t contact_set, Run &run);
 
   /// Solves operating points of a system without a definite part, each at full order; failed points are omitted.
   ErrorControlledSweep solve_directly(const SweepModel &model, const std::vector<OperatingPoint> &points, const KeepPoint &keep);
 
-  /// Solves operating points to the tolerance with the basis of their contact set, or at full order without one, as a step of the run with
-  /// this name. Points are processed in batches of increasing size, so that few points are evaluated with a basis that is still too small.
+  /// Solves operating points to the tolerance with the basis of their contact set, or at full order if there is no basis, as a step of the
+  /// run with this name. Points are processed in batches of increasing size, so that few points are evaluated with a basis that is still
+  /// too small.
   ///
-  /// @param n_training number of first points at which the basis is extended and compressed
+  /// @param n_training number of leading points at which the basis is extended and compressed
   ErrorControlledSweep solve_points(SweepModel                        &model,
                                     const std::vector<OperatingPoint> &points,
                                     int                                n_training,
@@ -160,13 +161,13 @@ namespace Squeal
   /// Follows the modes of lines over the friction coefficient with the basis of the samples, which is extended if a point misses
   /// Sweep/Tolerance, as a step of the run.
   ///
-  /// @param n_samples number of points of the contact set, the first ones, that do not belong to a line
+  /// @param n_samples number of leading points of the contact set that do not belong to a line
   void follow_samples(SweepModel &model, std::size_t n_samples, std::vector<FollowedSample> &followed);
 
   /// Writes the tables of onsets and reports them.
   void write_onsets(const std::vector<FollowedSample> &followed, const std::string &parameter, Run &run);
 
-  /// One row for each sample, and one for each mode of the independent ones.
+  /// One row for each sample, and one row for each mode of the independent samples.
   Table sample_table(const SamplePlan &plan, const std::vector<std::optional<Sample>> &samples);
   Table cloud_table(const SamplePlan &plan, const std::vector<std::optional<Sample>> &samples);
 

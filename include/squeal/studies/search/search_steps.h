@@ -34,11 +34,11 @@ namespace Squeal
   /// Full-order modes of a design at one friction coefficient.
   struct FullOrder
   {
-    std::optional<double> friction_coefficient; ///< nothing for a system file without one
+    std::optional<double> friction_coefficient; ///< empty for a system file without a friction coefficient
     std::size_t           n_modes, n_unstable;
     ModalQuantities       leading; ///< fastest growing, or least damped, mode
     std::string           label;
-    double                residual; ///< largest
+    double                residual; ///< largest residual
   };
 
   /// Solves a design at full order, at μ or at the parameter values of a system file, as a step of the run.
@@ -49,9 +49,9 @@ namespace Squeal
   /// True if the goal of a search depends on uncertain parameters.
   bool is_robust(const SearchParameters &parameters);
 
-  /// Minimises the probability of squeal, or a quantile of the largest divergence rate of the samples: points of the Sobol sequence in the
-  /// ranges, then a derivative-free method from the best two of them. One reduced model solves all samples of all designs and is extended
-  /// if necessary. Every design uses the same random numbers.
+  /// Minimises the probability of squeal, or a quantile of the largest divergence rate of the samples. Evaluates points of the Sobol
+  /// sequence in the ranges, then starts a derivative-free method from the best two points. One reduced model solves all samples of all
+  /// designs and is extended if necessary. Every design uses the same random numbers.
   void run_robust_search(Scene &scene, Run &run);
   void run_robust_search_of_system(Run &run);
 } // namespace Squeal

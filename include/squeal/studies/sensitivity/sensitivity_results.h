@@ -10,22 +10,22 @@ namespace Squeal
   /// Contact before and after a motion of its nodes in the plane of the disc.
   struct ContactMotion
   {
-    ContactInterface before, after;                     ///< all pairs
-    ContactOperators operators_before, operators_after; ///< on the dofs of the model
-    double           step;                              ///< difference of the parameter between both [unit of the parameter]
+    ContactInterface before, after;                     ///< all pairs of contact nodes
+    ContactOperators operators_before, operators_after; ///< operators on the dofs of the model
+    double           step;                              ///< change of the parameter between before and after [unit of the parameter]
   };
 
-  /// A parameter p with the direction in which it changes the terms of the bodies and the contact: dQ/dp is the sum of the derivatives
-  /// along the rates and of the derivative terms.
+  /// A parameter p and its effect on the terms of the bodies and the contact: dQ/dp is the sum of the derivative along the rates and of the
+  /// derivative terms.
   struct SensitivityParameter
   {
-    std::string path;  ///< "Pin material/Young modulus"
+    std::string path;  ///< name, for example "Pin material/Young modulus"
     std::string body;  ///< the only pin that changes; empty: all bodies of the parameter
-    std::string unit;  ///< "-" for none
+    std::string unit;  ///< "-" without a unit
     double      value; ///< [unit]
 
     ParameterValues   body_rates; ///< dq/dp of the parameters q of the bodies' terms
-    std::vector<Term> derivative; ///< dX/dp for matrices X that are not products of powers of p; coefficients in body parameters
+    std::vector<Term> derivative; ///< dX/dp for matrices X that are not products of powers of p; coefficients use body parameters
     double OperationParameters::        *operation    = nullptr; ///< member on which contact damping or friction depends; null: none
     std::shared_ptr<const ContactMotion> contact      = {};      ///< null: contact nodes move in the axial direction only
     int                                  modal_ratio  = -1;      ///< index of the entry in Damping/Modal damping ratio; −1: none
@@ -52,9 +52,9 @@ namespace Squeal
   /// A sweep with the individual terms that are needed for derivatives of its eigenvalues.
   struct SensitivityModel
   {
-    static constexpr int main_line = 0; ///< of the sweep
+    static constexpr int main_line = 0; ///< index of the main line of the sweep
 
-    SweepModel                              &sweep; ///< of the main line
+    SweepModel                              &sweep; ///< model of the main line
     const BodyTerms                         &bodies;
     const std::vector<SensitivityParameter> &parameters;
     std::optional<ModalDampingDerivatives>   modal_damping = {}; ///< empty without modal damping
@@ -62,10 +62,10 @@ namespace Squeal
     /// damping_rates() at the friction coefficients used so far.
     mutable std::map<double, std::vector<ParameterValues>> known_damping_rates = {};
 
-    /// Products of modes at a point of the main line. Collective.
+    /// Products for modes at a point of the main line. Collective.
     SensitivityProducts products(const ChartPoint &point, const std::vector<int> &modes) const;
 
-    /// ψ_iᵀ (dQ(λ_j)/dp) φ_j due to friction and damping of moving contact nodes, with the vectors on the dofs of the bodies and the
+    /// ψ_iᵀ (dQ(λ_j)/dp) φ_j due to friction and damping of moving contact nodes, from the vectors on the dofs of the bodies and the
     /// reactions.
     ComplexDenseMatrix by_moved_contact(const ContactMotion      &motion,
                                         double                    friction_coefficient,
@@ -75,7 +75,7 @@ namespace Squeal
     /// Rates of the friction coefficient and contact damping with respect to a parameter of the operation, by central differences.
     ParameterValues contact_rates(const SensitivityParameter &parameter, double friction_coefficient) const;
 
-    /// dK/dp and dM/dp of the bodies for each parameter, which change the modes in modal damping and the reactions of steady sliding.
+    /// dK/dp and dM/dp of the bodies for each parameter; they change the modes in the modal damping and the reactions of steady sliding.
     std::vector<BodyRates> body_rates() const;
 
     /// Rates of the contact damping for each parameter through the reactions of steady sliding; empty if reactions are equal shares of the
@@ -85,12 +85,12 @@ namespace Squeal
     /// Modes of a point of the main line, for extending the basis.
     ChartModel::ModesAt modes_at(const ChartPoint &point, const std::vector<int> &modes) const;
 
-    /// Extends the basis by residuals of groups of modes, group by group to limit memory, and discards evaluated points; returns the reason
-    /// if it cannot, or nothing. Collective.
+    /// Extends the basis by residuals, one group of modes at a time to limit memory, and discards evaluated points. Returns the reason if
+    /// the basis cannot be extended, else an empty text. Collective.
     std::string grow(const std::vector<std::vector<ChartModel::ModesAt>> &groups, unsigned int maximum_basis);
   };
 
-  /// Differentiated quantity of one or several modes.
+  /// The quantity that is differentiated.
   enum class Differentiated
   {
     eigenvalue, ///< λ of a simple mode
@@ -110,12 +110,12 @@ namespace Squeal
     ModeLabel                         label;
     bool                              is_unstable;
     Differentiated                    kind;
-    std::vector<std::complex<double>> derivatives; ///< dλ/dp for each parameter, or of the mean
-    std::vector<std::complex<double>> changes;     ///< by the last extension of the basis: real and imaginary parts are error estimates
+    std::vector<std::complex<double>> derivatives; ///< dλ/dp for each parameter; λ is the mean for several modes
+    std::vector<std::complex<double>> changes;     ///< by the last extension of the basis; real and imaginary parts are error estimates
   };
 
-  /// Derivatives of modes at Operation/Friction coefficient: of growing modes, or the least damped ones. Extends the basis by their
-  /// residuals until the derivatives change by less than the tolerance, as a step of the run.
+  /// Derivatives of the growing modes at Operation/Friction coefficient or, if there are none, of the least damped modes. Extends the basis
+  /// by their residuals until the derivatives change by less than the tolerance, as a step of the run.
   std::vector<ModeSensitivity> mode_sensitivities(SensitivityModel &model, Run &run);
 
   /// Derivatives of a threshold.
@@ -128,8 +128,8 @@ namespace Squeal
   };
 
   /**
-   * Derivatives of the thresholds of a chart of the main line, with a basis that is extended once by the residuals of their modes, as a
-   * step of the run.
+   * Derivatives of the thresholds of a chart of the main line. The basis is extended once by the residuals of their modes. A step of the
+   * run.
    *
    * At a coalescence δ² = (λ_1 − λ_2)² is analytic and zero:
    *
@@ -145,7 +145,7 @@ namespace Squeal
   /// the run.
   FrictionModes left_and_right_modes(const FrictionlessModes &frictionless, double value, Run &run);
 
-  /// Eigenvalues with right and left vectors; the modes must have left ones.
+  /// Eigenvalues with right and left vectors; @p modes must have left vectors.
   Eigentriples eigentriples(const ComplexModes &modes);
 
   /// `Study = sensitivity` for a system file: derivatives of λ with respect to all of its parameters.

@@ -7,7 +7,7 @@
 
 namespace Squeal
 {
-  /// Columns of a table of complex modes, by mode index: shares φᴴ K_p φ / Σ_p φᴴ K_p φ of the elastic energy in the disc, the pins, each
-  /// other volume with its own material, the mounts, and in contact springs if there are any [%].
+  /// Columns of a table of complex modes, by mode index: shares φᴴ K_p φ / Σ_p φᴴ K_p φ of the elastic energy [%] in the disc, the pins,
+  /// each other volume with its own material, the mounts, and contact springs if there are any.
   Columns<int> strain_energy_columns(const Linearisation &linearisation, const ComplexModes &modes, const MaterialParameters &materials);
 } // namespace Squeal

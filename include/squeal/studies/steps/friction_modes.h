@@ -13,8 +13,8 @@ namespace Squeal
   struct FrictionlessModes : SystemModes
   {
     Linearisation  linearisation;
-    ComponentModes disc, pins_free, pins_sliding; ///< up to slightly beyond the band, to label modes at its end; see imported_modes()
-    std::vector<ModeLabel> labels;                ///< of the coupled modes
+    ComponentModes disc, pins_free, pins_sliding; ///< extend slightly beyond the band, to label modes near its end; see imported_modes()
+    std::vector<ModeLabel> labels;                ///< labels of the coupled modes
 
     /// Component modes for the labels of coupled modes.
     std::vector<const ComponentModes *> references() const
@@ -65,7 +65,7 @@ namespace Squeal
   struct FrictionModes : JudgedModes
   {
     std::vector<ModeLabel> labels;
-    Cost                   cost; ///< of the solution
+    Cost                   cost; ///< cost of the solution
     std::string            at;   ///< " at mu = 0.5", for messages
   };
 
@@ -83,14 +83,14 @@ namespace Squeal
                            double               tolerance,
                            Run                 &run);
 
-  /// Travelling-wave shares of each disc mode, WaveShares::positive along the rotation of the disc; nothing for other modes, or if the disc
-  /// does not turn about z.
+  /// Travelling-wave shares of each disc mode; WaveShares::positive is along the rotation of the disc. Empty for other modes, or if the
+  /// disc does not turn about z.
   std::vector<std::optional<WaveShares>> waves_with_rotation(const FrictionlessModes &frictionless,
                                                              const FrictionModes     &friction,
                                                              const SlidingVelocity   &velocity);
 
-  /// Field of a complex mode, coupled displacements n × 1, on the uncoupled bodies, with the normal reactions at all pairs of contact
-  /// nodes. Collective.
+  /// Field of a complex mode, given as coupled displacements n × 1: displacements of the uncoupled bodies and normal reactions at all pairs
+  /// of contact nodes. Collective.
   ModeField mode_field(const Linearisation        &linearisation,
                        const std::string          &name,
                        const std::complex<double> &lambda,
@@ -100,10 +100,11 @@ namespace Squeal
   /// Verdict of the run: stable, squeal or static divergence, one line each.
   std::vector<std::string> verdict(const FrictionModes &modes, double maximum_frequency);
 
-  /// Explains a difference between the numbers of real modes and of modes with friction; else empty. Two real eigenvalues replace one mode
-  /// that has stopped oscillating. @p maximum_rate [1/s] of the band; 0: not given.
+  /// Explains a difference between the numbers of real modes and of modes with friction; empty if they agree. A mode that has stopped
+  /// oscillating is replaced by two real eigenvalues. @p maximum_rate [1/s] of the band; 0: not set.
   std::string note_on_count(const FrictionModes &modes, std::size_t n_real_modes, double maximum_rate);
 
-  /// Reports the number of modes that are neutral up to rounding errors although there is damping; empty if there are none, or no damping.
+  /// Reports the number of modes that are neutral within rounding errors although the system has damping; empty if there are none, or no
+  /// damping.
   std::string note_on_weak_damping(const CoupledSystem &system, const FrictionModes &modes);
 } // namespace Squeal

@@ -12,34 +12,35 @@ namespace Squeal
   /// Reads the system file of the parameters, as a step of the run.
   SystemFile read_system(Run &run);
 
-  /// The system file at the given parameter values.
+  /// The system of a system file at the given parameter values.
   struct GivenSystem
   {
     SystemFile      file;
     ParameterValues values;
     CoupledSystem   coupled;
-    double          value; ///< of the varied parameter of the coupled system
+    double          value; ///< value of the varied parameter
   };
   GivenSystem given_system(Run &run);
 
   /**
-   * Frictionless modes of an imported system without skew terms, labelled `mode 1`, `mode 2`, ...; modes with all terms inherit these
-   * labels. As steps of the run. The linearisation has no meshed model.
+   * Frictionless modes of an imported system without skew terms, labelled `mode 1`, `mode 2`, ..., as steps of the run. Modes of the system
+   * with all terms inherit these labels. The linearisation has no meshed model.
    *
-   * @param system @p whole or a part of it, for example without damping, for the modes and the factor
+   * @param system system for the modes and the factor: @p whole or a part of it, for example without damping
    *
    * Throws SolverError if the system has no definite part.
    */
   FrictionlessModes imported_modes(const CoupledSystem &system, const CoupledSystem &whole, Run &run, double margin = 0.);
 
-  /// Modes of a system without its damping, to slightly beyond the band, as starting vectors of reduced models; only the linearisation if
-  /// there is no definite part.
+  /// Modes of a system without its damping, up to slightly beyond the band, as starting vectors of reduced models. Without a definite part,
+  /// the result contains only the linearisation.
   FrictionlessModes starting_modes(const CoupledSystem &whole, Run &run);
 
   /// `mode 3`.
   ModeLabel numbered_label(int number);
 
-  /// Solves for the modes of a system without a definite part with LU factors of Q(s) and counts them, as steps of the run; modes are numbered.
+  /// Solves for the modes of a system without a definite part, using LU factors of Q(s), and counts them, as steps of the run; modes are
+  /// numbered.
   FrictionModes direct_solution(const GivenSystem &given, Run &run);
 
   /// Number of modes in the rectangle of the band by the argument principle.
@@ -49,7 +50,7 @@ namespace Squeal
     ContourCount   count;
   };
 
-  /// @param frictionless unused for a system without a definite part
+  /// @param frictionless not used for a system without a definite part
   CountedModes counted_modes(const CoupledSystem &system, double value, const FrictionlessModes &frictionless, Run &run);
 
   /// Counts modes by the argument principle in the rectangle of the band, as a step of the run. Throws SolverError if the count differs

@@ -9,7 +9,7 @@ namespace Squeal
   /// A material constant that is a factor of the terms of a body.
   struct MaterialNumber
   {
-    const char *name, *unit; ///< as in parameter files
+    const char *name, *unit; ///< name and unit in parameter files
     double Material::*value;
     std::string (*parameter)(const std::string &volume); ///< parameter of the terms
   };

@@ -15,11 +15,12 @@ namespace Squeal
   /// Modes on the coarser mesh, for estimates of the discretisation error.
   struct CoarserSolution
   {
-    CommonPoints  points; ///< of the coarser mesh
+    CommonPoints  points; ///< points of the coarser mesh
     ModesAtPoints modes;
   };
 
-  /// Solves the model on the coarser mesh of the accuracy goal, or on the given one, as a step of the run; nothing without either.
+  /// Solves the model on the coarser mesh of the accuracy goal, or on the one given in the parameters, as a step of the run; empty without
+  /// either.
   std::optional<CoarserSolution> solve_on_coarser_mesh(Run &run);
 
   /// Discretisation errors of all modes, see discretisation_errors().

@@ -6,24 +6,24 @@
 
 namespace Squeal
 {
-  /// A parameter without effect on a run, and the reason.
+  /// A parameter that has no effect on a run, and the reason.
   struct UnusedParameter
   {
     std::string path; ///< "Section/Name"
     std::string why;
   };
 
-  /// Non-default parameters without effect on the results of the run, in the order of declaration. Throws MeshError if the geometry does
-  /// not exist.
+  /// Non-default parameters that have no effect on the results of the run, in the order of declaration. Throws MeshError if the geometry
+  /// does not exist.
   std::vector<UnusedParameter> unused_parameters(const Parameters &parameters);
 
-  /// Those of some parameters that have no effect on the results of the run. Throws MeshError as unused_parameters() does.
+  /// The parameters among @p paths that have no effect on the results of the run. Throws MeshError as unused_parameters() does.
   std::vector<UnusedParameter> unused_among(const std::vector<std::string> &paths, const Parameters &parameters);
 
   /// unused_parameters() in one line: "  note: not used here: Operation/Load per side (no contact damping), ..."; empty if there are none.
   std::string unused_parameters_note(const Parameters &parameters);
 
-  /// Reason why the sliding speed causes no damping; null if it does. Also for studies that do not output it.
+  /// Reason why the sliding speed causes no damping; null if it does. Also used for studies that do not output the speed.
   Reason no_sliding_speed(const Parameters &parameters);
 
   /// Paths of the parameters with non-default values.

@@ -12,7 +12,7 @@ namespace Squeal
   struct ReductionPlan
   {
     std::vector<const BasisRecipe *> recipes;
-    bool                             has_friction;               ///< complex modes; else real ones
+    bool                             has_friction;               ///< true: complex modes; false: real modes
     double                           friction_coefficient;       ///< 0 without friction
     double                           largest_circular_frequency; ///< end of the band [rad/s]
     std::vector<FileParameter>       parameters;                 ///< of the system, at their given values
@@ -34,41 +34,41 @@ namespace Squeal
   struct Charge
   {
     BasisSource           source;
-    std::string           variant;      ///< truncation, frequency or tolerance; empty if there is only one
-    std::optional<int>    n_vectors;    ///< number of vectors in a basis; none for a factor
-    std::optional<double> end_of_band;  ///< of modes: all below were computed [Hz]
-    std::optional<int>    n_solved;     ///< of modes: number computed; larger than n_vectors if the last one is multiple
+    std::string           variant;      ///< truncation, frequency or tolerance; empty if there is only one variant
+    std::optional<int>    n_vectors;    ///< number of vectors in a basis; empty for a factor
+    std::optional<double> end_of_band;  ///< for modes: all modes below this frequency were computed [Hz]
+    std::optional<int>    n_solved;     ///< for modes: number of modes computed; larger than n_vectors if the last mode is multiple
     double                seconds = 0.; ///< CPU time
   };
 
   /**
-   * Sets of vectors for the bases of a plan, computed as steps of the run, with their CPU times: a basis is charged exactly the sources
+   * Sets of vectors for the bases of a plan, computed as steps of the run, with their CPU times: a basis is charged only for the sources
    * that it needs.
    *
-   * Modes cost as much as a stand-alone solve for the lowest k modes, or for those below a frequency: one solution including its
-   * factorisation and inertia check. Finding the end of the band that contains k modes is not charged; neither are the matrices of the
-   * components.
+   * Modes are charged as a stand-alone solve for the lowest k modes, or for the modes below a frequency: one solution including its
+   * factorisation and inertia check. The search for the frequency below which there are k modes and the assembly of the component matrices
+   * are not charged.
    */
   class ReductionSets
   {
   public:
-    /// Computes sets that do not depend on the basis: static and complex modes of a coupled @p system with the damping of the eigenproblem.
-    /// All arguments must outlive the object. Throws ParameterError or SolverError if required modes do not exist.
+    /// Computes the sets that do not depend on the basis: static modes, and complex modes of the coupled @p system, which has the damping
+    /// of the eigenproblem. All arguments must outlive the object. Throws ParameterError or SolverError if required modes do not exist.
     ReductionSets(const ReductionPlan &plan, const FrictionlessModes &frictionless, const CoupledSystem &system, Run &run);
 
     /// Replaces the component modes by those of another truncation and returns their numbers. Throws SolverError if there are too few.
     std::map<BasisSource, int> truncate(const ModeTruncation &truncation);
 
-    /// Selects the real coupled modes below a frequency [Hz], those of the band for 0. Throws SolverError if there are none.
+    /// Selects the real coupled modes below a frequency [Hz]; 0: the end of the band. Throws SolverError if there are none.
     void take_real_modes(double frequency);
 
-    /// Replaces the basis grown by residuals by one for which the estimated errors of λ are below a relative tolerance.
+    /// Replaces the residual-grown basis by one with estimated errors of λ below a relative tolerance.
     void grow(double tolerance);
 
     /// CPU time of all sources of a basis, each set counted once [s].
     double cost(const BasisRecipe &recipe) const;
 
-    /// CPU time needed by full-order modes before their solution [s]: the factor of K_c, with friction K_c⁻¹ A.
+    /// CPU time before full-order modes can be computed [s]: the factor of K_c and, with friction, K_c⁻¹ A.
     double full_order_factorisation() const;
 
     /// Cost of all sets, including replaced ones.
@@ -78,26 +78,26 @@ namespace Squeal
     const FrictionlessModes &frictionless;
     const CoupledSystem     &system;
     Run                     &run;
-    BasisIngredients         ingredients; ///< computed so far
+    BasisIngredients         ingredients; ///< vectors computed so far
 
   private:
-    /// Charges bases with this cost for its source from now on.
+    /// Records the cost of a source; from now on, bases that use this source are charged for it.
     void book(const Charge &charge);
 
-    /// Stores vectors in place of an earlier set with their cost; returns their number.
+    /// Stores vectors, which replace an earlier set, with their cost; returns their number.
     int keep(Charge charge, MultiVector set);
 
     void charge_coupled_factor();
     void compute_static_modes();
     void compute_snapshots();
 
-    /// Stores the lowest modes of a component: @p count of them, or all up to @p frequency [Hz] if zero.
+    /// Stores the lowest modes of a component: @p count modes, or all up to @p frequency [Hz] if it is zero.
     int keep_lowest(Charge charge, Component component, ContactBoundary boundary, double frequency, int count);
 
     const Linearisation &linearisation;
 
-    std::vector<Charge>                                 charges; ///< of all sets
-    std::map<BasisSource, double>                       seconds; ///< of the sets in use
+    std::vector<Charge>                                 charges; ///< costs of all sets
+    std::map<BasisSource, double>                       seconds; ///< CPU time of each set in use
     std::map<BasisSource, std::unique_ptr<MultiVector>> vectors;
     std::unique_ptr<InertiaRelief>                      response;
     std::unique_ptr<StaticModes>                        static_modes;

@@ -20,11 +20,11 @@ namespace Squeal
   struct RunOptions
   {
     std::string command;  ///< shell command that repeats the run, for the run record
-    std::string revision; ///< of the program's sources
+    std::string revision; ///< revision of the program's sources
     std::string output;   ///< result folder
     bool        dry_run = false;
 
-    std::vector<std::string> again;   ///< command-line words that give a worker process the same parameters
+    std::vector<std::string> again;   ///< command-line arguments that give a worker process the same parameters
     std::string              designs; ///< numbers of the requested designs, as in "3, 7-9"; empty: all
   };
 
@@ -86,8 +86,8 @@ namespace Squeal
     /// Writes NAME.csv and prints the table.
     void write_table(const std::string &name, const Table &table);
 
-    /// Writes the parameters as used and the run record, and completes the result folder; @p afterwards removes data that only an
-    /// unfinished run needs.
+    /// Writes the parameters as used and the run record, and completes the result folder. @p afterwards may remove data that are needed
+    /// only until then.
     void finish(const std::function<void()> &afterwards = {});
   };
 

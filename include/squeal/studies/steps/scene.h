@@ -14,7 +14,7 @@ namespace Squeal
     Mesh                   mesh;
     std::unique_ptr<Model> model;
     ContactInterface       interface; ///< all pairs of contact nodes
-    ContactOperators       contact;   ///< of all pairs
+    ContactOperators       contact;   ///< operators of all pairs
     std::vector<Term>      bodies;    ///< merged terms of the uncoupled bodies
     SecondOrderSystem      system;    ///< M, C, K: sums of the terms
     BodyTerms              elastic;   ///< stiffness term by term
@@ -28,14 +28,14 @@ namespace Squeal
     }
   };
 
-  /// Contact state at one friction coefficient, load and speed.
+  /// Contact state for given friction coefficient, load and speed.
   struct StateOfContact
   {
     std::vector<unsigned int> closed;  ///< indices of the closed pairs: S_0
-    ContactDamping            damping; ///< of all pairs; zero at open ones
+    ContactDamping            damping; ///< damping of all pairs; zero at open pairs
   };
 
-  /// Contact state from @p sliding; without it, equal shares of the load at all nodes, which only contact damping uses.
+  /// Contact state from @p sliding. Without it, all nodes carry equal shares of the load, which affects only contact damping.
   StateOfContact state_of_contact(const Model                       &model,
                                   const ContactInterface            &interface,
                                   const std::optional<SlidingState> &sliding,
@@ -47,17 +47,17 @@ namespace Squeal
   /// A model linearised about a contact state, and the resulting system: only closed contact nodes couple the bodies.
   struct Linearisation
   {
-    const Scene                *scene = nullptr; ///< must outlive this; null for an imported system
+    const Scene                *scene = nullptr; ///< must outlive this object; null for an imported system
     std::optional<SlidingState> sliding;         ///< only for steady sliding
     std::vector<unsigned int>   closed;          ///< indices of the closed pairs: S_0
     ContactInterface            interface;       ///< S_0
-    ContactOperators            contact;         ///< of S_0
-    ContactDamping              damping;         ///< of S_0
+    ContactOperators            contact;         ///< operators of S_0
+    ContactDamping              damping;         ///< damping of S_0
     CoupledSystem               coupled;
   };
 
-  /// Prints a summary of the input before the computation: sizes, masses, and expected memory; warns of implausible values; rejects models
-  /// that exceed the memory, and a disc that is a body of revolution about an axis other than z. Throws MeshError.
+  /// Prints a summary of the input before the computation: sizes, masses, and expected memory. Warns of implausible values. Throws
+  /// MeshError if the model exceeds the memory, or if the disc is a body of revolution about an axis other than z.
   void summarise_scene(const Mesh &mesh, Run &run);
 
   /// Meshes, checks and pairs; rejects parameters that do not fit the pins. The system is not assembled.

@@ -6,8 +6,8 @@
 
 namespace Squeal
 {
-  /// Text of the parameters with ones for mere coefficients of terms, or zeros for missing terms: equal for models that share a mesh and
-  /// its matrices.
+  /// Text of the parameters in which coefficients of terms are replaced by one, or by zero if the term is missing: equal for models that
+  /// share a mesh and its matrices.
   std::string text_without_coefficients(Parameters parameters);
 
   /// For each scale of a family, the factor and the coefficient of a term whose product is the scale.
@@ -20,13 +20,13 @@ namespace Squeal
     FrictionlessModes middle; ///< with the system of the family, including damping; real modes and factor are undamped
     FamilyScales      scales;
 
-    /// Scales of a member at other parameter values of the bodies. Valid if the members that define the family cover all variations
-    /// independently: terms with a fixed ratio there must keep it.
+    /// Scales of a member at other parameter values of the bodies. Valid only if the members that define the family vary all these
+    /// parameters independently: terms with coefficients in a fixed ratio must keep it.
     ParameterValues member(const ParameterValues &values) const;
   };
 
   /**
-   * Family of the values of @p members, with its real modes, as steps of the run.
+   * Family of systems with the values of @p members, and the real modes of the averaged system, as steps of the run.
    *
    * @param bodies        terms of the assembled model
    * @param linearisation contact and its damping

@@ -9,8 +9,7 @@
 
 namespace Squeal
 {
-  /// μ of a meshed model as a parameter of a system file, with the range of the sweep; a fixed value if contact nodes or damping depend on
-  /// it.
+  /// μ of a meshed model as a parameter of a system file, with the range of the sweep; μ is fixed if contact nodes or damping depend on it.
   FileParameter friction_parameter(const Parameters &parameters);
 
   /// Parameters of a system file for a meshed model, and their names there by names in the terms.

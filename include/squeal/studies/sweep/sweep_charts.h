@@ -8,7 +8,7 @@
 
 namespace Squeal
 {
-  /// Friction coefficients at one load and speed.
+  /// A sequence of friction coefficients at one load and speed.
   struct SweepLine
   {
     enum class Kind
@@ -19,10 +19,10 @@ namespace Squeal
     };
 
     Kind                kind;
-    OperationParameters operation;             ///< without the friction coefficient
-    double              value;                 ///< second axis value, for a line of the map
+    OperationParameters operation;             ///< all but the friction coefficient
+    double              value;                 ///< for a line of the map: load, speed or second parameter
     std::vector<double> friction_coefficients; ///< or values of the varied parameter of a system file
-    ParameterValues     values = {};           ///< of other parameters of the system
+    ParameterValues     values = {};           ///< values of other parameters of the system
 
     OperationParameters at(double friction_coefficient) const;
   };
@@ -41,7 +41,7 @@ namespace Squeal
   /// Regime of a contact set; added if it does not exist.
   ContactRegime &regime_of(const std::vector<unsigned int> &closed, std::vector<ContactRegime> &regimes);
 
-  /// Parameter along a line of a sweep, or from line to line of a map.
+  /// Quantity along a line of a sweep, or from line to line of a map.
   struct SweepAxis
   {
     std::string name, unit;
@@ -55,11 +55,11 @@ namespace Squeal
     ParameterValues               values; ///< fixed parameters of the system file
     SweepAxis                     axis, second_axis;
     SlidingParameters             sliding_parameters;
-    std::unique_ptr<SlidingModel> sliding; ///< for all steady sliding states; null: equal shares of the load
+    std::unique_ptr<SlidingModel> sliding; ///< data for all steady sliding states; null: equal shares of the load
     std::vector<SweepLine>        lines;
     std::vector<ContactRegime>    regimes;
 
-    /// Steady sliding state; nothing for equal shares of the load. Throws SolverError if there is no such state.
+    /// Steady sliding state; empty for equal shares of the load. Throws SolverError if no steady sliding state exists.
     std::optional<SlidingState> sliding_state(const OperationParameters &operation) const;
 
     StateOfContact state_at(int line, double friction_coefficient) const;
@@ -81,7 +81,7 @@ namespace Squeal
   /// values.
   SweepPlan sweep_plan_of_system(Run &run);
 
-  /// Swept parameter of a system file. Throws ParameterError unless the file has it with the range of the sweep.
+  /// Swept parameter of a system file. Throws ParameterError unless the file contains it and its range includes that of the sweep.
   NamedRange swept_parameter(const SystemFile &file, const Run &run);
 
   /// sweep_plan() for given lines of operating points.
@@ -94,14 +94,14 @@ namespace Squeal
     /// Line and friction coefficient of a point.
     using Place = std::pair<int, double>;
 
-    /// Linearises at the point with the largest contact damping: the basis starts from the responses to it. All arguments must outlive the
-    /// model.
+    /// Linearises at the point with the largest contact damping, because the basis starts from the responses to this damping. All arguments
+    /// must outlive the model.
     SweepModel(const SweepPlan &plan, const ContactRegime &regime, Run &run);
 
-    /// Starts a reduced model from the undamped modes without friction.
+    /// Creates a reduced model from the undamped modes without friction.
     SweepModel(const SweepPlan &plan, const ContactRegime &regime, Run &run, FrictionlessModes frictionless);
 
-    /// Modes on a line, known or newly computed. Collective.
+    /// Modes on a line, computed unless known. Collective.
     std::vector<ChartPoint> evaluate(int line, const std::vector<double> &friction_coefficients);
 
     /// Modes of a point at full order by direct_modes(); its residuals are backward errors. Collective.
@@ -127,10 +127,10 @@ namespace Squeal
     /// Indices of the modes of a point in the band.
     std::vector<int> in_band(const ChartPoint &point) const;
 
-    /// Number of modes in the band with this verdict.
+    /// Number of modes in the band with the given verdict.
     int n_of(const ChartPoint &point, Verdict verdict) const;
 
-    /// Labels of the modes in the band, as in a run at one friction coefficient: the growing mode of a doublet is plus.
+    /// Labels of the modes in the band, as in a run at one friction coefficient: the growing mode of a doublet is labelled +.
     std::vector<ModeLabel> labels_in_band(const ChartPoint &point) const;
 
     const SweepPlan            &plan;
@@ -138,26 +138,25 @@ namespace Squeal
     Run                        &run;
     const double                largest_circular_frequency; ///< end of the band [rad/s]
     FrictionlessModes           frictionless;
-    bool                        sharpens_thresholds = true; ///< whether follow_branches() enriches the basis for them
+    bool                        sharpens_thresholds = true; ///< whether follow_branches() enriches the basis for thresholds
     std::unique_ptr<ChartModel> reduced;                    ///< null without a definite part
     std::map<Place, ChartPoint> known;
 
   private:
-    /// Starts the reduced model.
+    /// Creates the reduced model.
     void start();
 
-    /// What names the modes of a point, from products with the basis.
+    /// Shares of component modes, from which the modes of a point are named, computed from products with the basis.
     std::vector<ShapeShares> shape_shares(const ChartPoint &point, const std::vector<int> &modes) const;
 
     /// Labels without a basis: indices of the most similar modes at the first labelled point.
     std::vector<ModeLabel> labels_by_number(const ChartPoint &point, const std::vector<int> &modes) const;
 
     mutable std::optional<ChartPoint> first_point;
-    mutable std::vector<DenseMatrix>  reference_products; ///< with the basis at the time of the last labelling
+    mutable std::vector<DenseMatrix>  reference_products; ///< products of the component modes with the basis vectors labelled so far
   };
 
-  /// Indices among n friction coefficients at which a basis is best trained: the last one first, then the other end, the middle and the
-  /// quarters.
+  /// Indices among n friction coefficients for training a basis: the last value, then the first, the middle and the quarters.
   std::vector<int> ends_and_quarters(int n);
 
   /// Point of a regime with the largest contact damping.
@@ -167,13 +166,13 @@ namespace Squeal
   void evaluate_points(SweepModel &model);
 
   /**
-   * Reduced model of a sweep at full order: a Galerkin projection on principal axes of the right and left modes of some of its points. The
-   * point with the largest error is added, or the truncation of the axes lowered, until all points meet the tolerance of the sweep and the
-   * reduced model has no other modes in the band.
+   * Reduced model for a sweep that was solved at full order: a Galerkin projection on principal axes of the right and left modes at some of
+   * its points. Points with the largest error are added, or fewer axes are truncated, until all points meet the tolerance of the sweep and
+   * the reduced model has no spurious modes in the band.
    *
    * @param errors receives the largest |λ̂ − λ| / |λ| of the band for every known point
    *
-   * Throws SolverError if no truncation meets it.
+   * Throws SolverError if no truncation meets the tolerance.
    */
   ReducedModel snapshot_model(SweepModel &model, std::map<SweepModel::Place, double> &errors);
 
@@ -184,7 +183,7 @@ namespace Squeal
   struct SweepChart
   {
     StabilityChart         chart;
-    std::vector<ModeLabel> labels; ///< one label for each branch
+    std::vector<ModeLabel> labels; ///< label of each branch
 
     std::optional<GrowthOnset> onset;      ///< smallest friction coefficient at which a mode grows
     std::optional<GrowthOnset> weak_onset; ///< smallest friction coefficient at which a divergence rate exceeds weak_divergence
@@ -193,27 +192,28 @@ namespace Squeal
   /// Onset of squeal on a line.
   struct SquealOnset
   {
-    double      divergence_rate; ///< threshold that is exceeded above the onset [-]
+    double      divergence_rate; ///< divergence rate that is exceeded above the onset [-]
     GrowthOnset onset;
     ModeLabel   label;
   };
 
-  /// Follows the branches of a line over known friction coefficients, with their thresholds, for which the basis grows, as a step of the run.
+  /// Follows the branches of a line over known friction coefficients and finds their thresholds, for which the basis is extended, as a step
+  /// of the run.
   SweepChart follow_branches(SweepModel &model, int line, const std::vector<double> &friction_coefficients);
 
-  /// Follows the branches on all lines except those of the map, with their thresholds, as steps of the run; appends to the @p charts of
+  /// Follows the branches on all lines except those of the map and finds their thresholds, as steps of the run; appends to the @p charts of
   /// each line.
   void follow_branches(SweepModel &model, std::vector<std::vector<SweepChart>> &charts);
 
-  /// Onsets of growth and of divergence rates above weak_divergence on a line, over its known friction coefficients: one for each label and
-  /// rate. Does not extend the basis. Collective.
+  /// Onsets of growth and of divergence rates above weak_divergence on a line, over its known friction coefficients; one onset for each
+  /// label and rate. Does not extend the basis. Collective.
   std::vector<SquealOnset> mode_onsets(SweepModel &model, int line);
 
   /// First onsets of growth and of divergence rates above weak_divergence over all charts of a line.
   std::vector<SquealOnset> squeal_onsets(const std::vector<SweepChart> &charts);
 
   /// Verdict of the main line: smallest friction coefficient with squeal, and the fastest growing mode; @p n_asked: number of requested
-  /// values.
+  /// friction coefficients.
   std::string verdict(const std::vector<SweepChart> &charts,
                       std::size_t                    n_asked,
                       double                         largest_circular_frequency,
@@ -222,6 +222,6 @@ namespace Squeal
   /// Table of the contact sets along the lines.
   Table contact_table(const SweepPlan &plan, std::size_t n_pairs);
 
-  /// Writes tables of the @p charts of each line: branches, counts, thresholds, band crossings.
+  /// Writes tables of the @p charts of each line: branches, counts, thresholds, crossings of the band's end.
   void write_charts(const SweepPlan &plan, const std::vector<std::vector<SweepChart>> &charts, double omega_max, Run &run);
 } // namespace Squeal

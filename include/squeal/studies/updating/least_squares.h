@@ -31,8 +31,8 @@ namespace Squeal
   };
 
   /**
-   * Finds a local minimum of ½ |r(x)|² in the unit cube with the Levenberg–Marquardt trust-region method of Ceres. A point without
-   * residuals counts as a failed step, and a shorter step is tried.
+   * Finds a local minimum of ½ |r(x)|² in the unit cube with the Levenberg–Marquardt trust-region method of Ceres. If the residuals at a
+   * point cannot be computed, the step counts as failed and is shortened.
    *
    * @param start     residuals must exist here
    * @param tolerance the fit ends when |Δx| falls below it, or the relative change of |r|² below its square
@@ -43,7 +43,7 @@ namespace Squeal
   struct FitStatistics
   {
     std::vector<bool>                     is_at_limit;
-    std::vector<std::optional<double>>    deviations;   ///< standard deviation of x; none at a limit or if undetermined
+    std::vector<std::optional<double>>    deviations;   ///< standard deviation of x; empty at a limit or if undetermined
     DenseMatrix                           correlations; ///< n × n; zero for parameters without a deviation
     std::vector<std::vector<std::size_t>> undetermined; ///< groups of parameters that the data determine only in combination
   };
@@ -55,8 +55,8 @@ namespace Squeal
    * S_k <= 1e-7 S_1. A parameter is undetermined if its component in these directions exceeds 1 %.
    *
    * @param residuals   at the minimum x
-   * @param is_relative weights are known up to a common factor: s² = |r|² / (m − n) with n free parameters, and no deviations unless m > n;
-   *                    else s = 1
+   * @param is_relative true: weights are known up to a common factor, s² = |r|² / (m − n) with n free parameters, and there are no
+   *                    deviations unless m > n; false: s = 1
    */
   FitStatistics fit_statistics(const Residuals &residuals, const std::vector<double> &x, bool is_relative);
 } // namespace Squeal

@@ -15,8 +15,8 @@ namespace Squeal
   /// State of the brake in which a mode is measured.
   enum class MeasuredState
   {
-    component, ///< free disc, or pins with sliding contact
-    coupled,   ///< bodies in contact without friction and damping
+    component, ///< of the free disc, or of pins with sliding contact
+    coupled,   ///< of the bodies in contact without friction and damping
     complex    ///< at Operation/Friction coefficient
   };
 
@@ -31,14 +31,14 @@ namespace Squeal
     double value, deviation;
   };
 
-  /// A measured mode. Its computed counterpart is the mode most similar to the shape with this label at the sensors, or a mean of two similar
-  /// ones; without such a shape, one mode with this label, or the mean of all of them.
+  /// A measured mode. If a measured shape has this label, the computed counterpart is the mode with the most similar shape at the sensors,
+  /// or a weighted mean of two similar modes; otherwise, it is one mode with this label, or the mean of all modes with this label.
   struct MeasuredMode
   {
     MeasuredState           state;
     std::string             label;         ///< with or without the sign of a doublet
     std::string             member;        ///< "lowest", "highest", or a number >= 1; empty: the mean of all
-    Measured                frequency;     ///< [Hz]
+    Measured                frequency;     ///< "lowest", "highest", or a number >= 1; empty: the mean of all modes with the label
     std::optional<Measured> damping_ratio; ///< ζ = −Re λ / |λ| [-]
     std::string             where;         ///< file and line, for messages
   };
@@ -46,10 +46,10 @@ namespace Squeal
   struct MeasuredModes
   {
     std::vector<MeasuredMode> modes;
-    Sensors                   sensors;         ///< none: all modes are paired by label
-    double                    least_mac = 0.5; ///< below this, shapes are not similar [-]
+    Sensors                   sensors;         ///< empty: all modes are paired by label
+    double                    least_mac = 0.5; ///< MAC below which shapes are not similar [-]
 
-    /// No deviations are given: each is the same fraction of its frequency.
+    /// True if no deviations are given: all numbers then have the same relative deviation.
     bool are_relative = true;
 
     /// Number of frequencies and damping ratios.
@@ -64,8 +64,8 @@ namespace Squeal
   /// Reads the file of measured modes; see doc/updating.md. Throws FileError, or ParameterError with the line number.
   MeasuredModes read_measured_modes(const std::string &path);
 
-  /// A computed mode and its derivatives with respect to the fitted parameters. Equal eigenvalues have no individual derivatives: all modes
-  /// of a cluster have the derivatives of its mean.
+  /// A computed mode and its derivatives with respect to the fitted parameters. Individual modes of a cluster of equal eigenvalues are not
+  /// differentiable: each has the derivatives of the mean.
   struct ComputedMode
   {
     MeasuredState                     state;
@@ -81,11 +81,11 @@ namespace Squeal
     double                frequency;                            ///< [Hz]
     double                damping_ratio;                        ///< [-]
     std::vector<double>   frequency_rates, damping_ratio_rates; ///< per unit of each parameter
-    std::string           label;                                ///< of the mode, or of the first of several
-    std::optional<double> mac;                                  ///< of the shapes at the sensors [-]
+    std::string           label;                                ///< label of the mode, or of the first of several modes
+    std::optional<double> mac;                                  ///< MAC of the shapes at the sensors [-]
   };
 
-  /// Finds the counterpart of one of the measured modes. Throws SolverError if no mode of the state has the label or a similar shape, or if
-  /// the member does not exist.
+  /// Finds the counterpart of a measured mode. Throws SolverError if no mode of the state has the label or a similar shape, or if the
+  /// member does not exist.
   Counterpart counterpart_of(const MeasuredMode &mode, const MeasuredModes &measured, const std::vector<ComputedMode> &modes);
 } // namespace Squeal

@@ -14,7 +14,7 @@ namespace Squeal
   struct Sensors
   {
     DenseMatrix                             positions;  ///< x, y and z [m], n_s × 3
-    DenseMatrix                             directions; ///< of unit length, n_s × 3
+    DenseMatrix                             directions; ///< unit vectors, n_s × 3
     std::map<std::string, Eigen::VectorXcd> shapes;     ///< measured response of each sensor, by the label of the mode; any scale
 
     bool has(const std::string &label) const
@@ -22,13 +22,14 @@ namespace Squeal
       return shapes.count(label) > 0;
     }
 
-    /// The rows that give the responses of the sensors: displacements of the nearest points in their directions. All on process 0.
+    /// The matrix from dofs to responses of the sensors: displacements of the nearest points in the directions of the sensors. All rows are
+    /// on process 0.
     std::shared_ptr<const SparseMatrix> rows(const ShapePoints &points) const;
   };
 
   /// Reads the file of Updating/Sensors; see doc/updating.md. Throws FileError, or ParameterError with the line number.
   Sensors read_sensors(const std::string &path);
 
-  /// MAC = |xᴴ y|² / (xᴴx yᴴy) [-]; zero if one of them vanishes.
+  /// MAC = |xᴴ y|² / (xᴴx yᴴy) [-]; zero if x or y is zero.
   double modal_assurance_criterion(const Eigen::VectorXcd &x, const Eigen::VectorXcd &y);
 } // namespace Squeal

@@ -14,7 +14,7 @@ namespace Squeal
   /// A fitted parameter and its range.
   struct FittedParameter
   {
-    std::string name; ///< as in Designs/Variables
+    std::string name; ///< name as in Designs/Variables
     double      start, lower, upper;
 
     /// Value at the fraction x of the range.
@@ -33,21 +33,20 @@ namespace Squeal
   /// Derivatives of the equations with respect to a parameter.
   struct EquationRates
   {
-    ParameterValues   bodies;  ///< of the parameters in the terms of the bodies
+    ParameterValues   bodies;  ///< rates of the parameters in the terms of the bodies
     std::vector<Term> terms;   ///< dX/dp of matrices X that depend on p
-    ParameterValues   contact; ///< of the friction coefficient and contact damping
+    ParameterValues   contact; ///< rates of the friction coefficient and contact damping
   };
 
-  /// dλ/dp = i dω/dp for each mode without friction and damping and each parameter, ω' = φᵀ (K' − ω² M') φ / 2ω. Zero for ω = 0; the mean
-  /// in a cluster of equal ω. Collective.
+  /// dλ/dp = i dω/dp of each mode without friction and damping with respect to each parameter, ω' = φᵀ (K' − ω² M') φ / 2ω. Zero for ω = 0;
+  /// in a cluster of equal ω, every mode has the mean. Collective.
   ///
-  /// @param squares ω² [rad²/s²]
-  /// @param shapes  φ, mass-normalised
+  /// @param squares ω² [rad²/s²] @param shapes  φ, mass-normalised
   std::vector<std::vector<std::complex<double>>> real_mode_derivatives(const std::vector<double>    &squares,
                                                                        const MultiVector            &shapes,
                                                                        const std::vector<BodyRates> &rates);
 
-  /// dλ/dp of complex modes from D and the N of each parameter, see eigenvalue_derivative(); the mean in a cluster.
+  /// dλ/dp of complex modes from D and the N of each parameter, see eigenvalue_derivative(); in a cluster, every mode has the mean.
   std::vector<std::vector<std::complex<double>>> complex_mode_derivatives(const std::vector<std::complex<double>> &lambda,
                                                                           const std::vector<ComplexDenseMatrix>   &N,
                                                                           const ComplexDenseMatrix                &D);
