@@ -24,7 +24,7 @@ namespace Squeal::Testing
     wedges,
     pyramids,
     tetrahedra,
-    mixed ///< along x: wedges, hexahedra, pyramids with tetrahedra, tetrahedra
+    mixed ///< along x: wedges, hexahedra, pyramids with tetrahedra, then tetrahedra
   };
 
   inline constexpr Cut all_cuts[] = {Cut::hexahedra, Cut::wedges, Cut::pyramids, Cut::tetrahedra, Cut::mixed};
@@ -32,13 +32,13 @@ namespace Squeal::Testing
   struct Box
   {
     Cut                         cut;
-    std::array<unsigned int, 3> n; ///< bricks per direction; at least 4 along x if mixed
+    std::array<unsigned int, 3> n; ///< bricks per direction; at least 4 along x for mixed
     Mesh::Point                 lower, upper;
     double                      distortion; ///< largest shift of a corner relative to the brick size; faces of the box stay flat
     unsigned int                seed = 1;
   };
 
-  /// Adds a volume of bricks, all cut in the same way; its lower and upper face in z become surfaces with the given names.
+  /// Adds a volume of bricks that are all cut in the same way; its lower and upper faces in z become surfaces with the given names.
   inline void add_box(Mesh &mesh, const Box &box, const std::string &volume, const std::array<std::string, 2> &surfaces)
   {
     std::mt19937                     random(box.seed);
@@ -80,8 +80,8 @@ namespace Squeal::Testing
               }
             else
               {
-                // Around a central node: on each face a pyramid, or two tetrahedra with the diagonal from the first node;
-                // the face towards hexahedra begins with 0, 4
+                // Divide around a central node: each face gets a pyramid, or two tetrahedra with the diagonal from its first node. The face
+                // towards hexahedra begins with nodes 0, 4
                 const unsigned int centre = add_point({{i + 0.5, j + 0.5, k + 0.5}});
                 for (unsigned int face = 0; face < 6; ++face)
                   {
@@ -122,7 +122,7 @@ namespace Squeal::Testing
   inline const Eigen::Matrix3d block_turn =
     (Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitY()) * Eigen::AngleAxisd(-0.2, Eigen::Vector3d::UnitX())).matrix();
 
-  /// 0.3 m × 0.2 m × 0.2 m; the plane is normal to the third column of block_turn and passes through block_centre.
+  /// Two blocks of 0.3 m × 0.2 m × 0.2 m; the plane between them is normal to the third column of block_turn and contains block_centre.
   inline Mesh two_blocks(const Cut                                         disc,
                          const Cut                                         pin,
                          const std::array<std::array<unsigned int, 3>, 2> &bricks,

@@ -22,17 +22,17 @@ namespace Squeal::Testing
     });
   }
 
-  /// The bore held in all directions.
+  /// Mounts that hold the bore in all directions.
   inline const std::vector<Mount> held = {{"disc_bore", 1e9, 7.80e10, 1.88e10}};
 
-  /// Contact faces, element, mounts.
+  /// Parameters of a test: contact faces, element, mounts.
   struct Case
   {
     const char        *name;
-    double             slope   = 0.; ///< of the contact faces
+    double             slope   = 0.; ///< slope of the contact faces
     Element            element = Element::trilinear;
     std::vector<Mount> mounts  = held;
-    int                n_free  = 0; ///< rigid-body motions of the disc on its mounts
+    int                n_free  = 0; ///< number of rigid-body motions of the disc on its mounts
   };
 
   inline void PrintTo(const Case &c, std::ostream *stream)

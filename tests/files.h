@@ -15,7 +15,7 @@
 
 namespace Squeal::Testing
 {
-  /// Content of a file, empty if it does not exist.
+  /// Content of a file; empty if it does not exist.
   inline std::string content(const std::filesystem::path &file)
   {
     std::ifstream     stream(file);
@@ -56,7 +56,7 @@ namespace Squeal::Testing
       MPI_Barrier(MPI_COMM_WORLD);
     }
 
-    /// Relative paths of all files below; links are listed, not followed.
+    /// Relative paths of all files in the folder and its subfolders; links are listed, not followed.
     std::vector<std::string> files() const
     {
       std::vector<std::string> names;

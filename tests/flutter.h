@@ -34,7 +34,7 @@ namespace Squeal::Testing
       return DenseMatrix{{k11, k12 - mu * k_c}, {k12, k22}};
     }
 
-    /// λ² + (d + β κ) λ + κ = 0 for both eigenvalues κ of the stiffness; those with Im λ > 0.
+    /// Roots of λ² + (d + β κ) λ + κ = 0 with Im λ > 0 for both eigenvalues κ of the stiffness.
     std::vector<Complex> lambda(const double mu) const
     {
       std::vector<Complex> result;

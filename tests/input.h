@@ -37,7 +37,7 @@ namespace Squeal::Testing
     std::filesystem::path directory, path;
   };
 
-  /// Message of the Exception that the action throws, or "accepted".
+  /// Message of the Exception thrown by the action, or "accepted".
   template <typename Exception, typename Action>
   std::string message(const Action &action)
   {

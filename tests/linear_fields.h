@@ -13,7 +13,7 @@
 
 namespace Squeal::Testing
 {
-  /// H of u = u_0 + H x with all strains and rotations.
+  /// Gradient H of the field u = u_0 + H x, which contains all strains and rotations.
   inline constexpr double displacement_gradient[3][3] = {{1.1, 0.3, -0.4}, {-0.2, 0.7, 0.9}, {0.5, -0.8, -1.3}};
 
   inline Point3 linear_field(const Point3 &p)
@@ -33,7 +33,7 @@ namespace Squeal::Testing
     ElasticTensor local, result;
     const double  E = material.young_modulus, nu = material.poisson_ratio, G = E / (2. * (1. + nu));
     const auto    o = material.orthotropy.value_or(Orthotropy{E, E, nu, nu, G, G, G});
-    // Rows: 11, 22, 33, 12, 13, 23
+    // Order of rows: 11, 22, 33, 12, 13, 23
     Eigen::Matrix<double, 6, 6> S = Eigen::Matrix<double, 6, 6>::Zero();
     S.diagonal() << 1. / E, 1. / o.E2, 1. / o.E3, 1. / o.G12, 1. / o.G13, 1. / o.G23;
     S(0, 1) = S(1, 0) = -nu / E;
@@ -54,7 +54,7 @@ namespace Squeal::Testing
     return result;
   }
 
-  /// ½ H : C : H of linear_field(), per unit volume.
+  /// Strain energy ½ H : C : H of linear_field(), per unit volume.
   inline double strain_energy(const ElasticTensor &C)
   {
     double      energy = 0.;
@@ -73,7 +73,7 @@ namespace Squeal::Testing
     return {90e9, 30e9, 0.5, 0.2, 50e9, 20e9, 15e9};
   }
 
-  /// Columns: orthonormal axes, none of them along x, y or z.
+  /// Orthonormal axes as columns, none of them along x, y or z.
   inline Eigen::Matrix3d oblique_axes()
   {
     return (Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitZ()) * Eigen::AngleAxisd(-0.4, Eigen::Vector3d::UnitX()) *
@@ -81,7 +81,7 @@ namespace Squeal::Testing
       .matrix();
   }
 
-  /// Materials with an orthotropic disc; fixed axes are given by vectors that are neither normalised nor orthogonal.
+  /// Materials with an orthotropic disc; fixed axes are given as vectors that are neither normalised nor orthogonal.
   inline MaterialParameters orthotropic_disc(const Orthotropy &constants, const std::optional<Eigen::Matrix3d> &axes)
   {
     MaterialParameters materials = mounted({});

@@ -11,7 +11,7 @@ int main(int argc, char **argv)
 {
   Squeal::prepare_mpi_environment();
   Squeal::set_blas_threads(1);
-  // Removes GoogleTest arguments before the libraries parse argv
+  // Remove GoogleTest arguments before the libraries parse argv
   ::testing::InitGoogleTest(&argc, argv);
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   return RUN_ALL_TESTS();

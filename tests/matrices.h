@@ -34,7 +34,7 @@ namespace Squeal::Testing
   enum class Distribution
   {
     even,
-    first_process_empty, ///< process 0 has no rows, if there are others
+    first_process_empty, ///< process 0 has no rows if there are other processes
     last_process_all     ///< only the last process has rows
   };
 
@@ -50,7 +50,7 @@ namespace Squeal::Testing
     return RowMap(rank == 0 ? 0 : (rank == n_processes - 1 ? n - share * (n_processes - 2) : share), MPI_COMM_WORLD);
   }
 
-  /// Random entries in [-1, 1], broadcast because a library may advance the random sequence on one process only.
+  /// Random entries in [−1, 1], broadcast because a library may advance the random sequence on one process only.
   inline DenseMatrix agreed_random_matrix(const int n_rows, const int n_columns)
   {
     DenseMatrix result = DenseMatrix::Random(n_rows, n_columns);
@@ -58,7 +58,7 @@ namespace Squeal::Testing
     return result;
   }
 
-  using Row = std::map<int, double>; ///< column to entry
+  using Row = std::map<int, double>; ///< entry of each column
 
   /// A sparse matrix whose row i is @p row(i).
   inline std::shared_ptr<SparseMatrix> sparse(const RowMap &row_map, const RowMap &column_map, const std::function<Row(int)> &row)
@@ -69,7 +69,7 @@ namespace Squeal::Testing
     });
   }
 
-  /// The matrix A, known on all processes.
+  /// The sparse form of the matrix A, which is known on all processes.
   inline std::shared_ptr<SparseMatrix> sparse(const RowMap &row_map, const RowMap &column_map, const DenseMatrix &A)
   {
     return sparse(row_map, column_map, [&A](const int i) {
@@ -228,7 +228,7 @@ namespace Squeal::Testing
     return result;
   }
 
-  /// Relative distance of each value to its one-to-one neighbour in @p others, which must have the same size.
+  /// Relative distance between each value and its counterpart in @p others, assigned one to one; both lists must have the same size.
   inline std::vector<double> distances(const std::vector<Complex> &values, std::vector<Complex> others)
   {
     EXPECT_EQ(values.size(), others.size());

@@ -121,7 +121,7 @@ namespace Squeal::Testing
     return mesh;
   }
 
-  /// Maps a disc about z = 0 to a ring of radius 0.25 m: upper pins press on it from outside, lower pins from inside.
+  /// Maps a disc about z = 0 to a ring of radius 0.25 m: upper pins become shoes outside the ring, lower pins shoes inside it.
   inline Mesh turned_to_rims(const Mesh &disc)
   {
     return mapped(disc, [](const Point3 &p) {
@@ -195,7 +195,7 @@ namespace Squeal::Testing
     return Squeal::couple(terms, contact, damping);
   }
 
-  /// A mesh with everything derived from it up to the coupled system.
+  /// A mesh and everything derived from it, up to the coupled system.
   struct Scene
   {
     Scene(const Mesh                &mesh,
@@ -233,7 +233,7 @@ namespace Squeal::Testing
     return materials;
   }
 
-  /// The same materials with Rayleigh damping, different in disc and pins.
+  /// The same materials with Rayleigh damping that differs between disc and pins.
   inline MaterialParameters damped(MaterialParameters materials)
   {
     materials.disc.rayleigh_alpha = 20.;

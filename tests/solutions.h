@@ -51,7 +51,7 @@ namespace Squeal::Testing
     return symmetric_modes(*system.stiffness, *system.mass, omega_max * omega_max, options);
   }
 
-  /// A free disc with in-plane rigid-body motions, λ = 0; its frictionless modes need a shift.
+  /// A free disc with in-plane rigid-body motions, λ = 0; computing its frictionless modes requires a shift.
   struct FreeDisc
   {
     explicit FreeDisc(const MaterialParameters &materials = mounted({}))
@@ -93,7 +93,7 @@ namespace Squeal::Testing
     return residual_iteration(system, inverse, *real_modes(system).vectors, friction, options, progress);
   }
 
-  /// λ of a small system with all frequencies below 10 rad/s, by each of the three solvers.
+  /// λ of a small system with all frequencies below 10 rad/s, computed by each of the three solvers.
   inline std::vector<std::vector<Complex>> solutions(const CoupledSystem &system, const double mu)
   {
     const int        n = system.map().n();
@@ -117,10 +117,10 @@ namespace Squeal::Testing
   }
 
   /**
-   * A system with friction at some contact nodes from its matrices; damping may be null.
+   * A system with friction at some contact nodes, given by its matrices; damping may be null.
    *
    * @param tangential Aᵀ, n_c × n
-   * @param V_K, V_C   reactions to stiffness and damping, n_c × n; those to mass vanish
+   * @param V_K, V_C reactions to stiffness and damping forces, n_c × n; reactions to inertia are zero
    */
   inline CoupledSystem system_of(const SecondOrderSystem                   &matrices,
                                  const std::shared_ptr<const SparseMatrix> &tangential,
@@ -137,7 +137,7 @@ namespace Squeal::Testing
     return result;
   }
 
-  /// The same without contact.
+  /// A system without contact.
   inline CoupledSystem system_of(const SecondOrderSystem &matrices)
   {
     return system_of(matrices, sparse(rows(1), matrices.mass->rows(), [](int) { return Row{}; }), nullptr);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Preloaded fork server: relocating more than 200 libraries takes longer than a small run and is done only once. For every
-// request the process forks before `main`; the child runs the program, the parent replies with its exit status.
+// Preloaded fork server: it relocates more than 200 libraries once, which takes longer than a small run. For every request it forks before
+// `main`; the child runs the program, and the parent replies with its exit status.
 
 #include <dlfcn.h>
 #include <sys/prctl.h>
@@ -19,11 +19,11 @@ namespace
 {
   struct Request
   {
-    std::vector<char> text;       // working folder and arguments, each zero-terminated
+    std::vector<char> text;       // working folder and arguments, each terminated by zero
     int               streams[2]; // standard output and error
   };
 
-  /// False once the client has closed the socket.
+  /// Receives a request; false if the client has closed the socket.
   bool receive(const int socket, Request &request)
   {
     request.text.resize(1 << 20);

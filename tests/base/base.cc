@@ -23,7 +23,7 @@ TEST(Conventions, OfAMode)
   EXPECT_DOUBLE_EQ(mode.growth_rate, R);
   EXPECT_DOUBLE_EQ(mode.divergence_rate, R / omega);
   EXPECT_DOUBLE_EQ(mode.damping_ratio, -2. * R / omega);
-  // Aperiodic mode
+  // A mode that does not oscillate
   const auto decay = modal_quantities({-3., 0.});
   EXPECT_EQ(decay.frequency, 0.);
   EXPECT_EQ(decay.growth_rate, -3.);
@@ -76,7 +76,7 @@ TEST(ProgressChannel, PrintsALinePerStepAndNote)
     progress.update("busy");
     progress.finish("12 elements");
     progress.begin("Matrices");
-    progress.begin("Modes"); // ends the previous step
+    progress.begin("Modes"); // ends the step before
     progress.finish();
     progress.finish("nothing to end");
     progress.note("a note");

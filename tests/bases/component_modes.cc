@@ -55,7 +55,7 @@ namespace
     return component_modes(s.model, s.interface, s.interface, s.system, component, boundary, omega * omega, options);
   }
 
-  /// A disc with its component modes up to 4 kHz and those of the pins up to 12 kHz.
+  /// A disc with its component modes up to 4 kHz, and modes of the pins up to 12 kHz.
   struct Disc
   {
     Scene               s      = disc_scene(mounted().mounts);
@@ -119,7 +119,7 @@ TEST_F(DiscModes, LabelsOfAnalyticFields)
           }));
           expected.push_back(to_string(family) + std::to_string(m) + "-" + std::to_string(n));
         }
-  // In-plane modes have radial and circumferential parts of the same harmonic; the larger one determines the label.
+  // In-plane modes have radial and circumferential components with the same harmonic; the larger component determines the label.
   for (const auto &[radial, around] : {std::make_pair(1., 0.9), {0.9, 1.}})
     {
       fields.push_back(along(R, [x = radial](double, const double theta) { return x * std::cos(3. * theta); }));
@@ -146,7 +146,7 @@ TEST_F(DiscModes, WaveSharesOfAnalyticFields)
                 const double value = imaginary ? (g - f) * std::sin(n * theta) : (f + g) * std::cos(n * theta);
                 return (1. + 5. * r) * value + 0.3 * std::cos((n + 1) * theta); // other harmonics are ignored
               });
-              u += along(family == A ? R : A, [](double, double) { return 0.2; }); // and so are other directions
+              u += along(family == A ? R : A, [](double, double) { return 0.2; }); // other directions are ignored
               (imaginary ? im : re).push_back(u);
             }
           labels.push_back({family, 0, n});
@@ -195,7 +195,7 @@ TEST(PinLabels, ModesOfRoundPinsInOrder)
       const double normal_motion = max_norm(replicate(*s.contact.normal * *modes.vectors)) / max_norm(u);
       EXPECT_EQ(normal_motion < 1e-14, boundary == ContactBoundary::sliding) << normal_motion;
     }
-  // Contact does not affect torsion, except for the warping of the polygon.
+  // Contact does not affect torsion, except for the warping of the polygonal face.
   EXPECT_NEAR(torsion.at(0) / torsion.at(1), 1., 2e-3);
 
   // A pin that touches at a single node bends about its own axis
@@ -230,7 +230,7 @@ TEST_F(DiscModes, ComponentModesAreIdentifiedAsThemselves)
   for (const ModeLabel &label : found)
     EXPECT_NEAR(label.participation, 1., 1e-10);
 
-  // Random vectors contain almost nothing of the lowest modes.
+  // Random vectors have almost no share in the lowest modes.
   const auto none = identities(random_vectors(s.model.free_map(), 2));
   EXPECT_EQ(none, std::vector<ModeLabel>(2));
   for (const ModeLabel &label : none)
@@ -246,7 +246,7 @@ TEST_F(DiscModes, SharesOfMixturesAndPhases)
   EXPECT_NEAR(found[0].participation, 1., 1e-10);
   EXPECT_NEAR(found[1].participation, 0.64, 1e-10);
 
-  // All three vectors resemble the doublet most, but its label is given only twice, so that one vector gets another.
+  // All three vectors are most similar to the doublet, but only two modes may have its label: one vector gets another label.
   EXPECT_EQ(identities(join_all({1. * a + 0.1 * c, 1. * a + (0.2 * b + 0.4 * c), 1. * a + (0.4 * b + 0.1 * c)})),
             (std::vector<ModeLabel>{disc.labels[first], disc.labels[single], disc.labels[first]}));
 }

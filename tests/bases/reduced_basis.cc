@@ -47,7 +47,7 @@ namespace
     return kinds;
   }
 
-  /// Disc and three pins, with half as many elements if they are quadratic.
+  /// Disc and three pins, with half as many elements in each direction if they are quadratic.
   Mesh mesh_of(const Case &c)
   {
     const int n = c.element == Element::trilinear ? 2 : 1;
@@ -57,7 +57,7 @@ namespace
                   c.slope);
   }
 
-  /// A model with all ingredients of the bases.
+  /// A model with all vectors that the bases need.
   struct Bodies
   {
     explicit Bodies(const Case &c)
@@ -94,7 +94,7 @@ namespace
       return in;
     }
 
-    /// Built on first use.
+    /// The basis of this kind, computed on first use.
     const ReducedBasis &basis(const std::string &kind) const
     {
       auto found = made.find(kind);
@@ -113,7 +113,7 @@ namespace
     mutable std::map<std::string, ReducedBasis>         made;
   };
 
-  /// Largest relative M-norm of the part of a column of Y outside the span of the M-orthonormal X.
+  /// Largest M-norm of the component of a column of Y outside the span of the M-orthonormal X, relative to the column.
   double outside(const SparseMatrix &M, const MultiVector &X, MultiVector Y)
   {
     const std::vector<double> norms = column_products(Y, M * Y);
@@ -122,7 +122,7 @@ namespace
     return std::sqrt((as_column(column_products(Y, M * Y)).array().max(0.) / as_column(norms).array()).maxCoeff());
   }
 
-  /// Bodies of a case are built on first use.
+  /// Models of the cases, built on first use.
   class BasesOfACase : public ::testing::Test
   {
   protected:
@@ -173,7 +173,7 @@ TEST(BasisTables, SizesOfThePaper)
 TEST_P(ReducedBases, KeepTheContactClosedAndAreOrthonormal)
 {
   const int   n_c = b.s.interface.size();
-  BasisCounts counts; // actual counts for the formulas of the tables
+  BasisCounts counts; // numbers of this model in the formulas of the tables
   counts.contact = n_c;
   for (const auto &[source, set] : b.ingredients().sets)
     counts.sets[source] = set->n_columns();
@@ -246,12 +246,12 @@ TEST_P(ReducedBases, StaticallyCompleteBasesGiveStaticResponsesExactly)
   // Tangential loads on the contact: K_c u = A
   for (const std::string kind : {"free + t.a.m.", "fixed + t.a.m.", "mixed + t.a.m.", "real + t.a.m."})
     EXPECT_LT(missing(kind), 1e-7) << kind;
-  // Bases without tangential attachment modes lack them.
+  // Bases without tangential attachment modes do not contain them
   for (const std::string kind : {"free", "fixed", "mixed", "free with r.a.m.", "real"})
     EXPECT_GT(missing(kind), 1e-2) << kind;
 
-  // Loads f whose static response is a mode of the bodies, and the resulting contact forces:
-  // (K_c − μ A V_K) u = T_cᵀf − μ/2 A P_n f
+  // Loads f for which the static response of the bodies is a mode, and the resulting contact forces: (K_c − μ A V_K) u = T_cᵀf − μ/2 A P_n
+  // f
   const MultiVector f = *b.s.system.stiffness * view(*b.components.at(BasisSource::disc_free), 0, 4);
   for (const auto &[kind, friction] :
        {std::make_pair(std::string("free"), 0.), {"mixed", 0.}, {"free + t.a.m.", mu}, {"mixed + t.a.m.", mu}, {"free with r.a.m.", mu}})
@@ -323,7 +323,7 @@ TEST(CompleteBasis, GivesTheFullModel)
       EXPECT_LT(largest(distances(full.values, reduced.values)), 1e-10);
     }
 
-  // One more vector makes the basis dependent.
+  // An additional copy of a vector makes the basis linearly dependent.
   const MultiVector first = view(disc, 0, 1), more = join({&disc, &first});
   in.sets[BasisSource::disc_sliding] = &more;
   EXPECT_THROW(reduced_basis(*find_recipe("fixed"), in), SolverError);

@@ -81,7 +81,7 @@ TEST_P(StaticModesOf, AttachmentModesAreStaticResponses)
   EXPECT_LT(residual(m, m.modes.normal_attachment(), f(*P.normal)), is_simple ? 1e-11 : 1e-9);
   EXPECT_LT(residual(m, m.modes.tangential_attachment(), f(*P.tangential)), 1e-9);
 
-  // Unit forces along n on each component add up to those on both
+  // Unit forces along n on the two components add up to the forces on both
   MultiVector rest = m.modes.normal_attachment(), f_pins = forces(m.s, *P.normal, Component::pins);
   f_pins *= -1.;
   EXPECT_LT(residual(m, m.modes.normal_attachment(Component::disc), forces(m.s, *P.normal, Component::disc)), 1e-9);
@@ -114,7 +114,7 @@ TEST_P(StaticModesOf, ConstraintModesKeepTheirValues)
       const double       sign = component == Component::disc ? 1. : -1.;
       EXPECT_LT(max_norm(replicate(*P.normal * Psi) - sign * DenseMatrix::Identity(n_c, n_c)), 1e-12);
 
-      // Forces act along the normals of this component only: K Ψ = P_nᵀ r on its rows, zero on the others.
+      // Forces act along the normals of this component only: K Ψ = P_nᵀ r on its rows, zero on all other rows.
       const MultiVector F = *m.s.system.stiffness * Psi, f = forces(m.s, *P.normal, component);
       MultiVector       rest = F;
       multiply_add(-1., f, gram(f, F), 1., rest);
@@ -140,7 +140,7 @@ TEST(Kernels, AreUndoneByCoordinates)
   expect_undone(*s.contact.kernel);
   expect_undone(*component_kernel(s.model, s.interface, Component::pins, ContactBoundary::free));
 
-  // On faces inclined by 45 degrees, a slave row has a single entry of 1, like the row of its master dof.
+  // On faces inclined by 45 degrees, the row of a slave dof has a single entry of 1, like the row of its master dof.
   ContactInterface inclined = s.interface;
   const double     h        = std::sqrt(0.5);
   for (ContactNode &node : inclined)

@@ -66,7 +66,7 @@ TEST(ContactInterface, EveryNodeOnceWithItsFrame)
           return Point3{{p[0], p[1], p[2] + slope * (std::hypot(p[0], p[1]) - 0.2)}};
         });
         const auto positive = pairs(mesh, element), negative = pairs(mesh, element, Rotation::negative);
-        // (d a + 1) (d b + 1) nodes on a × b faces of degree d
+        // a × b faces of degree d have (d a + 1) (d b + 1) nodes
         EXPECT_EQ(positive.size(), element == Element::trilinear ? 14u + 10u : 39u + 27u);
         ASSERT_EQ(negative.size(), positive.size());
 
@@ -87,7 +87,8 @@ TEST(ContactInterface, EveryNodeOnceWithItsFrame)
             EXPECT_GT(node.area, 0.);
             area += node.area;
 
-            // n outwards, t along e_θ, b = n × t; at the ends of a pin, face normals differ from the cone's by half the sector angle
+            // n outwards, t along e_θ, b = n × t; at the ends of a pin, the face normal differs from that of the cone by half the sector
+            // angle
             const double r = node.axis_distance(), scale = 1. / std::sqrt(1. + slope * slope), side = node.normal[2] > 0. ? 1. : -1.;
             const double tolerance = 1.1 * slope * M_PI / n_sectors, near = slope > 0. ? 1e-3 : 0.;
             const Eigen::Vector3d e_r(node.position[0] / r, node.position[1] / r, 0.), e_theta(-e_r[1], e_r[0], 0.);
@@ -111,7 +112,7 @@ TEST(ContactInterface, EveryNodeOnceWithItsFrame)
 
 TEST(ContactInterface, PadsThatEndAtTheRimPairInDegree2)
 {
-  // Pad edges on the rim and bore must follow the curve, whatever the rest of their outline.
+  // Pad edges on rim and bore must follow the curve, regardless of the rest of their outline
   const auto interface =
     pairs(extrude(polar_plan(0.15, 0.3, 3, 16, {{top, -1, 2, 1, 2}, {bottom, 3, 3, 0, 1}}), layers(1, 1)), Element::quadratic);
   const auto n_at = [&](const double radius) {
@@ -138,7 +139,7 @@ TEST(ContactInterface, DisplacedPinsAreCoupledByMortarElements)
   const auto n_pairs = [](const ContactInterface &interface) {
     return std::count_if(interface.begin(), interface.end(), [](const ContactNode &node) { return node.is_pair(); });
   };
-  EXPECT_EQ(n_pairs(pairs(apart(5e-7))), 21); // within the tolerance
+  EXPECT_EQ(n_pairs(pairs(apart(5e-7))), 21); // gap within the tolerance
   EXPECT_EQ(pairs(apart(1e-4)).size(), 21u);
   EXPECT_LT(n_pairs(pairs(apart(1e-4))), 21);
   expect_unpaired(apart(-2.), {"only 0 % of the contact face of pin_"});
@@ -146,7 +147,7 @@ TEST(ContactInterface, DisplacedPinsAreCoupledByMortarElements)
 
 TEST(ContactInterface, WhatCannotBePairedIsRefused)
 {
-  // Lateral faces of the pins are clamped as well, down to the contact
+  // Lateral faces of the pins are also clamped, down to the contact
   Mesh clamped = flat_mesh();
   for (auto &quadrilateral : clamped.faces)
     if (clamped.surface_names[quadrilateral.surface] == PhysicalNames::pin_side)

@@ -31,7 +31,7 @@ namespace
     return max_norm(*add(1., A, -1., B)) / max_norm(B);
   }
 
-  /// Largest column norm of A - B relative to that of B.
+  /// Largest column norm of A − B, relative to that of B.
   double difference(MultiVector A, const MultiVector &B)
   {
     A -= B;
@@ -102,7 +102,7 @@ TEST(ReactionOperators, GiveTheSameEigenvaluesWhateverTheirKind)
   };
   const DenseQuadraticModes modes = eigenvalues(s.contact.reaction, 0.4);
   ASSERT_GT(modes.values.size(), 100u);
-  EXPECT_GT(largest(distances(eigenvalues(s.contact.reaction, 0.).values, modes.values)), 1e-3); // friction matters
+  EXPECT_GT(largest(distances(eigenvalues(s.contact.reaction, 0.).values, modes.values)), 1e-3); // friction changes the eigenvalues
   const DenseMatrix mixture = 0.3 * pin + 1.2 * pseudo - 0.5 * (N - pin);
   for (const DenseMatrix &S : {pin, mixture})
     {
@@ -126,7 +126,7 @@ TEST_P(Contact, KernelSpansTheAdmissibleDisplacements)
   EXPECT_EQ(count_negative_eigenvalues(*add(1., *G, -0.999, *unit), "TᵀT - 1"), 0);
   EXPECT_EQ(count_negative_eigenvalues(*add(-1., *G, 6.001, *unit), "6 - TᵀT"), 0);
 
-  // A selection matrix, with a single entry of 1 per row, if n is a coordinate axis
+  // T is a selection matrix, with a single entry of 1 per row, if n is a coordinate axis
   const DenseMatrix T            = to_dense(T_c);
   const bool        is_selection = ((T.array() == 0.) || (T.array() == 1.)).all() && (T.rowwise().sum().array() == 1.).all();
   EXPECT_EQ(is_selection, GetParam().slope == 0.);
@@ -159,7 +159,7 @@ TEST_P(Contact, ComponentKernels)
 
 TEST_P(Contact, MatricesAreThoseOfTheUnreducedEquation)
 {
-  // T_cᵀ (1 − μ/2 P_tᵀ P_n) K T_c, likewise M and C of the bodies, whose damping forces also cause friction; C_b is added without friction
+  // T_cᵀ (1 − μ/2 P_tᵀ P_n) applies to K, M and C of the bodies, whose damping forces also cause friction; C_b is added without this factor
   for (const bool is_damped : {false, true})
     for (const RadialDissipation dissipation : {RadialDissipation::none, RadialDissipation::consistent})
       {
@@ -195,7 +195,7 @@ TEST_P(Contact, DampingActsAlongTheSlidingAndTheRadialDirection)
   for (std::size_t c = 0; c < s.interface.size(); ++c)
     {
       c_b.push_back(1. + c);
-      c_t.push_back(-3. + c % 5); // of either sign; negative if friction falls with speed
+      c_t.push_back(-3. + c % 5); // c_t of either sign; negative if friction falls with speed
     }
   const auto along = [&](const Matrix &P, const std::vector<double> &values) {
     return projected(*Testing::diagonal(P->rows(), [&](const int c) { return values[c]; }), *P);
@@ -249,7 +249,7 @@ TEST_P(Contact, UpdatedInverseEqualsSparseFactors)
 
 TEST_P(Contact, ComplexModesSatisfyTheUnreducedEquation)
 {
-  // M ü + C u̇ + K u = P_nᵀ r_n + μ P_tᵀ r_n, P_n u = 0, with t the disc's direction relative to the pin
+  // Check the equations M ü + C u̇ + K u = P_nᵀ r_n + μ P_tᵀ r_n, P_n u = 0, with t the direction of the disc relative to the pin
   for (const bool is_damped : {false, true})
     {
       const Scene      s  = scene(GetParam(), is_damped, is_damped ? RadialDissipation::consistent : RadialDissipation::none);
@@ -283,7 +283,7 @@ TEST_P(Contact, ComplexModesSatisfyTheUnreducedEquation)
           EXPECT_LT(rest.col(j).norm(), 1e-9 * size[j]) << "mode " << j;
           n_touching += forces.col(j).norm() > 1e-2 * size[j];
         }
-      // Reactions contribute to the balance, except for in-plane modes of the disc.
+      // In-plane modes of the disc have hardly any reactions; in all other modes, reactions contribute to the balance
       EXPECT_GT(n_touching, k / 2);
     }
 }
@@ -299,7 +299,7 @@ TEST_P(Contact, SpringsYieldByTheReactions)
     return couple(s.system, contact_operators(s.model, interface), s.damping);
   };
 
-  // K + P_nᵀ k D P_n + μ P_tᵀ k D P_n
+  // Compare with K + P_nᵀ k D P_n + μ P_tᵀ k D P_n
   constexpr double    k      = 3e11;
   const CoupledSystem spring = system_with(k);
   const DenseMatrix   P_n = to_dense(*s.contact.normal), P_t = to_dense(*s.contact.tangential);

@@ -40,7 +40,7 @@ namespace
                                               {"9 and 6 nodes", Cut::tetrahedra, Cut::hexahedra, Element::quadratic},
                                               {"both, quadratic", Cut::mixed, Cut::mixed, Element::quadratic}};
 
-  // Bricks of the disc block and of the pin block
+  // Number of bricks of the disc block and of the pin block
   const std::array<std::array<unsigned int, 3>, 2> fine = {{{{4, 3, 1}}, {{5, 2, 1}}}}, coarse = {{{{1, 2, 1}}, {{2, 1, 1}}}};
 
   class Blocks : public ::testing::TestWithParam<BlockCase>
@@ -56,7 +56,7 @@ namespace
 
 TEST_P(Blocks, ConstantPressureIsInEquilibrium)
 {
-  // Uniaxial stress along the normal, with free lateral expansion
+  // Uniaxial stress along the normal; lateral expansion is free
   constexpr double      p = 2e6;
   const Eigen::Vector3d n = block_turn.col(2);
   MultiVector           u(s.model.free_map(), 1);
@@ -70,14 +70,14 @@ TEST_P(Blocks, ConstantPressureIsInEquilibrium)
       });
     }
 
-  // Contact forces K u − f; f acts on both ends
+  // Contact forces K u − f, where f acts on both ends
   MultiVector forces = *s.system.stiffness * u;
   for (const Node &node : s.model.nodes())
     for (const int dof : node.dofs)
       if (const int i = forces.map().place(dof);
           i >= 0 && std::abs(n.dot(Eigen::Vector3d::Map(node.position.data()) - block_centre)) > 1e-9)
         forces(i, 0) = 0.;
-  // Shape functions on distorted quadrilaterals are not polynomials of the coordinates, so that quadrature is inexact
+  // Quadrature is inexact on distorted quadrilaterals, where shape functions are not polynomials of the coordinates
   const bool   has_triangles_only = GetParam().disc == Cut::tetrahedra && GetParam().pin == Cut::tetrahedra;
   const double tolerance          = has_triangles_only || GetParam().distortion == 0. ? 1e-12 : 1e-10;
   EXPECT_LT(largest_entry(transpose_times(T_c, forces)), tolerance * largest_entry(forces));
@@ -166,7 +166,7 @@ TEST(BlocksReactions, AnyLeftInverseGivesTheSameEigenvalues)
       const auto values = eigenvalues(s.contact.reaction, 0.4);
       ASSERT_GT(values.size(), 100u);
       EXPECT_GT(max_norm(*add(1., *S, -1., *s.contact.reaction)), 0.1);
-      EXPECT_GT(largest(distances(eigenvalues(s.contact.reaction, 0.), values)), 1e-3); // friction matters
+      EXPECT_GT(largest(distances(eigenvalues(s.contact.reaction, 0.), values)), 1e-3); // friction changes the eigenvalues
       EXPECT_LT(largest(distances(eigenvalues(S, 0.4), values)), 1e-10);
     }
 }

@@ -21,7 +21,7 @@ namespace
     return operation;
   }
 
-  /// A block on a rail along x, off-centre.
+  /// A block on a straight rail along x; the block is off-centre.
   Mesh block_on_rail()
   {
     Mesh mesh;
@@ -35,7 +35,7 @@ namespace
     return mapped(mesh, [](const Point3 &p) { return Point3{{-p[1], p[0], p[2]}}; });
   }
 
-  const std::vector<Mount> resting = {{"disc_bore", 1e10, 1e10, 1e10}}; // isotropic
+  const std::vector<Mount> resting = {{"disc_bore", 1e10, 1e10, 1e10}}; // an isotropic mount
 
   std::vector<std::complex<double>> eigenvalues(const Mesh &mesh, const OperationParameters &operation)
   {

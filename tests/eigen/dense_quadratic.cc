@@ -26,7 +26,7 @@ namespace
     return DenseMatrix::NullaryExpr(n, n, [&] { return entry(generator); });
   }
 
-  /// Like a reduced model: wide-range diagonal stiffness, nonsymmetric coupling, low-rank damping.
+  /// A pencil like that of a reduced model: diagonal stiffness over a wide range, nonsymmetric coupling, low-rank damping.
   struct Pencil
   {
     explicit Pencil(const int n)
@@ -167,7 +167,7 @@ TEST(DenseQuadratic, ModesOfABandApartFromTheRest)
   for (const DenseMatrix *damping : {static_cast<const DenseMatrix *>(nullptr), static_cast<const DenseMatrix *>(&D)})
     expect_same(dense_modes_of_band(M, damping, K, squares, end).value(), dense_quadratic_modes(M, damping, K, end));
 
-  // A mode above the band that is overdamped, or that damping brings down into the band
+  // An overdamped mode above the band, and a mode above the band whose damped frequency lies in it
   for (const double damping : {400., 135.})
     {
       DenseMatrix much = C;
@@ -191,17 +191,17 @@ TEST(DenseQuadratic, ABandThatIsNotApartIsNotSeparated)
   const auto        squares    = squares_of(apart);
   const DenseMatrix noise      = random_entries(n, 6);
   EXPECT_TRUE(band_subspaces(apart + noise, squares, end).has_value());
-  // No gap above the band; an unbounded band
+  // Not available without a gap above the band, or for an unbounded band
   EXPECT_FALSE(band_subspaces(stiffness(0.) + noise, squares_of(stiffness(0.)), end).has_value());
   EXPECT_FALSE(band_subspaces(apart + noise, squares, std::numeric_limits<double>::infinity()).has_value());
-  // A mode above the band that comes down into it or becomes real
+  // A mode above the band that coupling moves into it or makes real
   for (const double square : {100., -1e4})
     {
       DenseMatrix A = apart + noise;
       A(50, 50)     = square;
       EXPECT_FALSE(band_subspaces(A, squares, end).has_value()) << square;
     }
-  // Iterations that do not converge
+  // Not available if the iterations do not converge
   EXPECT_FALSE(band_subspaces(apart + 2000. * noise, squares, end).has_value());
   // Falls back to the QR algorithm for all eigenvalues
   DenseMatrix A = apart + noise;

@@ -73,7 +73,7 @@ namespace
 
 TEST_P(SymmetricModesBy, LaplacianOnACube)
 {
-  // Known eigenvalues, threefold and sixfold by symmetry.
+  // The eigenvalues are known; they are up to sixfold by symmetry
   const int    m     = 9;
   const auto   K     = laplacian(m, 1, distribution());
   const auto   M     = diagonal(K->rows(), [](int) { return 2.; });
@@ -92,7 +92,7 @@ TEST_P(SymmetricModesBy, LaplacianOnACube)
 
 TEST_P(SymmetricModesBy, EigenvaluesOfMoreCopiesThanABlockHas)
 {
-  // Twelve equal bodies with simple and threefold modes: multiplicities of 12 and 36 exceed the block size
+  // Twelve equal bodies with simple and threefold modes: the multiplicities of 12 and 36 exceed the block size
   const int            m = 5, n_copies = 12;
   const auto           K     = laplacian(m, n_copies, distribution());
   const auto           M     = diagonal(K->rows(), [](int) { return 1.; });
@@ -114,7 +114,7 @@ TEST_P(SymmetricModesBy, FreeBodyHasSixRigidModes)
   EXPECT_GT(modes.eigenvalues[6], 1e-4 * limit);
   check_modes(*body.stiffness, *body.mass, limit, modes);
 
-  // The same with a prescribed shift.
+  // Repeat with a prescribed shift
   options.shift       = 0.2 * limit;
   const auto by_shift = symmetric_modes(*body.stiffness, *body.mass, limit, options);
   ASSERT_EQ(by_shift.n_counted, modes.n_counted);
@@ -189,7 +189,7 @@ TEST(SymmetricModes, DoNotDependOnThreads)
   set_task_threads(2);
   const auto two = symmetric_modes(*copies, *unit, 1.7, options);
   set_task_threads(1);
-  // Bitwise equal on one process; several processes add in any order
+  // Results are bitwise equal on one process only: several processes add in any order
   if (copies->rows().n_processes() > 1)
     {
       ASSERT_EQ(one.n_counted, two.n_counted);
@@ -203,7 +203,7 @@ TEST(SymmetricModes, DoNotDependOnThreads)
 
 TEST(SymmetricModes, ModesOnTheLimitAreCountedAgain)
 {
-  // Twelve modes at the end of the band, and a thirteenth just above it that the count has included
+  // Twelve modes at the end of the band, and a thirteenth just above it, which the count includes because of rounding
   const auto            K = diagonal(rows(400), [](const int i) { return i < 12 ? 1. : i == 12 ? 1. + 5e-9 : 5. + i; });
   const auto            M = diagonal(K->rows(), [](int) { return 1.; });
   SymmetricModesOptions options;
@@ -226,7 +226,7 @@ TEST(SymmetricModes, EndOfTheLowestIsFoundByCounting)
     {
       for (const int n : {1, 2, 3, 6, 7, 8, 9})
         EXPECT_EQ(count_below(*K, *M, end(n, first), "test").n_modes, n) << "from " << first;
-      // A multiple eigenvalue cannot be split; a cluster may add one more mode
+      // A multiple eigenvalue cannot be split; a cluster may require one more mode
       for (const int n : {4, 5})
         {
           const int n_below = count_below(*K, *M, end(n, first), "test").n_modes;
@@ -234,7 +234,7 @@ TEST(SymmetricModes, EndOfTheLowestIsFoundByCounting)
           EXPECT_LE(n_below, 6) << "from " << first;
         }
     }
-  EXPECT_THROW(end(9, 10., 5e3), SolverError); // fewer than 9 lie below this limit
+  EXPECT_THROW(end(9, 10., 5e3), SolverError); // fewer than 9 modes lie below this limit
 }
 
 TEST_P(SymmetricModesBy, UncoupledPartsAreSolvedAlone)
@@ -279,7 +279,7 @@ TEST_P(SymmetricModesBy, LargeBlocksInASmallSystem)
 TEST(SymmetricModes, CallZeroWhatRoundingHidesWhateverTheBand)
 {
   // A chain of unit masses and springs, held at one end by a much softer spring k: ω² ≈ k / n
-  for (const int n : {40, 400}) // dense, and by Lanczos
+  for (const int n : {40, 400}) // solved by a dense method, and by Lanczos
     for (const double stiffness : {0., 1e-7, 1e-3})
       for (const double limit : {1e-2, 3.})
         {

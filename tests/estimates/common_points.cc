@@ -58,13 +58,13 @@ TEST(CommonPoints, HaveTheMassOfEveryBody)
 
 TEST(CommonPoints, EvaluateMultilinearFieldsExactlyInTheirOwnBodyOnly)
 {
-  // In the finite element space of extruded cells, and zero on the clamped face of the upper pin
+  // This field is in the finite element space of extruded cells, and zero on the clamped face of the upper pin
   const auto multilinear = [](const Point3 &x) {
     const GeometryParameters parameters;
     const double             z = x[2] - parameters.disc_thickness / 2. - parameters.pin_height;
     return Point3{{z * (1. + 2. * x[0] - x[1]), z * x[1], 3. * z}};
   };
-  // √m u(x) at all points; faces of disc and pin coincide, but each body has its own field
+  // Expect √m u(x) at all points; faces of disc and pin coincide, but each body has its own field
   const Points        p;
   std::vector<double> expected;
   for (unsigned int body = 0; body < 3; ++body)
@@ -91,7 +91,7 @@ TEST(CommonPoints, EvaluateMultilinearFieldsExactlyInTheirOwnBodyOnly)
 
 TEST(BodyFrames, CarryPointsToTheSamePlacesOfADisc)
 {
-  // Different disc width and different thickness of all bodies
+  // A different width of the disc and different thickness of all bodies
   const Points p(0);
   const auto   carry = [](const double r, const double theta, const double z) {
     const double carried = 0.1 + 2. * (r - 0.1505);
@@ -111,7 +111,7 @@ TEST(BodyFrames, CarryPointsToTheSamePlacesOfADisc)
       EXPECT_LT(carried.bodies[0].points[q].distance(carry(std::hypot(x[0], x[1]), std::atan2(x[1], x[0]), x[2])), 1e-14);
     }
 
-  // A body that is missing in the other design is left out
+  // A body that the other design does not have is omitted
   std::vector<BodyFrame> fewer = frames;
   fewer.erase(fewer.begin() + 1);
   const CommonPoints rest = carried_over(p.points, frames, fewer);

@@ -14,7 +14,7 @@ namespace
 {
   constexpr double friction_coefficient = 0.4;
 
-  /// Designs on one mesh that differ in pins, mount and damping.
+  /// Designs on one mesh that differ in pin materials, mount and damping.
   std::vector<MaterialParameters> designs()
   {
     std::vector<MaterialParameters> result(3, damped(mounted()));
@@ -37,7 +37,7 @@ namespace
       system = coupled_family(terms, s.contact, s.damping);
     }
 
-    /// The same design from its own matrices.
+    /// The same design, assembled from its own matrices.
     CoupledSystem direct(const std::size_t design) const
     {
       const BodyTerms bodies = body_terms(s.model, designs()[design]);
@@ -96,6 +96,6 @@ TEST(Families, ReducedMembersAndTheirResidualsAreThoseOfFullOrder)
           for (int i = 0; i < static_cast<int>(modes.lambda.size()); ++i)
             EXPECT_LT(std::abs(products.coupling(i, j) - direct_products.coupling(i, j)), 1e-10 * std::sqrt(right * left));
         }
-      EXPECT_GT(largest, 1e-9); // the comparison is not trivial
+      EXPECT_GT(largest, 1e-9); // without this scale of errors, the comparison would be trivial
     }
 }

@@ -21,23 +21,23 @@ TEST(EnergyShares, AreThoseOfTheRows)
   const MultiVector       I = unit_vectors(map);
   MultiVector             disc(map, 1), re(map, 3), im(map, 3);
   disc.col(0)                       = I.col(0) + I.col(1);
-  re.col(0)                         = I.col(0) + 2. * I.col(1);            // the disc alone
-  re.col(1)                         = I.col(3);                            // pins alone
-  re.col(2)                         = I.col(0) + 2. * I.col(1) - I.col(2); // both
+  re.col(0)                         = I.col(0) + 2. * I.col(1);            // only the disc moves
+  re.col(1)                         = I.col(3);                            // only the pins move
+  re.col(2)                         = I.col(0) + 2. * I.col(1) - I.col(2); // both move
   im.col(2)                         = 3. * I.col(3) + I.col(1);
   const std::vector<Complex> lambda = {{0., 2.}, {0., 3.}, {-0.5, 2.}};
   const auto                 shares = energy_shares(bodies, disc, lambda, re, im);
   ASSERT_EQ(shares.size(), 3u);
   EXPECT_NEAR(shares[0], 1., 1e-14);
   EXPECT_NEAR(shares[1], 0., 1e-14);
-  // uᴴMu: disc 1 + 2 (4 + 1), pins 3 + 4 · 9; uᴴKu: disc 10 (1 + 4 + 1) − 6 · 2, pins 10 (1 + 9); |λ|² = 4.25
+  // Expected sums: uᴴMu, disc 1 + 2 (4 + 1), pins 3 + 4 · 9; uᴴKu, disc 10 (1 + 4 + 1) − 6 · 2, pins 10 (1 + 9); |λ|² = 4.25
   const double of_disc = 4.25 * 11. + 48., of_pins = 4.25 * 39. + 100.;
   EXPECT_NEAR(shares[2], of_disc / (of_disc + of_pins), 1e-14);
 }
 
 TEST(ModeGroups, OfTheFrictionlessProblem)
 {
-  // The energy decides which body a mode belongs to, not its label
+  // The energy, not the label, decides which body a mode belongs to
   EXPECT_EQ(frictionless_groups({0.99, 0.1, 0.5, 0.49, 0.}, {F1, F1, F1, T12, T12}),
             (std::vector<std::string>{"disc", "F1", "disc", "T12", "T12"}));
 }

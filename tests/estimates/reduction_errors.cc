@@ -51,7 +51,7 @@ namespace
     return result;
   }
 
-  /// Two-dof flutter, K = [k11 k12 - μ k_c; k12 k22], with a stiff third dof, without which k11 is too large.
+  /// Two-dof flutter, K = [k11 k12 − μ k_c; k12 k22], with a stiff third dof; without this dof, k11 is too large.
   struct StiffenedFlutter
   {
     double damping = 0., k11 = 3., k22 = 2., k12 = 0.7, k_c = 1.3, c = 0.3, k33 = 100.;
@@ -111,7 +111,7 @@ TEST(ReductionErrors, AreTheFormulasOfThePaper)
   EXPECT_GT(largest(errors, &ModeError::shape), 1e-6);
   EXPECT_THROW(r.errors(view(*r.real.vectors, 0, r.real.vectors->n_columns() - 3)), SolverError); // fewer modes than the reference
 
-  // Full-order vectors of the reduced modes, with ε_res from full_order_modes()
+  // Compare with full-order vectors of the reduced modes, and with ε_res from full_order_modes()
   std::set<int> matches;
   for (const ModeError &error : errors)
     {
@@ -134,7 +134,7 @@ TEST(ReductionErrors, AreTheFormulasOfThePaper)
 
 TEST(ModeMatching, ClustersAreComparedAsSubspaces)
 {
-  // A double mode, a third nearby and one apart: rotated vectors have no individual counterparts, but their span does.
+  // A double mode, a third mode nearby and a separate mode: rotated vectors have no individual counterparts, but their span has one
   Masses masses({1., 1., 1.0005, 4., 9., 16.});
   masses.model.extend(masses.I);
   const MultiVector &I     = masses.I;
@@ -156,7 +156,7 @@ TEST(ModeMatching, ClustersAreComparedAsSubspaces)
     EXPECT_EQ(errors[j].cluster_size, j < 3 ? 3 : 1);
   EXPECT_EQ(errors_of(1e-6)[2].cluster_size, 1);
 
-  // Tilts one vector out of the cluster by an angle with sine 0.28
+  // Tilt one vector out of the cluster by an angle with sine 0.28
   turned.col(1) = 0.28 * I.col(4) + 0.96 * turned.col(1);
   for (const ModeError &error : errors_of())
     EXPECT_NEAR(error.subspace, error.cluster_size == 3 ? 0.28 * 0.28 : 0., 1e-12);
@@ -164,8 +164,8 @@ TEST(ModeMatching, ClustersAreComparedAsSubspaces)
 
 TEST(ModeMatching, ByEquation17OneReducedModeMayServeTwice)
 {
-  // The reduced mode closest to e_0 is closest to e_2, too: it is the counterpart of both by eq. (17), whereas one-to-one
-  // matching gives e_2 the other reduced mode.
+  // The same reduced mode is closest to e_0 and to e_2: by eq. (17), it is the counterpart of both, whereas one-to-one matching assigns the
+  // other reduced mode to e_2.
   Masses             masses({1., 4., 1.2, 9.});
   const MultiVector &I = masses.I;
   MultiVector        T(I.map(), 2), exact(I.map(), 2);
@@ -174,7 +174,7 @@ TEST(ModeMatching, ByEquation17OneReducedModeMayServeTwice)
   T.col(0)     = 0.8 * I.col(0) + 0.6 * I.col(2);
   T.col(1)     = 0.28 * (0.6 * I.col(0) - 0.8 * I.col(2)) + 0.96 * I.col(3);
   masses.model.extend(T);
-  // Frequencies are set so that shapes alone decide the matching
+  // Set frequencies so that matching depends on shapes only
   ReducedModes modes = reduced_real_modes(masses.model, 10., BandEnd::open);
   modes.lambda       = {{0., 1.}, {0., std::sqrt(1.2)}};
 
@@ -203,7 +203,7 @@ TEST(ModeMatching, ByEquation17OneReducedModeMayServeTwice)
 
 TEST(EigenvalueEstimates, FindTheErrorAndMendIt)
 {
-  // With one dof left out, the estimate is the error to first order away from the coalescence.
+  // Without one dof, the estimate equals the error to first order if modes are not close to coalescence
   for (const double damping : {0., 0.02})
     {
       const StiffenedFlutter flutter{damping};
@@ -240,7 +240,7 @@ TEST(EigenvalueEstimates, FindTheErrorAndMendIt)
         }
       if (damping > 0.)
         continue;
-      // No error is claimed where the reduced model coalesces
+      // No error is estimated where the reduced model coalesces
       double condition = 1.;
       for (const double distance : {0.3, 1e-2, 1e-4, 1e-7})
         for (const double side : {-1., 1.})

@@ -23,7 +23,7 @@ namespace
       {
         ProjectedResiduals projected(system, inverse, shift, damping.values());
         ReducedModel       model(system);
-        // In two steps, like a growing basis
+        // Extend in two steps, like a growing basis
         model.extend(orthonormalize(M, nullptr, real, 1e-10));
         projected.extend(model);
         const ParameterValues values  = system.at(friction, damping.values());
@@ -54,7 +54,7 @@ namespace
           }
         EXPECT_TRUE(friction == 0. || largest_energy > 1e-9) << "residuals must exceed rounding errors";
 
-        // A sketch of 128 vectors: five standard deviations of a squared norm
+        // With 128 vectors in the sketch, the limit is five standard deviations of a squared norm
         ProjectedResiduals sketched(system, inverse, shift, damping.values());
         if (!sketched.use_sketch())
           continue;

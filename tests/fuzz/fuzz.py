@@ -5,10 +5,11 @@
 
     SQUEAL=build/sanitizers/squeal tests/fuzz/fuzz.py [--cases N] [--first N] [--seed N] [--kind KIND]
 
-With any input the program must either work or end with exit status 1 and one message that says what, where and what to change. It must not
-crash or exceed its time limit, and write only complete results. KIND is parameters (files), settings (of the command line), meshes or
-scripts. Some small models that pass the dry run are also run. Case N of a seed is always the same; the files of failed cases are kept in
-build/fuzz, and the exit status is 1.
+For any input, the program must either work, or end with exit status 1 and one message that says what happened, where,
+and what to change. It must not crash or exceed its time limit, and it must write only complete results. KIND is
+parameters (files), settings (of the command line), meshes or scripts. Some of the small models that pass the dry run
+are also run. Case N of a seed is always the same. If a case fails, its files are kept in build/fuzz, and the exit
+status is 1.
 """
 
 import argparse
@@ -30,18 +31,18 @@ sys.path.insert(0, str(HERE.parent / "program"))
 from blocks import BLOCKS, HEXAHEDRA, SURFACES, VOLUMES  # noqa: E402 (found by the line before)
 from program import EXECUTABLE, SCENE, SOURCE, read_table, settings  # noqa: E402
 
-TIME_LIMIT = 120       # [s] of a run, on a busy machine
-LARGEST_MESSAGE = 6000  # [character], including Gmsh's output
-MEMORY = 16 << 30      # [byte] of a process without sanitizers
+TIME_LIMIT = 120       # time limit of a run on a busy machine [s]
+LARGEST_MESSAGE = 6000  # limit of a message, including Gmsh's output [characters]
+MEMORY = 16 << 30      # memory limit of a process without sanitizers [byte]
 PARTS = ("error: ", "  where:  ", "  change: ")
 EXPECTED = re.compile(r"expected: \S+ dofs, ([\d.e+-]+) GB of memory")
 
-# Keep meshing short
+# Limit meshing, so that cases are quick
 LIMITS = ["Geometry/Meshing time limit=10", "Geometry/Meshing memory limit=2"]
 
 NUMBER = re.compile(rb"(?<![\w.])[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?(?![\w.])")
 
-# Limits of types, ranges and signs, and texts that are not numbers
+# Limits of number types, of ranges and of signs, and texts that are not numbers
 NUMBERS = [b"0", b"-0", b"-1", b"1e308", b"-1e308", b"1e309", b"5e-324", b"1e18", b"nan", b"inf", b"-inf", b"2147483647", b"2147483648",
            b"-2147483649", b"4294967296", b"9223372036854775808", b"18446744073709551616", b"1" * 400, b"0x10", b"1e", b"1,5", b"one", b""]
 
@@ -49,7 +50,8 @@ WORDS = [b" ", b"true", b"none", b",", b";;;;", b": :", b"1, 2, 3", b"1; 2", b"p
          b"%s%n%x", b'"', b"{", b"\\", b"$(true)", b"..", b"/dev/zero", b"/dev/stdin", b"/proc/self/mem", b"\xff\xfe", b"\xe2\x82", b"\x1b[2J",
          "μ１".encode(), b"x" * 300, b"x" * 100_000]
 
-# Sections that are open, closed twice, nested or unknown; unknown and duplicate names; files that include themselves
+# Sections that are not closed, closed twice, nested or unknown; unknown and duplicate names; files that include
+# themselves
 STRUCTURE = [b"end", b"subsection", b"subsection Geometry", b"subsection Geometry/File", b"set", b"set = 1", b"set Study", b"unknown line",
              b"set Study = sweep\nset Study = stability", b"subsection No section\nend", b"set No parameter = 1", b"\\\n" * 1000,
              b"subsection Geometry\nset Pin layers = 2\nend\n" * 3, b"subsection x\n" * 100_000, b"set Study = \\\nsweep", b"include case.prm",
@@ -63,11 +65,11 @@ STATEMENTS = ["Exit;", "Abort;", 'Error("x");', "For i In {1 : 1000000000}\n  a 
               "General.NumThreads = -1;", "If (1)", "EndIf", "Call y;", "DefineNumber[", "a" * 100_000 + " = 1;", "(" * 10_000, "/*", '"',
               "Dilate {{0, 0, 0}, 0} { Volume{:}; }", "OnelabRun(\"x\", \"touch trace\");", "Plugin(Skin).Run;", "Mesh.Format = 1;"]
 
-Case = collections.namedtuple("Case", "files arguments")  # files by name, including case.prm, and further arguments
+Case = collections.namedtuple("Case", "files arguments")  # files by name, including case.prm; additional arguments
 
 
 def damaged(rng, data):
-    """Data with one to three faults of bytes, numbers, lines or the encoding."""
+    """The data with one to three faults in bytes, numbers, lines or the encoding."""
     for _ in range(rng.choice([1, 1, 1, 2, 3])):
         first, length = rng.randrange(len(data) + 1), rng.choice([1, 10, 100, 1000])
         numbers, lines = [match.span() for match in NUMBER.finditer(data)], data.split(b"\n")
@@ -98,7 +100,7 @@ def damaged(rng, data):
 
 
 def environment(folder):
-    """Environment with a separate folder for temporary files, which is checked."""
+    """Environment with a separate folder for temporary files, so that remaining files are detected."""
     result = {**os.environ, "TMPDIR": str(folder), "HOME": str(folder)}
     if "sanitizers" in EXECUTABLE:
         result.setdefault("ASAN_OPTIONS", "abort_on_error=1:detect_leaks=0")
@@ -113,7 +115,7 @@ def limit_memory():
 
 
 def call(folder, temporary, arguments):
-    """The finished process; None if it does not end in time, after its process group is killed."""
+    """The finished process. If it does not end in time, its process group is killed and None is returned."""
     process = subprocess.Popen([EXECUTABLE, "case.prm", *arguments], cwd=folder, env=environment(temporary), stdin=subprocess.DEVNULL,
                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, preexec_fn=limit_memory, start_new_session=True)
     try:
@@ -127,7 +129,7 @@ def call(folder, temporary, arguments):
 
 
 def faults_of_message(process):
-    """Faults of the message of a rejected run, or of a successful run that prints one."""
+    """Faults in the message of a rejected run; a successful run must not print a message."""
     text = process.stderr.decode("utf-8", "replace")
     if process.returncode == 0:
         return [f"success with a message: {text!r}"] if text.strip() else []
@@ -142,7 +144,7 @@ def faults_of_message(process):
 
 
 def faults_of_results(folder):
-    """Faults of results, which must be complete with finite numbers."""
+    """Faults in the results, which must be complete and contain only finite numbers."""
     if not (folder / "run.json").exists():
         return ["success without results"]
     return [f"{text} in {path.name}" for path in folder.glob("*.csv") for row in read_table(path) for text in row.values()
@@ -179,14 +181,14 @@ def try_case(case, is_whole):
 
 
 class Fuzzer:
-    """All kinds of input, derived from the parameters, the files of the program and a mesh of two blocks."""
+    """Cases of all kinds of input, derived from the parameters, the files of the program and a mesh of two blocks."""
 
     kinds = ["parameters", "settings", "meshes", "scripts"]
 
     def __init__(self, seed, kinds=()):
         self.seed, self.kinds, self.rng = seed, kinds or self.kinds, None
         listing = subprocess.run([EXECUTABLE, "--print-parameters"], text=True, capture_output=True, check=True).stdout
-        self.parameters, sections = [], []  # Section/Name and value
+        self.parameters, sections = [], []  # Pairs of Section/Name and value
         for line in listing.splitlines():
             if line.strip().startswith("subsection"):
                 sections.append(line.split(maxsplit=1)[1])
@@ -205,7 +207,7 @@ class Fuzzer:
             self.mesh = (folder / "results" / "mesh.msh").read_bytes()
 
     def assignment(self):
-        """Sections, name and a damaged value."""
+        """The sections, the name and a damaged value of a parameter."""
         sections, name, value = self.rng.choice(self.parameters)
         return sections, name.encode(), self.rng.choice([self.rng.choice(NUMBERS), self.rng.choice(WORDS), damaged(self.rng, value)])
 
@@ -232,14 +234,14 @@ class Fuzzer:
         return b"\n".join(lines)
 
     def case(self, number):
-        """Kind, Case, and whether it is run after the dry run if it is small; determined by seed and number."""
+        """Kind, Case, and whether a small model is run after the dry run; determined by seed and number."""
         self.rng = random.Random(f"{self.seed} {number}")
         kind, arguments = self.kinds[number % len(self.kinds)], settings(LIMITS)
         files = {"case.prm": self.parameter_file() if kind == "parameters" else SCENE.encode()}
         if kind == "settings":
             for _ in range(self.rng.choice([1, 1, 2, 3])):
                 sections, name, value = self.assignment()
-                # Arguments are limited to 128 KiB without zero bytes
+                # Command-line arguments cannot exceed 128 KiB or contain zero bytes
                 arguments += ["--set", b"/".join([*(section.encode() for section in sections), name + b"=" + value]).replace(b"\0", b"")[:100_000]]
         elif kind != "parameters":
             name = "case.msh" if kind == "meshes" else "case.geo"

@@ -45,7 +45,7 @@ namespace
       EXPECT_EQ(pins.count(node), 0u);
   }
 
-  /// MSH text with all digits and names.
+  /// Text of a mesh in MSH format, with all digits and names.
   std::string text_of(const Mesh &mesh)
   {
     std::ostringstream stream;
@@ -78,7 +78,7 @@ TEST(GenerateMesh, PinFacesHaveTheirNodesAndGoodElements)
       EXPECT_EQ(nodes_on(mesh, "pin_clamp").size(), parameters.nodes_per_pin_face);
       EXPECT_EQ(nodes_on(mesh, "pin_side").size(), 6 * k * (parameters.pin_layers + 1));
 
-      // The outline is a regular polygon, and no corner is flatter than the block corners on it
+      // The outline is a regular polygon, and the corners of elements are no flatter than the block corners on the outline
       const double pin_area = polygon(parameters.pin_diameter / 2., 6 * k);
       EXPECT_NEAR(area(mesh, "pin_contact"), pin_area, 1e-12);
       EXPECT_NEAR(area(mesh, "disc_contact"), pin_area, 1e-12);
@@ -131,7 +131,7 @@ TEST(GenerateMesh, PinsThatAreNotOppositeAreAtTheirPlaces)
       for (std::size_t pin = 0; pin < 6; ++pin)
         EXPECT_EQ(n_on_outline(mesh, side, pins.radii[pin], pins.angles[pin], radius), n_outline);
   };
-  // Slightly offset, offset by half a pitch, not opposite at all
+  // Shifts: slightly offset, offset by half a pitch, and not opposite at all
   for (const double shift : {0.1, 2., 9.2, 14., 30., 180.})
     {
       GeometryParameters parameters;
@@ -165,13 +165,13 @@ TEST(GenerateMesh, OppositePinsStayWhereThePlanHasThem)
       for (const unsigned int node : nodes_on(mesh, "disc_contact"))
         (mesh.points[node][2] > 0. ? above : below).emplace(mesh.points[node][0], mesh.points[node][1]);
       EXPECT_EQ(above.size(), 6 * nodes);
-      EXPECT_EQ(above, below); // bitwise: nothing was sheared
+      EXPECT_EQ(above, below); // bitwise equal: nothing was sheared
     }
 }
 
 TEST(GenerateMesh, CloseAndThinPinsAreMeshed)
 {
-  // The pad of a railway brake: 18 pins, 2.56 mm apart
+  // The pad of a railway brake with 18 pins, 2.56 mm apart
   GeometryParameters parameters;
   parameters.disc_inner_radius = 0.175;
   parameters.disc_outer_radius = 0.320;
@@ -185,7 +185,7 @@ TEST(GenerateMesh, CloseAndThinPinsAreMeshed)
   parameters.bottom     = {};
   EXPECT_GT(mesh_quality(generate_mesh(parameters)).worst_scaled_jacobian, 0.1);
 
-  // Thin pins: elements grow between them
+  // Thin pins: element sizes grow in the gaps between them
   GeometryParameters thin;
   thin.pin_diameter = 0.001;
   EXPECT_LT(generate_mesh(thin).cells.size(), 30000u);
@@ -199,7 +199,7 @@ TEST(GenerateMesh, ScaledParametersGiveTheScaledMesh)
       GeometryParameters p = one_pin();
       for (double *length : {&p.disc_inner_radius, &p.disc_outer_radius, &p.disc_thickness, &p.pin_diameter, &p.pin_height, &p.element_size,
                              &p.pairing_tolerance, &p.top.radii[0]})
-        *length = std::stod(std::to_string(*length) + "e" + std::to_string(exponent)); // the nearest double
+        *length = std::stod(std::to_string(*length) + "e" + std::to_string(exponent)); // the double closest to the decimal number
       const Mesh other = generate_mesh(p);
       ASSERT_EQ(other.points.size(), mesh.points.size());
       for (std::size_t i = 0; i < mesh.points.size(); ++i)
@@ -218,7 +218,7 @@ TEST(GenerateMesh, SameParametersGiveTheSameMeshAlsoFromItsFile)
   // Checksums distinguish meshes but ignore rounding
   EXPECT_EQ(checksum(generate_mesh(one_pin())), of);
   double &z = mesh.points.back()[2];
-  z += 1e-16; // rounding
+  z += 1e-16; // rounding error
   EXPECT_EQ(checksum(mesh), of);
   z += 1e-6;
   EXPECT_NE(checksum(mesh), of);
@@ -251,7 +251,7 @@ TEST(GenerateMesh, SolidsAreTakenAsTheyAreWithFacesOfSeveralNamesAndGroupsOfOneN
   // Round trip through a file, which lists a face with two names twice
   const File written("mesh.msh", text_of(mesh));
   EXPECT_EQ(text_of(generate_mesh(of_file(written.string()), {"ground", "wall"})), text_of(mesh));
-  // The same with equal names of both groups
+  // Repeat with equal names of both groups
   std::string one_name = text_of(mesh);
   one_name.replace(one_name.find("\"wall\""), 6, "\"ground\"");
   const File merged("merged.msh", one_name);
@@ -260,7 +260,7 @@ TEST(GenerateMesh, SolidsAreTakenAsTheyAreWithFacesOfSeveralNamesAndGroupsOfOneN
 
 TEST(PlanSmoothing, InvertedFacesAreTurnedOver)
 {
-  // A grid of 4 x 4 faces whose inner nodes are mirrored
+  // A grid of 4 × 4 faces with mirrored inner nodes
   std::vector<Plan::Point> points;
   std::vector<bool>        fixed;
   for (int j = 0; j <= 4; ++j)

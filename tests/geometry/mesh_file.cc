@@ -14,7 +14,7 @@ using Point = Mesh::Point;
 
 namespace
 {
-  /// A cell of a Gmsh type in its own volume, with the first @p n_nodes of its nodes.
+  /// A cell of a Gmsh type in its own volume, made of the first @p n_nodes of the nodes of the complete cell.
   struct GmshCell
   {
     std::string  type, volume;
@@ -106,7 +106,7 @@ TEST(MeshFile, SerendipityElementsShareTheNodesThatTheyGet)
         if (std::abs(reference_nodes(Shape::hexahedron, 2)[of_first][2] - reference_nodes(Shape::hexahedron, 2)[of_second][2]) < 0.1)
           second[of_second] = first[of_first];
   mesh.groups[0].name = "disc_hat";
-  mesh.points[second[18]][0] += 0.2; // from corner 5 to corner 6
+  mesh.points[second[18]][0] += 0.2; // middle of the edge from corner 5 to corner 6
   GmshMesh::Element face{9, {}};
   for (unsigned int i = 0; i < 8; ++i)
     face.nodes.push_back(second[nodes_of(3)[i]]);
@@ -118,8 +118,8 @@ TEST(MeshFile, SerendipityElementsShareTheNodesThatTheyGet)
   ASSERT_EQ(result.faces.size(), 1u);
   const unsigned int centre = result.faces[0].nodes[8];
   EXPECT_EQ(centre, result.cells[1].nodes[nodes_of(3)[8]]);
-  EXPECT_NEAR(result.points[centre][0], 2.1, 1e-12);                     // half of the edge shift
-  EXPECT_NEAR(result.points[result.cells[1].nodes[26]][0], 1.55, 1e-12); // a quarter of it
+  EXPECT_NEAR(result.points[centre][0], 2.1, 1e-12);                     // half of the shift of the edge
+  EXPECT_NEAR(result.points[result.cells[1].nodes[26]][0], 1.55, 1e-12); // a quarter of the shift
 }
 
 TEST(MeshFile, OtherElementsAreRefused)

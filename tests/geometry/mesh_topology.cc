@@ -24,7 +24,7 @@ namespace
     return values;
   }
 
-  /// Angles of a circle divided into n parts, from the first to the last.
+  /// Angles of a circle divided into n equal parts, from index @p first to index @p last.
   Values angles(const int n, const int first, const int last)
   {
     return interval(2. * M_PI * first / n, 2. * M_PI * last / n, last - first);
@@ -45,7 +45,7 @@ namespace
     return mesh;
   }
 
-  /// Adds a grid of cells; where @p is_shared holds, coincident nodes of the volume are merged.
+  /// Adds a grid of cells; coincident nodes of the volume are merged where @p is_shared is true.
   void add_grid(Mesh              &mesh,
                 const unsigned int volume,
                 const Values      &a,
@@ -86,7 +86,7 @@ namespace
           }
   }
 
-  /// Adds the faces whose nodes are all wanted, as disc_contact on the disc and as pin_contact on other bodies.
+  /// Adds the faces whose nodes all satisfy @p is_wanted, as disc_contact on the disc and as pin_contact on other bodies.
   void name_contact(Mesh &mesh, const Choice &is_wanted)
   {
     for (const CellFace &face : all_faces(mesh))
@@ -96,7 +96,7 @@ namespace
 
   const Values radii = {0.15, 0.2, 0.25, 0.3};
 
-  /// Nodes between the ring and the first @p n_sectors sectors of the pad, with 24 sectors in a circle.
+  /// Nodes between the ring and the first @p n_sectors of the 24 sectors, which the pad covers.
   Choice under_pad(const int n_sectors)
   {
     return [n_sectors](const Point &p) {
@@ -121,7 +121,7 @@ namespace
     return {c * p[0] - s * p[2], p[1], s * p[0] + c * p[2]};
   }
 
-  /// The mesh as read from a file with this number of significant digits.
+  /// The mesh with coordinates of a limited number of significant digits, as read from a file.
   Mesh rounded(const Mesh &mesh, const int digits)
   {
     return moved(mesh, [digits](const Point &p) {
@@ -147,7 +147,7 @@ namespace
     EXPECT_NO_THROW(check_topology(mesh, 1e-6, "the.msh"));
   }
 
-  /// Expects rejection for every scale, position and precision of the coordinates.
+  /// Expects the mesh to be rejected for every scale, position and precision of the coordinates.
   void expect_refused(const Mesh &mesh, const std::vector<std::string> &mentions)
   {
     expect_mentions(refusal(mesh), mentions);
@@ -165,16 +165,16 @@ TEST(MeshTopology, ConformingMeshesPass)
   expect_passes(mesh);
   expect_passes(moved(mesh, rotated));
   expect_passes(rounded(mesh, 6));
-  expect_passes(disc_with_pad({0.02, 0.020005, 0.04}));          // a thin layer
-  expect_passes(disc_with_pad({0.02, 0.03}, angles(48, 0, 48))); // a finer disc
+  expect_passes(disc_with_pad({0.02, 0.020005, 0.04}));          // a thin layer is accepted
+  expect_passes(disc_with_pad({0.02, 0.03}, angles(48, 0, 48))); // a finer disc is accepted
 
-  // Elements that meet at an edge
+  // Elements that share only an edge
   Mesh corner = mesh_of({"disc"});
   add_grid(corner, 0, {0., 1.}, {0., 1.}, {0., 1.}, cartesian, any);
   add_grid(corner, 0, {1., 2.}, {1., 2.}, {0., 1.}, cartesian, any);
   expect_passes(corner);
 
-  // A shoe on the rim with elements twice as long: chords of the curved faces cross
+  // A shoe on the rim with elements twice as long, so that chords of the curved faces intersect
   Mesh shoe = mesh_of({"disc", "pin_rim"});
   add_grid(shoe, 0, radii, angles(96, 0, 96), {0., 0.02}, cylindrical, any);
   add_grid(shoe, 1, {0.3, 0.33}, angles(48, 1, 7), {0., 0.02});
@@ -190,7 +190,7 @@ TEST(MeshTopology, SeamIsFound)
     add_grid(mesh, 0, radii, ring, {0., 0.01, 0.02});
     return mesh;
   };
-  // The ring closes exactly, and with a tiny gap
+  // Close the ring exactly, and with a tiny gap
   for (const double gap : {0., 1e-9, 6e-6})
     {
       expect_refused(with_gap(gap, 0.3), {"12 nodes of body 'disc' coincide", "the.msh", "merge"});
@@ -204,7 +204,7 @@ TEST(MeshTopology, SeamIsFound)
 
 TEST(MeshTopology, CrackInsideIsFound)
 {
-  // Two halves joined everywhere except at six inner nodes
+  // Two halves that are joined except at six inner nodes
   Mesh mesh = mesh_of({"disc"});
   add_grid(mesh, 0, interval(0., 4., 4), interval(0., 3., 3), {0., 1.}, cartesian);
   add_grid(mesh, 0, interval(0., 4., 4), interval(0., 3., 3), {1., 2.}, cartesian,
@@ -215,13 +215,13 @@ TEST(MeshTopology, CrackInsideIsFound)
 
 TEST(MeshTopology, HangingNodesAreFound)
 {
-  // A layer twice as fine in two directions: 2 x 2 faces on one
+  // A layer that is twice as fine in two directions: 2 × 2 faces meet one
   Mesh layers = mesh_of({"disc"});
   add_grid(layers, 0, interval(0., 2., 2), interval(0., 2., 2), {0., 1.}, cartesian, any);
   add_grid(layers, 0, interval(0., 2., 4), interval(0., 2., 4), {1., 2.}, cartesian, any);
   expect_refused(layers, {"16 nodes of body 'disc'", "hanging"});
 
-  // Refined in one corner only
+  // A mesh that is refined in one corner only
   Mesh corner = mesh_of({"disc"});
   add_grid(corner, 0, interval(0., 3., 3), interval(0., 3., 3), {0., 1.}, cartesian, any);
   add_grid(corner, 0, interval(0., 3., 3), {0., 1., 2.}, {1., 2.}, cartesian, any);
@@ -230,7 +230,7 @@ TEST(MeshTopology, HangingNodesAreFound)
   expect_refused(corner, {"3 nodes of body 'disc'", "hanging"});
   expect_mentions(refusal(corner), {"(2.5, 2, 1)"});
 
-  // Between rings: nodes of the finer one lie on the circle, faces of the coarser one on chords
+  // Interface between rings: nodes of the finer ring lie on the circle, faces of the coarser ring are chords
   for (const int n_inside : {16, 32})
     {
       Mesh rings = mesh_of({"disc"});
@@ -271,7 +271,7 @@ TEST(MeshTopology, OverlapIsFound)
     add_grid(mesh, 2, a, b, c, place);
     return mesh;
   };
-  // A copy of the pad: nodes coincide, so that only element centres lie inside
+  // A copy of the pad: nodes coincide, so that the overlap is visible only at element centres
   expect_refused(with_second_pin({0.2, 0.25, 0.3}, angles(24, 0, 3), {0.02, 0.03, 0.04}, cylindrical),
                  {"'pin_1'", "'pin_2'", "overlap", "0 nodes and 12 element centres"});
   // A small body inside one element, and one that protrudes from the disc

@@ -55,7 +55,7 @@ TEST(Mesher, ConfinesGmsh)
                                       "Save \"trace.msh\";", "CreateDir \"trace\";"})
     expect_mentions(attempt(statement), {"starts a program, writes a file or opens a connection"});
 
-  // Unless it is allowed
+  // Rejected unless it is allowed
   const File file("script.geo", "");
   const auto trace = file.directory / "trace";
   std::ofstream(file.path) << "SystemCall \"touch " << trace.string() << "\";\n" << script;
@@ -75,7 +75,7 @@ TEST(Mesher, SurvivesWhatHappensToGmsh)
   expect_mentions(failure(errors, wide), {"line 1", "'foo'"});
   expect_mentions(failure("For i In {1 : 1000000000}\n  a = i;\nEndFor\n", {1., 4e9, true}),
                   {"did not finish within 1 s", "Meshing time limit"});
-#if !defined(__SANITIZE_ADDRESS__) // which allows no memory limit
+#if !defined(__SANITIZE_ADDRESS__) // the address sanitizer allows no memory limit
   expect_mentions(failure("l() = {1 : 100000000}; m() = {l(), l()};", {60., 1e9, true}), {"more than 1 GB", "Meshing memory limit"});
 #endif
 }

@@ -34,7 +34,7 @@ namespace
     unsigned int degree;
     unsigned int n;                ///< cells per direction
     double       distortion;       ///< largest shift of a corner relative to the cell size
-    bool         is_below = false; ///< faces downwards
+    bool         is_below = false; ///< the face points downwards
   };
 
   using Embedding = std::function<dealii::Point<3>(double, double)>;
@@ -44,14 +44,14 @@ namespace
     return {x, y, 0.3 * x - 0.2 * y};
   }
 
-  /// Mesh of the unit square with randomly shifted corners; other nodes lie midway between them.
+  /// Mesh of the unit square with randomly shifted corners; other nodes are midway between corners.
   SurfacePatch patch(const Grid &grid, const Embedding &place = flat)
   {
     std::mt19937                                      random(grid.n);
     std::uniform_real_distribution<>                  shift(-grid.distortion, grid.distortion);
     const unsigned int                                n = grid.n;
     std::vector<dealii::Point<2>>                     corners;
-    std::map<std::vector<unsigned int>, unsigned int> numbers; // of nodes, by adjacent corners
+    std::map<std::vector<unsigned int>, unsigned int> numbers; // numbers of nodes by their adjacent corners
     SurfacePatch                                      result;
     for (unsigned int j = 0; j <= n; ++j)
       for (unsigned int i = 0; i <= n; ++i)
@@ -152,10 +152,10 @@ namespace
     Mortar   result;
     MatrixXd slave, master, left_inverse;
     VectorXd area;
-    MatrixXd relative; ///< constant and linear displacements
+    MatrixXd relative; ///< relative motions for constant and linear displacements
   };
 
-  /// Runs the check for every kind, degree and distortion of the slave mesh.
+  /// Calls @p check for every kind, degree and distortion of the slave mesh.
   template <typename Check>
   void for_all(const Check &check)
   {
@@ -221,7 +221,7 @@ TEST(Mortar, PartsThatOverlapAreTied)
           const double overlap = tied.result.overlap_area;
           EXPECT_LT(tied.area.size(), tied.slave.cols());
           EXPECT_NEAR(overlap, (1. - offset) * (1. - offset / 2.) * std::sqrt(1.13), 1e-14);
-          // Elements with negligible overlap are left out
+          // Elements with a negligible overlap are omitted
           EXPECT_LT(tied.area.sum(), overlap * (1. + 1e-14));
           EXPECT_GT(tied.area.sum(), 0.97 * overlap);
           EXPECT_LT(tied.relative.cwiseAbs().maxCoeff(), 1e-11);

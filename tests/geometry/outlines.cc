@@ -11,7 +11,7 @@ using namespace Scenes;
 namespace
 {
 
-  /// Area and polar moment about the centroid inside an outline [m², m⁴].
+  /// Area [m²] and polar moment about the centroid [m⁴] of an outline.
   std::pair<double, double> area_and_polar_moment(const std::vector<Plan::Edge> &outline, const std::vector<Plan::Point> &points)
   {
     // Green's theorem, edge by edge
@@ -28,7 +28,7 @@ namespace
     return {area, moment - first * first / area};
   }
 
-  /// A round plan without curves and with two pins on the same faces.
+  /// A round plan of polygons, without curves, and two pins on the same faces.
   Plan polygon_pins(const unsigned int k, const double radius)
   {
     Plan plan   = Testing::round_plan(0.2, radius, k);
@@ -39,7 +39,7 @@ namespace
 
   using Points = std::vector<dealii::Point<2>>;
 
-  /// Points of an ellipse centred at (3, -2) radii, at the given angles.
+  /// Points at the given angles on an ellipse whose centre is at (3, −2) radii.
   Points on_ellipse(const double radius, const double ratio, const std::vector<double> &angles)
   {
     Points points;
@@ -80,7 +80,7 @@ TEST(Outlines, MeshesHaveTheVolumeOfDiscAndPins)
 
 TEST(Outlines, OtherShapesStayAsTheyAre)
 {
-  // A square, an ellipse, and an open curve
+  // No circle: a square, an ellipse, and an open curve
   Plan plan = polygon_pins(2, 0.026);
   for (Plan::Point &point : plan.points)
     point[1] *= 1.01;

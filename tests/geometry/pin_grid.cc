@@ -76,13 +76,13 @@ TEST(PinGrid, PinsOfASceneHaveRingsAndThinnerLayersAtTheirHeldEnd)
   parameters.pin_rings   = 3;
   parameters.pin_layers  = 3;
   parameters.pin_grading = 2.;
-  parameters.bottom      = {{0.1970, 0.2585}, {-10., 12.}}; // displaced from pins above
+  parameters.bottom      = {{0.1970, 0.2585}, {-10., 12.}}; // offset from the pins above
   const Mesh mesh        = generate_mesh(parameters);
   EXPECT_GT(check_mesh(mesh).worst_scaled_jacobian, 0.1);
   const double z_face = parameters.disc_thickness / 2.;
   for (const double side : {1., -1.})
     {
-      // Layer heights away from the face: 4 : 2 : 1
+      // Layer heights have the ratios 4 : 2 : 1 from the face upwards
       std::set<double> heights;
       for (const Mesh::Point &p : mesh.points)
         if (side * p[2] >= z_face)

@@ -16,7 +16,7 @@ namespace
 
   using Refusals = std::vector<std::pair<std::string, std::vector<std::string>>>;
 
-  /// Expects rejection of geometry.geo with each of these contents.
+  /// Expects rejection of the file geometry.geo with each of these contents.
   void expect_refused(const Refusals &refusals)
   {
     for (const auto &[content, mentions] : refusals)
@@ -81,7 +81,7 @@ TEST(Refusals, PlansThatDoNotFit)
       {"'pin_top_1' has 8 nodes", "multiple of 6"}},
      {apart + disc + pad, {"coincide", "are not joined"}}});
 
-  // Two radially aligned pins fill the ring, and the lower one overlaps both
+  // Two pins on one radius fill the width of the ring, and the lower pin overlaps both
   GeometryParameters parameters;
   parameters.disc_inner_radius = 0.05;
   parameters.disc_outer_radius = 0.1545;
@@ -89,7 +89,7 @@ TEST(Refusals, PlansThatDoNotFit)
   parameters.top               = {{0.0765, 0.1275}, {0., 0.}};
   parameters.bottom            = {{0.102}, {0.}};
   expect_mentions(refusal(parameters), {"no room", "Move the pins"});
-  // A missing surface of a mount
+  // A mount on a surface that does not exist
   expect_mentions(refusal(one_pin(), {"disc_ear"}), {"'disc_ear'", "disc_bore"});
 }
 

@@ -42,7 +42,7 @@ namespace Scenes
     return mesh;
   }
 
-  /// User-defined geometry.
+  /// Parameters of a user-defined geometry.
   inline GeometryParameters of_file(const std::string &file)
   {
     GeometryParameters parameters;
@@ -50,7 +50,7 @@ namespace Scenes
     return parameters;
   }
 
-  /// Two stacked blocks of 8 hexahedra each; @p names may be those below.
+  /// Two stacked blocks of 8 hexahedra each; @p names: names of volumes and surfaces, for example those below.
   inline std::string blocks(const std::string &names, const std::string &before_names = "")
   {
     return R"(

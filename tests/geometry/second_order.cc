@@ -15,7 +15,7 @@ namespace
 {
   constexpr double distance = 0.2, radius = 0.026;
 
-  /// The plate of the plan, completely covered by the pin.
+  /// Mesh of a plan whose plate is completely covered by a pin.
   Mesh covered(Plan plan)
   {
     plan.pins[0].faces.resize(plan.faces.size());
@@ -35,7 +35,7 @@ namespace
     return covered(plan);
   }
 
-  /// Plan positions [µm] of the nodes of a body at distance @p r from the axis.
+  /// Coordinates in the plan [µm] of the nodes of a body at distance @p r from the axis.
   std::set<std::pair<long, long>> nodes_at(const Mesh &mesh, const double r, const unsigned int body)
   {
     const std::vector<unsigned int> bodies = body_of_nodes(mesh);
@@ -61,7 +61,7 @@ namespace
     const unsigned int up = n_sides + 1;
     for (unsigned int i = 0; i < n_sides; ++i)
       {
-        const unsigned int a = 1 + std::min(i, (i + 1) % n_sides), b = 1 + std::max(i, (i + 1) % n_sides); // diagonals from lower numbers
+        const unsigned int a = 1 + std::min(i, (i + 1) % n_sides), b = 1 + std::max(i, (i + 1) % n_sides); // ascending
         for (const auto &nodes : {Mesh::Nodes{0, a, b, b + up}, {0, a, a + up, b + up}, {0, up, a + up, b + up}})
           mesh.cells.push_back({Shape::tetrahedron, nodes, 0});
         mesh.faces.push_back({Shape::triangle, {a, b, b + up}, 0});
@@ -77,7 +77,7 @@ TEST(SecondOrder, RingsAreRoundOnBothSidesOfTheContact)
 {
   const Mesh mesh = second_order(round_mesh(2, 3));
   EXPECT_NO_THROW(check_mesh(mesh));
-  // Two rings between r and 0.8 r, 1 : 2 from outside, with 24 corner and mid-edge nodes on each circle
+  // Two rings between r and 0.8 r with widths 1 : 2 from outside, and 24 corner and mid-edge nodes on each circle
   for (const double r : {1., 1. - 0.2 / 3., 0.8})
     {
       EXPECT_EQ(nodes_at(mesh, r * radius, 1).size(), 24u) << r;
@@ -102,7 +102,7 @@ TEST(SecondOrder, CellsWithTwoRoundFacesSideBySideKeepOneStraight)
     plan.faces.push_back(face);
   const Mesh mesh = second_order(covered(plan));
   EXPECT_EQ(nodes_at(mesh, radius, 1).size(), 12u);
-  EXPECT_EQ(nodes_at(mesh, 0.6 * radius, 1).size(), 6u); // corners only
+  EXPECT_EQ(nodes_at(mesh, 0.6 * radius, 1).size(), 6u); // only corners are on this circle
 }
 
 TEST(SecondOrder, TetrahedraFollowCylinders)
@@ -120,7 +120,7 @@ TEST(SecondOrder, TetrahedraFollowCylinders)
     for (const unsigned int node : face.nodes)
       EXPECT_NEAR(std::hypot(mesh.points[node][0], mesh.points[node][1]), 1., 1e-12);
 
-  // Edges stay straight without this name
+  // Edges stay straight if the surface does not have this name
   Mesh straight             = linear;
   straight.surface_names[0] = "rim";
   straight                  = second_order(straight);
@@ -132,7 +132,7 @@ TEST(SecondOrder, NodesThatFoldACellAreRefused)
 {
   const auto refusal = [](const double shift) {
     Mesh mesh = second_order(prism_of_tetrahedra(8));
-    mesh.points[mesh.cells[0].nodes[4]] += shift * dealii::Tensor<1, 3>({0., 0., 1.}); // of an edge of length 1
+    mesh.points[mesh.cells[0].nodes[4]] += shift * dealii::Tensor<1, 3>({0., 0., 1.}); // shift of the middle of an edge of length 1
     return Scenes::message<MeshError>([&] { check_mesh(mesh); });
   };
   EXPECT_EQ(refusal(0.01), "accepted");

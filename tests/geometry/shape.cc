@@ -72,7 +72,7 @@ TEST(Shapes, QuadratureHasPositiveWeightsAndIntegratesTheMass)
   for (const Shape shape : shapes)
     for (const unsigned int degree : {1, 2})
       {
-        const auto mass = [&](const unsigned int rule) { // weighted sum of all entries
+        const auto mass = [&](const unsigned int rule) { // weighted sum of all entries of the mass matrix
           const ShapeFunctions &N   = ShapeFunctions::of(shape, degree);
           double                sum = 0.;
           for (const auto &[x, weight] : quadrature(shape, rule))

@@ -28,7 +28,7 @@ namespace
 
 TEST(Determinants, OfADenseComplexMatrix)
 {
-  // An order of rows that requires pivoting
+  // A matrix whose rows must be exchanged
   ComplexDenseMatrix A = ComplexDenseMatrix::Zero(3, 3);
   A(0, 1)              = {0., 2.};
   A(1, 2)              = {3., 0.};
@@ -47,7 +47,7 @@ TEST(Determinants, OfADenseComplexMatrix)
   EXPECT_EQ(singular.log_determinant().real(), -std::numeric_limits<double>::infinity());
   EXPECT_EQ(singular.inverse_norm(), std::numeric_limits<double>::infinity());
 
-  // NaN is caught before LAPACK
+  // NaN is detected before LAPACK is called
   A(1, 2) = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(ComplexLU(A).inverse_norm(), std::numeric_limits<double>::infinity());
 }
@@ -89,7 +89,7 @@ TEST(Determinants, OfASparseQuadraticPencil)
         EXPECT_LT(distance(SparseDeterminant(*M, damped ? C.get() : nullptr, *K).logarithm(lambda), expected), 1e-11);
       }
 
-  // λ² + 4 = 0
+  // Eigenvalues of λ² + 4 = 0
   const auto one = Testing::diagonal(map, [](int) { return 1.; }), four = Testing::diagonal(map, [](int) { return 4.; });
   EXPECT_EQ(SparseDeterminant(*one, nullptr, *four).logarithm({0., 2.}).real(), -std::numeric_limits<double>::infinity());
 }

@@ -23,7 +23,7 @@ namespace
                            Factorizations,
                            ::testing::Values(Distribution::even, Distribution::first_process_empty, Distribution::last_process_all));
 
-  /// CHOLMOD on one process, and MUMPS.
+  /// Libraries to test: CHOLMOD on one process, and MUMPS.
   constexpr FactorizationLibrary libraries[] = {FactorizationLibrary::automatic, FactorizationLibrary::mumps};
 
   /// Largest relative residual of A X = B, or Aᵀ X = B.
@@ -53,7 +53,7 @@ TEST_P(Factorizations, PositiveDefiniteSystemsAreSolved)
 
 TEST_P(Factorizations, SolutionsForAnyNumberOfColumns)
 {
-  // Factors of one task, of several tasks with a top, of separate trees without a top
+  // Factors computed by one task, by several tasks with a common top, and by separate trees without a top
   for (const auto &A : {laplacian(7, 1, GetParam()), laplacian(22, 1, GetParam()), laplacian(9, 30, GetParam())})
     {
       const auto        factor = factorize_positive_definite(*A, FactorizationLibrary::automatic, "test matrix");
@@ -66,7 +66,7 @@ TEST_P(Factorizations, SolutionsForAnyNumberOfColumns)
               MultiVector X(B.map(), k), alone(B.map(), 1);
               factor->apply(view(B, 0, k), X);
               EXPECT_LT(residual(*A, X, view(B, 0, k), false), 1e-12) << A->n_rows() << " rows, " << k << " columns";
-              // A solution hardly depends on the other columns
+              // A solution is nearly independent of the other columns
               factor->apply(view(B, k - 1, 1), alone);
               EXPECT_LT(column_norms(view(X, k - 1, 1) - alone)[0], 1e-13 * column_norms(alone)[0]) << k << " columns";
             }
@@ -124,7 +124,7 @@ TEST_P(Factorizations, InertiaCountsEigenvalues)
 
   const auto D      = diagonal(rows(100, GetParam()), [](const int i) { return i % 5 == 0 ? 0. : (i % 3 == 0 ? -1. : 2.); });
   int        n_null = 0;
-  EXPECT_EQ(count_negative_eigenvalues(*D, "test", &n_null), 27); // 34 numbers below 100 are divisible by 3, 7 of these by 5
+  EXPECT_EQ(count_negative_eigenvalues(*D, "test", &n_null), 27); // 34 numbers below 100 are divisible by 3, and 7 of these by 5
   EXPECT_EQ(n_null, 20);
   EXPECT_THROW(count_negative_eigenvalues(*D, "test"), SolverError);
 }

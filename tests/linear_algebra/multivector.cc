@@ -72,7 +72,7 @@ TEST_P(MultiVectors, RandomEntriesDoNotDependOnTheDistribution)
 
 TEST_P(MultiVectors, ProductsAgreeWithDenseOnes)
 {
-  // Incomplete blocks of rows, few columns with many; beta = 0 overwrites NaN
+  // Incomplete blocks of rows; products of few with many columns; beta = 0 overwrites NaN
   for (const auto &[n, n_many, k] : {std::array<int, 3>{{3, 15, 2}}, {{700, 4, 3}}, {{700, 43, 1}}, {{10000, 16, 9}}})
     {
       const MultiVector X = random_vectors(rows(n, GetParam()), n_many, 1), Y = random_vectors(X.map(), k, 2);
@@ -104,7 +104,7 @@ TEST_P(MultiVectors, GrowByColumns)
   EXPECT_EQ(max_norm(join({&A, &B}).local() - view(all, 0, 5).local()), 0.);
   if (all.n_local_rows() > 0)
     {
-      MultiVector some = view(all, 0, 2); // views cannot grow
+      MultiVector some = view(all, 0, 2); // a view cannot grow
       EXPECT_THROW(some.append(B), SolverError);
     }
 }
@@ -118,7 +118,7 @@ TEST_P(MultiVectors, OrthonormalizeFindsTheRank)
   ASSERT_EQ(Q.n_columns(), 5);
   EXPECT_LT(orthonormality_defect(*M, Q), 1e-13);
 
-  // Three new directions of very different norms, one from Q, one zero, one repeated.
+  // Three new directions with very different norms, one vector in the span of Q, one zero vector, one repeated vector.
   const MultiVector fresh = random_vectors(map, 3, 2);
   MultiVector       X(map, 6);
   X.col(0)            = 1e6 * fresh.col(0);
@@ -144,7 +144,7 @@ TEST_P(MultiVectors, OrthonormalizeResolvesNearlyParallelDirections)
   const RowMap map = rows(60, GetParam());
   const auto   M   = inner_product(map);
 
-  // Directions at angles of 1e-2, 1e-4, ..., 1e-12: more than one Gram matrix can resolve.
+  // Directions at angles of 1e-2, 1e-4, ..., 1e-12, which a single Gram matrix cannot resolve.
   const MultiVector fresh = orthonormalize(*M, nullptr, random_vectors(map, 7, 3), 1e-8);
   MultiVector       X(map, 7);
   for (int j = 0; j < 7; ++j)
@@ -161,7 +161,7 @@ TEST_P(MultiVectors, OrthonormalizeResolvesNearlyParallelDirections)
       EXPECT_LT(orthonormality_defect(*M, W), 1e-13);
     }
 
-  // The kept directions are accurate: fresh(4) contributes only 1e-8 and is still resolved.
+  // The retained directions are accurate: fresh(4) contributes only 1e-8, but is resolved.
   const MultiVector W         = orthonormalize(*M, nullptr, X, 1e-13);
   const DenseMatrix component = gram(W, *M * view(fresh, 4, 1));
   EXPECT_NEAR(component.squaredNorm(), 1., 1e-10);
@@ -218,7 +218,7 @@ TEST_P(MultiVectors, PrincipalAxesAreOrderedAndBest)
 
 TEST_P(MultiVectors, ProductsByBlocksAreThoseOfTheWhole)
 {
-  // More columns and rows than a block has
+  // More columns and rows than fit in a block
   const auto        M = inner_product(rows(2500, GetParam()));
   const MultiVector X = random_vectors(M->rows(), 70, 1), Y = random_vectors(M->rows(), 130, 2);
   const DenseMatrix expected = gram(X, *M * Y);

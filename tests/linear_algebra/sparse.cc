@@ -23,7 +23,7 @@ namespace
                            Sparse,
                            ::testing::Values(Distribution::even, Distribution::first_process_empty, Distribution::last_process_all));
 
-  /// 30 × 20, three entries per row.
+  /// A 30 × 20 matrix with three entries per row.
   std::shared_ptr<SparseMatrix> rectangular(const Distribution distribution)
   {
     return sparse(rows(30, distribution), rows(20, distribution), [](const int i) {
@@ -47,7 +47,7 @@ TEST_P(Sparse, ProductsAgreeWithDenseOnes)
   EXPECT_LT(max_norm(to_dense(*multiply(*B, *A, true, false)) - b.transpose() * a), 1e-12);
   EXPECT_LT(max_norm(to_dense(*multiply(*B, *C, false, true)) - b * c.transpose()), 1e-12);
 
-  // Few entries: rows and columns of one index may belong to different processes.
+  // Few entries: row i and column i may belong to different processes.
   for (const int n : {3, 7, 20})
     {
       const RowMap      many = rows(n, GetParam()), fewer = rows(n - 1, GetParam()), few = rows(std::max(1, n / 5), GetParam());
@@ -82,7 +82,7 @@ TEST_P(Sparse, SumsOfDifferentPatterns)
 
 TEST_P(Sparse, ProductsWithAnyNumberOfColumns)
 {
-  // Empty rows and rows longer than the unrolled loop; few rows with fewer or more entries than the long vectors
+  // Empty rows and rows longer than the unrolled loop; few rows with fewer or more entries than the block length of vectors
   for (const auto &[n_rows, n_columns, most_entries] : {std::array<int, 3>{{90, 70, 30}}, {{5, 400, 2}}, {{5, 400, 150}}})
     {
       const int  m = n_columns, period = most_entries;
@@ -106,11 +106,11 @@ TEST_P(Sparse, ProductsWithAnyNumberOfColumns)
 
 TEST(BlasThreads, AreSet)
 {
-  // 0 for a BLAS other than OpenBLAS, whose threads are unknown.
+  // 0 for BLAS libraries other than OpenBLAS, whose number of threads is unknown
   const int reported = set_blas_threads(1);
   EXPECT_TRUE(reported == 0 || reported == 1);
 
-  // All task threads while a large matrix is factorised
+  // Check that all task threads are used while a large matrix is factorised
   set_task_threads(2);
   {
     const ThreadsOfFactorization small(1000);

@@ -13,7 +13,7 @@ using namespace Squeal::Testing;
 
 namespace
 {
-  /// Results from the same vectors with a number of threads.
+  /// Results computed from the same vectors with a given number of threads.
   struct Results
   {
     explicit Results(const unsigned int n_threads)
@@ -29,7 +29,7 @@ namespace
       set_task_threads(1);
     }
 
-    // More rows than one task has
+    // The matrix has more rows than a task
     std::shared_ptr<const SparseMatrix> K = laplacian(24, 1);
     std::shared_ptr<MultiVector>        products, combinations, solutions;
     DenseMatrix                         inner;

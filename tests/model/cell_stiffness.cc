@@ -54,7 +54,7 @@ namespace
     return result;
   }
 
-  /// Pure bending of unit curvature about y with anticlastic curvature: σ_x = E z, all other stresses zero.
+  /// Displacement of pure bending with unit curvature about y and anticlastic curvature: σ_x = E z, all other stresses are zero.
   Field bending(const double nu)
   {
     return [nu](const Point<3> &p) {
@@ -66,18 +66,18 @@ namespace
 
 TEST(CellStiffness, OneCellBendsAsABeamDoes)
 {
-  // E = 1: ½ E I a
+  // Exact energy ½ E I a for E = 1
   const double exact = 0.5 * a * b * h * h * h / 12.;
   for (const double nu : {0., 0.25, 0.3, 0.49})
     {
       const Energy trilinear = energy(Element::trilinear, nu, bending(nu)), bent = energy(Element::incompatible_modes, nu, bending(nu)),
                    quadratic = energy(Element::quadratic, nu, bending(nu));
-      // Static condensation subtracts from the trilinear energy, whose rounding error remains
+      // Condensation subtracts from the trilinear energy, and its rounding error remains
       EXPECT_NEAR(bent.value, exact, trilinear.rounding) << nu;
       EXPECT_NEAR(quadratic.value, exact, quadratic.rounding) << nu;
       EXPECT_LT(std::max(trilinear.rounding, quadratic.rounding), 1e-7 * exact) << nu;
 
-      // Trilinear elements have the parasitic shear γ_xz = x, γ_yz = −ν y, and ε_z = 0
+      // Trilinear elements have ε_z = 0 and the parasitic shears γ_xz = x, γ_yz = −ν y
       const double G = 1. / (2. * (1. + nu)), lame = 2. * G * nu / (1. - 2. * nu), trace = 1. - nu;
       const double I     = b * h * h * h / 12. * a;
       const double shear = 0.5 * G * (a * a * a * b * h + nu * nu * b * b * b * a * h) / 12.;

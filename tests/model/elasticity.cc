@@ -17,7 +17,7 @@ namespace
 {
   const std::vector<PolarPin> two_pins = {{Plan::Side::top, 1, 2, 1, 1}, {Plan::Side::bottom, 5, 2, 0, 1}};
 
-  /// Annulus and two pins, smoothly distorted in all directions so that faces are warped; boundaries stay polygons.
+  /// Annulus and two pins, smoothly distorted in all directions so that faces are warped; boundaries remain polygons.
   Mesh distorted_mesh()
   {
     return mapped(extrude(polar_plan(0.15, 0.3, 3, 12, two_pins, "inner", "outer"), layers(2, 2)), [](const Point3 &p) {
@@ -48,7 +48,7 @@ TEST_P(Elasticity, ConstantStrainOnADistortedMesh)
   const MultiVector f      = *system.stiffness * u;
   EXPECT_NEAR(0.5 * gram(u, f)(0, 0) / (volume(mesh, 0) * strain_energy(elastic_tensor(materials.disc))), 1., 1e-12);
 
-  // No forces on interior nodes
+  // A linear field causes no forces on interior nodes
   std::vector<bool> on_boundary(model.nodes().size(), false);
   for (const Face &face : model.faces())
     for (const unsigned int node : face.nodes)
@@ -77,7 +77,7 @@ TEST_P(Elasticity, MassOfEachBody)
       };
       const MultiVector e = displacements(model, 0, direction(k));
       EXPECT_NEAR(product(e, *system.mass, e) / (materials.disc.density * volume(mesh, 0)), 1., 1e-13);
-      // Directions and bodies do not couple.
+      // Different directions are not coupled
       EXPECT_EQ(product(e, *system.mass, displacements(model, 0, direction((k + 1) % 3))), 0.);
       const MultiVector pin = displacements(model, 1, [](const Point3 &) { return Point3{{1., 1., 1.}}; });
       EXPECT_EQ(product(e, *system.mass, pin), 0.);
@@ -94,7 +94,7 @@ TEST_P(Elasticity, EveryBodyHasTermsAndParametersOfItsOwn)
     n_entries += term.power == 0 ? term.matrix->n_entries() : 0;
   EXPECT_EQ(n_entries, total.stiffness->n_entries());
 
-  // Changing values afterwards is equivalent to assembling with them
+  // Changing values after assembly is equivalent to assembling with the new values
   ParameterValues values                  = bodies.values;
   values.at("Young's modulus, pin_top_1") = {3e9};
   values.at("density, pin_top_1")         = {2000.};
@@ -115,7 +115,7 @@ TEST_P(Elasticity, MatricesAreSymmetricAndMassIsPositive)
 
 TEST_P(Elasticity, RayleighDampingIsThatOfEachMaterial)
 {
-  // α M + β K on displacements of one component, where K excludes the mount
+  // Expect α M + β K for displacements of one component, where K does not include the mount
   materials                     = mounted({{"inner", 1e10, 2e10, 3e10}});
   const auto unmounted          = assemble(model, mounted({}));
   materials.disc.rayleigh_alpha = 3.;
@@ -162,7 +162,7 @@ TEST_P(Elasticity, MountsResistInTheirDirections)
   EXPECT_NEAR(energy({"inner", 0., k, 0.}, turning) / (0.5 * k * r2_area), 1., 1e-11);
   EXPECT_NEAR(energy({"inner", k, 0., 0.}, breathing) / (0.5 * k * r2_area), 1., 1e-11);
   EXPECT_NEAR(energy({"inner", k, k, 0.}, across) / (0.5 * k * area), 1., 1e-11);
-  // Dashpots with the coefficients of springs have a damping matrix equal to the stiffness of the springs
+  // Dashpots whose coefficients equal those of springs have a damping matrix equal to the stiffness of the springs
   MaterialParameters dashpots = mounted({});
   dashpots.dashpots           = {{"inner", 2. * k, 3. * k, k}};
   const auto springs = assemble(model, mounted({{"inner", 2. * k, 3. * k, k}})), none = assemble(model, mounted({})),
@@ -177,7 +177,7 @@ TEST_P(Elasticity, MountsResistInTheirDirections)
 
 namespace
 {
-  /// Frequency [rad/s] of the mode of the clamped-free pin that is closest to @p shape.
+  /// Frequency [rad/s] of the mode of the clamped-free pin that is most similar to @p shape.
   double pin_frequency(const Mesh                                  &mesh,
                        const MaterialParameters                    &materials,
                        const Element                                element,
@@ -198,7 +198,7 @@ namespace
     return std::sqrt(modes.eigenvalues[best]);
   }
 
-  /// Quarter-wave cosine over the height of an upper pin, largest at the contact.
+  /// Quarter-wave of a cosine over the height of an upper pin, largest at the contact.
   double quarter_wave(const double z)
   {
     const GeometryParameters geometry;
@@ -208,7 +208,7 @@ namespace
 
 TEST_P(Elasticity, LongitudinalVibrationOfABarConverges)
 {
-  // ν = 0: ω = π c / (2 L), c = √(E/ρ), for any cross-section; refined along the axis
+  // Longitudinal mode for ν = 0: ω = π c / (2 L), c = √(E/ρ), for any cross-section; the mesh is refined along the axis
   MaterialParameters materials = mounted({});
   materials.pin.poisson_ratio  = 0.;
   const double length          = GeometryParameters().pin_height;
@@ -228,14 +228,14 @@ TEST_P(Elasticity, LongitudinalVibrationOfABarConverges)
   for (std::size_t i = 1; i < errors.size(); ++i)
     {
       const double order = std::log2(errors[i - 1] / errors[i]);
-      EXPECT_GT(errors[i], 0.); // from above, as in a Rayleigh-Ritz method
+      EXPECT_GT(errors[i], 0.); // convergence is from above, as in a Rayleigh–Ritz method
       EXPECT_NEAR(order, 2. * degree_of(GetParam()), 0.1 + (i == 1 ? 0.3 : 0.)) << "error " << errors[i];
     }
 }
 
 TEST(Assembly, TorsionOfACylinderOnCurvedElements)
 {
-  // ω = π c_s / (2 L), c_s = √(G/ρ), for a circular cross-section
+  // Torsional mode: ω = π c_s / (2 L), c_s = √(G/ρ), for a circular cross-section
   const MaterialParameters materials = mounted({});
   const double             G         = materials.pin.young_modulus / (2. * (1. + materials.pin.poisson_ratio));
   const double             exact     = 0.5 * M_PI / GeometryParameters().pin_height * std::sqrt(G / materials.pin.density);
@@ -243,11 +243,11 @@ TEST(Assembly, TorsionOfACylinderOnCurvedElements)
     const auto turning = [](const Point3 &p) { return Point3{{-p[1] * quarter_wave(p[2]), (p[0] - 0.2) * quarter_wave(p[2]), 0.}}; };
     return pin_frequency(extrude(round_plan(0.2, 0.026, n), layers(1, 2 * n)), materials, element, turning, 1.2 * exact) / exact - 1.;
   };
-  // Order of the element, with geometry of the same order
+  // With geometry of the same order, errors converge with the order of the element
   const double coarse = error(Element::quadratic, 1), fine = error(Element::quadratic, 2);
   EXPECT_LT(std::abs(fine), 1e-4);
   EXPECT_GT(std::abs(coarse) / std::abs(fine), 12.);
-  // Polygons, order 2
+  // With polygons, errors converge with order 2
   const double polygon_coarse = error(Element::trilinear, 2), polygon_fine = error(Element::trilinear, 4);
   EXPECT_NEAR(std::log2(polygon_coarse / polygon_fine), 2., 0.15);
 }
@@ -255,7 +255,7 @@ TEST(Assembly, TorsionOfACylinderOnCurvedElements)
 TEST(Assembly, CurvedElementsHaveTheVolumeOfTheAnnulus)
 {
   const MaterialParameters materials = mounted({});
-  for (const double unit : {1., 1e-6, 1e4}) // of length
+  for (const double unit : {1., 1e-6, 1e4}) // unit of length
     {
       auto mesh = extrude(polar_plan(0.15, 0.3, 2, 24, {{Plan::Side::top, 0, 1, 0, 1}}), layers(1, 1));
       for (auto &point : mesh.points)

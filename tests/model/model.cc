@@ -22,7 +22,7 @@ namespace
     return extrude(polar_plan(0.15, 0.3, 3, 12, {{Plan::Side::top, 0, 2, 1, 2}, {Plan::Side::bottom, 5, 3, 0, 1}}), layers(2, 2));
   }
 
-  /// Locally owned nodes of all processes by number.
+  /// Nodes of all processes, each from its owner, by number.
   std::map<std::int64_t, Node> all_nodes(const Model &model)
   {
     std::vector<Node> own;
@@ -74,7 +74,7 @@ TEST(Models, HaveTheSameNodesHoweverTheyAreDistributed)
       EXPECT_EQ(static_cast<int>(dofs.size()), model.free_map().n());
       EXPECT_EQ(*dofs.rbegin() + 1, model.free_map().n());
 
-      // Ghost nodes agree with their owners
+      // Ghost nodes agree with the nodes of their owners
       for (const Node &node : model.nodes())
         {
           ASSERT_EQ(nodes.count(node.number), 1u);

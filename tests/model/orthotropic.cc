@@ -65,7 +65,7 @@ TEST(ElasticLaws, TurnWithTheirAxes)
 
 TEST(ElasticLaws, BarsStretchByTheFormulaOfTheirAngle)
 {
-  // Stress along x, axis 1 at an angle to it
+  // Uniaxial stress along x, with axis 1 at an angle to x
   const Orthotropy o = skew_orthotropy();
   for (const double angle : {0., 0.3, 0.8, 0.5 * M_PI})
     {
@@ -113,13 +113,13 @@ TEST_P(OrthotropicElements, FrequenciesDoNotChangeWhenMeshAndAxesTurn)
   const Eigen::VectorXd fixed = eigenvalues(mesh, oblique_axes()), round = eigenvalues(mesh, cylindrical);
   EXPECT_LT((eigenvalues(turned(turn), (turn * oblique_axes()).eval()) - fixed).cwiseAbs().maxCoeff(), 1e-10 * fixed.maxCoeff());
   EXPECT_LT((eigenvalues(turned(axes_at(0.6)), cylindrical) - round).cwiseAbs().maxCoeff(), 1e-10 * round.maxCoeff());
-  // Axes that do not rotate with the mesh give a different material
+  // The material changes if its axes do not rotate with the mesh
   EXPECT_GT((eigenvalues(turned(turn), oblique_axes()) - fixed).cwiseAbs().maxCoeff(), 1e-3 * fixed.maxCoeff());
 }
 
 TEST(OrthotropicRings, RadialFieldsHaveTheirEnergy)
 {
-  // u_r = r²: ε_r = 2 r, ε_θ = r, so that the energy is ½ (4 C_11 + 4 C_12 + C_22) ∫ r² dV
+  // For u_r = r²: ε_r = 2 r, ε_θ = r, so that the energy is ½ (4 C_11 + 4 C_12 + C_22) ∫ r² dV
   const double             inner = 0.15, outer = 0.3, height = GeometryParameters().disc_thickness;
   const MaterialParameters materials = orthotropic_disc(skew_orthotropy(), cylindrical);
   const ElasticTensor      C         = elastic_tensor(materials.of("disc"));

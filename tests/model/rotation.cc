@@ -43,7 +43,7 @@ namespace
     return result;
   }
 
-  /// A free ring of hexahedra and its lowest modes; the pins are ignored.
+  /// A free ring of hexahedra and its lowest modes; the pins are not used.
   struct Ring
   {
     Ring(const double inner, const double outer, const double thickness, const int n_around, const double band)
@@ -67,7 +67,7 @@ namespace
       return geometry;
     }
 
-    /// Axial share of the squared norm of a mode.
+    /// Share of axial displacements in the squared norm of a mode.
     double axial_share(const int mode) const
     {
       const MultiVector u       = *kernel * view(*modes.vectors, mode, 1);
@@ -80,7 +80,7 @@ namespace
       return sums[1] / (sums[0] + sums[1]);
     }
 
-    /// λ with Im λ > 0 at an angular velocity, from the disc reduced to its modes.
+    /// λ with Im λ > 0 at an angular velocity, of the disc reduced to its modes.
     std::vector<std::complex<double>> lambda(const double angular_velocity) const
     {
       const BodyTerms         bodies = rotating(model, mounted({}), angular_velocity);
@@ -99,7 +99,7 @@ namespace
 
 TEST(Rotation, IsThatOfLinearFields)
 {
-  // vᵀ G u = ∫ (F x)·(H J x) − (F J x)·(H x) with u = H x, v = F x, J x = e_z × x, from ∫ x xᵀ; N likewise
+  // Expect vᵀ G u = ∫ (F x)·(H J x) − (F J x)·(H x) for u = H x, v = F x, J x = e_z × x, from ∫ x xᵀ; N accordingly
   const Mesh mesh = mapped(extrude(polar_plan(0.15, 0.3, 3, 12, pins, "inner", "outer"), layers(2, 2)), [](const Point3 &p) {
     return Point3{{p[0] + 0.01 * std::sin(40. * p[1]), p[1] + 0.01 * std::sin(35. * p[0]), p[2] + 0.004 * std::sin(45. * p[0])}};
   });
@@ -150,11 +150,11 @@ TEST(Rotation, SplitsDoubletsByTheDopplerShift)
   for (const auto &l : ring.lambda(speed))
     if (l.imag() > 0.5 * omega[n_rigid])
       {
-        // No growth without friction
+        // Without friction, no mode grows
         EXPECT_LT(std::abs(l.real()), 1e-9 * band);
         found.push_back(l.imag());
       }
-  // The two lowest doublets: n = 2, in-plane and out-of-plane
+  // The two lowest doublets have n = 2: one in-plane, one out-of-plane
   constexpr int n         = 2;
   int           n_checked = 0, n_in_plane = 0;
   for (std::size_t j = n_rigid; j + 1 < omega.size() && n_checked < 4; ++j)

@@ -36,7 +36,7 @@ namespace
                                           {"9 and 6 nodes", Cut::tetrahedra, Cut::hexahedra, Element::quadratic},
                                           {"6 and 9 nodes", Cut::hexahedra, Cut::wedges, Element::quadratic}};
 
-  constexpr double edge = 0.1; // height of each box, whose sides are three and two times as long
+  constexpr double edge = 0.1; // height of each box; its sides are three and two times as long
 
   Mesh tied_boxes(const TieCase &c)
   {
@@ -59,7 +59,7 @@ namespace
       return result;
     }();
     const SecondOrderSystem system = assemble(model, materials);
-    // Integrands on distorted quadrilaterals are not polynomials, so that the coupling quadrature is inexact
+    // The quadrature of the coupling is inexact on distorted quadrilaterals, where integrands are not polynomials
     const double tolerance =
       GetParam().distortion == 0. || GetParam().name == std::string("3 nodes") || GetParam().name == std::string("6 nodes") ? 1e-12 : 1e-10;
   };

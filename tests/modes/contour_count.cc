@@ -82,7 +82,7 @@ TEST(ContourCount, FlutterOfTwoDegreesOfFreedom)
       EXPECT_EQ(count(system, {stable}, contour(1.0001 * omega, 0.01, method))[0].n_modes, 2);
       EXPECT_EQ(count(system, {stable}, contour(0.9999 * omega, 0.01, method))[0].n_modes, 1);
 
-      // Above it they are −R + iω and R + iω
+      // Above the threshold, they are −R + iω and R + iω
       const double  unstable = 1.3 * flutter.coalescence();
       const Complex l        = flutter.lambda(unstable).back();
       ASSERT_GT(std::abs(l.real()), 0.05);
@@ -97,7 +97,7 @@ TEST(ContourCount, FlutterOfTwoDegreesOfFreedom)
 
 TEST(ContourCount, AgreesWithBothSolversUnderStrongFriction)
 {
-  // Some modes diverge, others have growth rates larger than the band
+  // Some modes diverge; others have growth rates larger than the band
   const Scene  s      = scene(RadialDissipation::none);
   const double radius = Band(omega_max).radius();
   int          n_real = 0;
@@ -162,7 +162,7 @@ TEST(ContourCount, AgreesWithTheModesFound)
 
 TEST(ContourCount, BetweenARealModeAndWhatFrictionMakesOfIt)
 {
-  // A pole of the condensed determinant on one side of the contour, a zero on the other
+  // The condensed determinant has a pole on one side of the contour and a zero on the other
   const Scene s        = scene(RadialDissipation::none);
   const auto  real     = real_modes(s.coupled);
   const auto  modes    = krylov(s.coupled, 0.4);
@@ -201,7 +201,7 @@ TEST(ContourCount, DampingOfModesAndOfTheSlidingMotion)
           add_modal_damping(system, *real.vectors, real.eigenvalues, std::vector<double>(real.eigenvalues.size(), 0.02));
         }
       const auto modes = krylov(system, 0.6);
-      // Wide contours, and narrow ones between the growth rates
+      // Use wide contours, and narrow contours between the growth rates
       for (const double a : {0., 0.01 * omega_max, 0.004 * omega_max})
         EXPECT_EQ(count(system, {0.6}, contour(omega_max, a))[0].n_modes, n_inside(modes.lambda, omega_max, a)) << a;
       EXPECT_LT(n_inside(modes.lambda, omega_max, 0.004 * omega_max), n_inside(modes.lambda, omega_max));
@@ -267,7 +267,7 @@ TEST(CondensedDeterminant, DoesNotDependOnHowManyModesAreTakenOut)
     {
       EXPECT_LT(std::abs(std::exp(logarithm(few, lambda) - logarithm(many, lambda)) - 1.), 1e-7);
 
-      // The truncation stays below its bound.
+      // The error of the truncated series is below its bound
       const ComplexDenseMatrix N = few.complement(lambda, 0.4), truncated = short_series.complement(lambda, 0.4);
       const double             size = N.cwiseAbs().maxCoeff(), difference = (N - truncated).cwiseAbs().maxCoeff();
       EXPECT_LE(difference, short_series.truncation(lambda, 0.4) + 1e-12 * size);

@@ -51,7 +51,7 @@ namespace
     return times({system.terms.back()}, system.values, 1, X);
   }
 
-  /// λ with Im λ > 0 of individually damped real modes: λ² + c(ω) λ + ω² = 0.
+  /// λ with Im λ > 0 of individually damped real modes, from λ² + c(ω) λ + ω² = 0.
   std::vector<Complex> damped_oscillators(const SymmetricModes &real, const std::function<double(double)> &c)
   {
     std::vector<Complex> result;
@@ -83,7 +83,7 @@ TEST(RayleighDamping, ProportionalDampingOfEveryMode)
       EXPECT_LT(largest(distances(krylov(s.coupled, 0.).lambda, expected)), 1e-9);
       EXPECT_LT(largest(distances(iterated(s.coupled, 0., 1e-10).lambda, expected)), 1e-9);
 
-      // With friction C̃ = α M̃ + β K̃: each undamped λ_0, growing or not, becomes a root of λ² + (α + β κ) λ + κ = 0, κ = −λ_0².
+      // With friction, C̃ = α M̃ + β K̃: each undamped λ_0, growing or not, becomes a root of λ² + (α + β κ) λ + κ = 0 with κ = −λ_0².
       const auto           growing = krylov(undamped(s.coupled), friction_coefficient);
       std::vector<Complex> shifted;
       for (const Complex &l : growing.lambda)
@@ -99,7 +99,7 @@ TEST(RayleighDamping, ProportionalDampingOfEveryMode)
 
 TEST(RayleighDamping, ADiscThatMovesFreely)
 {
-  // The same with a shift and damping in the factor and in the reactions; λ = 0 and −α are eigenvalues, too.
+  // Repeat with a shift, and with damping in the factor and in the reactions; λ = 0 and −α are also eigenvalues
   constexpr double alpha = 20., beta = 1e-6;
   const FreeDisc   disc(proportional(alpha, beta));
   const auto &[s, shift, real] = disc;
@@ -156,7 +156,7 @@ TEST(RayleighDamping, ResidualsOfBothSidesAreThoseOfTheMatrices)
 
 TEST(SpeedDependentFriction, MassOnASpring)
 {
-  // m ẍ + c ẋ + k x = μ(w_0 - ẋ) N on a belt, linearised m ẍ + (c + μ'N) ẋ + k x = 0, which is unstable if -μ'N > c.
+  // A mass on a belt, m ẍ + c ẋ + k x = μ(w_0 − ẋ) N, linearised as m ẍ + (c + μ'N) ẋ + k x = 0: unstable if −μ'N > c
   const double m = 2., c = 0.05, k = 18., N = 3., w_0 = 0.5;
   const auto   friction = [](const double w) { return 0.3 + 0.2 * std::exp(-w / 0.4); };
   const double falling  = -0.5 * std::exp(-w_0 / 0.4);
@@ -192,7 +192,7 @@ TEST(ModalDamping, GivesEachModeItsRatioAndTheRestNothing)
   const MultiVector Phi    = *real.vectors;
   const auto        system = with_modal_damping(s.coupled, real);
 
-  // No effect on vectors that are M-orthogonal to the modes
+  // Modal damping has no effect on vectors that are M-orthogonal to the modes
   const MultiVector X = random_vectors(system.map(), 3);
   const MultiVector Y = orthonormalize(*system.mass, &Phi, X, 1e-10);
   EXPECT_LT(max_norm(gram(Y, modal_forces(system, Y))), 1e-11 * max_norm(gram(Phi, modal_forces(system, Phi))));
@@ -207,7 +207,7 @@ TEST(ModalDamping, GivesEachModeItsRatioAndTheRestNothing)
   EXPECT_FALSE(none.has_damping());
   EXPECT_FALSE(s.coupled.has_damping());
 
-  // Each mode has its ratio: λ = −ζ ω ± i ω √(1 − ζ²)
+  // Each mode has its own ratio: λ = −ζ ω ± i ω √(1 − ζ²)
   const auto expected = damped_oscillators(real, [](const double omega) { return 2. * ratio_at(omega) * omega; });
   EXPECT_LT(largest(distances(krylov(system, 0.).lambda, expected)), 1e-10);
   EXPECT_LT(largest(distances(krylov(system, 0., 1e-11, ShiftInverse::sparse_lu).lambda, expected)), 1e-10);
@@ -216,7 +216,7 @@ TEST(ModalDamping, GivesEachModeItsRatioAndTheRestNothing)
 
 TEST(ModalDamping, BothSolversAgreeWithFriction)
 {
-  // Combined with all other damping
+  // Combine modal damping with all other damping
   const Scene         s(mesh_of(skewed_pins), damped(mounted()), operating());
   const CoupledSystem bare =
     couple(s.system, s.contact, {std::vector<double>(s.interface.size(), 50.), std::vector<double>(s.interface.size(), -20.)});
@@ -225,12 +225,12 @@ TEST(ModalDamping, BothSolversAgreeWithFriction)
   for (const double tolerance : {1e-4, 1e-8})
     EXPECT_LT(largest(distances(iterated(system, friction_coefficient, tolerance).lambda, reference.lambda)), 2. * tolerance);
   EXPECT_LT(largest(reference.residuals), 1e-11);
-  EXPECT_GT(largest(distances(krylov(bare, friction_coefficient).lambda, reference.lambda)), 1e-3); // modal damping matters
+  EXPECT_GT(largest(distances(krylov(bare, friction_coefficient).lambda, reference.lambda)), 1e-3); // modal damping changes the eigenvalues
 }
 
 TEST(ModalDamping, OfADiscThatMovesFreely)
 {
-  // The Krylov solver lacks the inverse at a shift with modal damping; residual iteration does not need it.
+  // With modal damping there is no inverse at a shift for the Krylov solver; the residual iteration does not need it
   const FreeDisc disc;
   const auto &[s, shift, real] = disc;
   const auto     system        = with_modal_damping(s.coupled, real);

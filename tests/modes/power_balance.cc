@@ -60,7 +60,7 @@ TEST(PowerBalances, AddUpToTheDivergenceRateAndAgreeWithTheSparseMatrices)
 {
   const DampedBrake  brake;
   const ComplexModes modes  = krylov(brake.system, friction);
-  CoupledSystem      bodies = couple(brake.s.system, brake.s.contact); // without contact damping and modal damping
+  CoupledSystem      bodies = couple(brake.s.system, brake.s.contact); // the system without contact damping and modal damping
   const auto         with = with_friction(bodies, friction), without = with_friction(bodies, 0.);
   ASSERT_GT(n_unstable(modes), 0);
   ASSERT_LT(n_unstable(modes), static_cast<int>(modes.lambda.size()));
@@ -70,7 +70,7 @@ TEST(PowerBalances, AddUpToTheDivergenceRateAndAgreeWithTheSparseMatrices)
       const double       xi = modal_quantities(modes.lambda[j]).divergence_rate;
       EXPECT_NEAR(b.sum(), xi, 1e-8 * std::max(std::abs(xi), 1e-4)) << j;
 
-      // Damping dissipates, except for friction that falls with sliding speed
+      // Damping dissipates energy, unless friction falls with sliding speed
       EXPECT_LE(*std::max_element(b.radial_damping.begin(), b.radial_damping.end()), 0.);
       EXPECT_GE(*std::min_element(b.sliding_damping.begin(), b.sliding_damping.end()), 0.);
       EXPECT_LE(*std::max_element(b.bodies.begin(), b.bodies.end()), 0.);
@@ -79,7 +79,7 @@ TEST(PowerBalances, AddUpToTheDivergenceRateAndAgreeWithTheSparseMatrices)
       EXPECT_LT(b.bodies.front(), 0.);
       EXPECT_NEAR(b.modal_damping, -1e-4, 5e-5);
 
-      // The same from the sparse matrices
+      // Compute the same contributions from the sparse matrices
       const MultiVector          re = view(*modes.real_part, j, 1), im = view(*modes.imaginary_part, j, 1);
       const std::complex<double> lambda  = modes.lambda[j];
       const auto                 form    = [&](const std::shared_ptr<const SparseMatrix> &A) { return quadratic_form(*A, re, im); };

@@ -12,7 +12,7 @@ namespace
 {
   constexpr double infinity = std::numeric_limits<double>::infinity(), not_a_number = std::numeric_limits<double>::quiet_NaN();
 
-  /// Verdict on a mode at 1000 rad/s, where rates up to 10⁻⁵ 1/s are rounding errors.
+  /// Verdict on a mode at 1000 rad/s, for which rates up to 10⁻⁵ 1/s are rounding errors.
   Verdict of_rate(const double rate, const double error = 0., const bool growth_needs_coalescence = false)
   {
     return verdict_of({rate, 1000.}, error, growth_needs_coalescence);
@@ -37,7 +37,7 @@ TEST(Verdict, LeavesOpenWhatThreeTimesTheErrorMayTurn)
   EXPECT_EQ(of_rate(0., 1.), Verdict::undecided);
   EXPECT_EQ(of_rate(-2.9, 1.), Verdict::undecided);
   EXPECT_EQ(of_rate(-3.1, 1.), Verdict::stable);
-  // Errors below rounding do not matter
+  // Errors below the rounding level do not change the verdict
   EXPECT_EQ(of_rate(0., 1e-6), Verdict::neutral);
   EXPECT_EQ(of_rate(0., 1e-5), Verdict::undecided);
   for (const double rate : {-1e6, 0., 1e6})

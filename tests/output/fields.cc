@@ -57,7 +57,7 @@ namespace
   {
     const std::map<int, Shape> shapes = {{10, Shape::tetrahedron}, {12, Shape::hexahedron}, {13, Shape::wedge}, {14, Shape::pyramid}};
     std::vector<Vector3>       x      = corners(mesh, cell);
-    if (mesh.types[cell] == 13) // in VTK the first triangle faces outwards
+    if (mesh.types[cell] == 13) // in VTK, the first triangle of a wedge faces outwards
       {
         std::swap(x[1], x[2]);
         std::swap(x[4], x[5]);
@@ -81,7 +81,7 @@ namespace
     return sum.norm();
   }
 
-  /// Area or volume with two chords per parabolic edge, whose error is a quarter of that of one chord.
+  /// Area or volume for curved edges, approximated by two chords each: the error is a quarter of that with one chord.
   double of_half_edges(const double with_chords, const double with_parabolas)
   {
     return with_parabolas + (with_chords - with_parabolas) / 4.;
@@ -165,7 +165,7 @@ namespace
     return result;
   }
 
-  /// Times and files listed in a .pvd.
+  /// Times and files listed in a .pvd file.
   std::vector<std::pair<double, std::string>> listed(const fs::path &file)
   {
     std::vector<std::pair<double, std::string>> result;
@@ -302,7 +302,7 @@ TEST(Fields, HaveTheDisplacementsOfTheirPoints)
   const auto displacement = [](const std::array<double, 3> &x, const int d) {
     return std::sin(1. + d + 7. * x[0] - 5. * x[1] + 9. * x[2]);
   };
-  constexpr double      half_a_step = 0.5 / 65536. + 1e-7; // and rounding
+  constexpr double      half_a_step = 0.5 / 65536. + 1e-7; // half a step of the displacements, and rounding of single precision
   const TemporaryFolder place;
   for (const Element element : {Element::trilinear, Element::quadratic})
     {
@@ -348,7 +348,7 @@ TEST(Fields, OfAnimationsWithGrowthAreLargestWhereTheModeIs)
       const auto folder = s.written(place, [&](FieldWriter &writer) {
         writer.write_animation("all", {s.mode({50., 1000.}, "grows"), s.mode({-50., 1000.}, "decays")}, {4, 3, grows});
       });
-      // With growth there is a final frame, which would repeat the first one without growth
+      // With growth there is a final frame; without growth it would repeat the first frame
       const auto frames = listed(folder / "animations" / "all.pvd");
       ASSERT_EQ(frames.size(), grows ? 13u : 12u);
       EXPECT_EQ(frames.back().first, (frames.size() - 1) / 4.);
@@ -356,7 +356,7 @@ TEST(Fields, OfAnimationsWithGrowthAreLargestWhereTheModeIs)
                  last  = content(folder / "animations" / frames.back().second);
       if (!grows)
         without = values_of(first, "grows");
-      // The largest amplitude equals that without growth
+      // The largest amplitude equals the amplitude without growth
       EXPECT_EQ(values_of(first, "decays"), without);
       EXPECT_EQ(values_of(first, "grows") == without, !grows);
       EXPECT_EQ(values_of(last, "grows") == without, grows);
@@ -368,7 +368,7 @@ TEST(Fields, AreListedWithATimeForEachMode)
 {
   const TemporaryFolder place;
   const DiscWithPin     s(Element::trilinear);
-  // Rigid-body modes, modes that differ by rounding only, and distinct ones
+  // Rigid-body modes, modes whose frequencies differ only by rounding, and distinct modes
   const std::vector<double> frequencies = {0., 0., 500., 500., 500. * (1. + 1e-14), 500.1, 4999.};
   std::vector<ListedMode>   modes;
   for (const double frequency : frequencies)

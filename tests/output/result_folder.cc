@@ -22,7 +22,7 @@ namespace
   class ResultFolders : public ::testing::Test
   {
   protected:
-    /// Error message of the action, empty if it succeeds.
+    /// Error message of the action; empty if it succeeds.
     static std::string refusal(const std::function<void()> &action)
     {
       try
@@ -60,7 +60,7 @@ namespace
     const TemporaryFolder folder;
     const fs::path        place   = folder.path;
     const std::string     results = (place / "results").string();
-    const Names           first   = {"results/modes/one.vtu", "results/run.json", "results/table.csv"}; ///< of make_results("one")
+    const Names           first   = {"results/modes/one.vtu", "results/run.json", "results/table.csv"}; ///< files of make_results("one")
   };
 } // namespace
 
@@ -100,7 +100,7 @@ TEST_F(ResultFolders, KeepFilesOfTheUser)
                             "results/table.csv"}));
   EXPECT_EQ(content(results + "/notes.txt"), "mine");
   EXPECT_EQ(content(results + "/table.csv"), "two");
-  // The next run keeps them as well.
+  // The next run keeps the user's files as well
   make_results("three");
   EXPECT_EQ(content(results + "/modes/own.vtu"), "mine too");
 }
@@ -117,7 +117,7 @@ TEST_F(ResultFolders, RenameFilesOfTheUserThatAreInTheWay)
   EXPECT_EQ(content(results + "/modes/two.vtu"), "two");
   EXPECT_EQ(content(results + "/modes/two.vtu.kept"), "mine as well");
   EXPECT_EQ(content(results + "/modes/two.vtu.kept-2"), "mine");
-  // A user folder with the name of a result file
+  // The user has a folder with the name of a result file
   fs::remove(results + "/table.csv");
   put(results + "/table.csv/a", "a");
   EXPECT_EQ(make_results("two").size(), 1u);
@@ -131,7 +131,7 @@ TEST_F(ResultFolders, AreForOneRunAtATime)
   fs::create_symlink("results", place / "link");
   for (const std::string &name : {results, results + "/", (place / "link").string()})
     EXPECT_TRUE(contains(refusal([&] { ResultFolder(name, true); }), "another run")) << name;
-  // The first run continues undisturbed
+  // The first run continues
   write(running, "table.csv", "here");
   EXPECT_EQ(content(results + "/.unfinished/table.csv"), "here");
 }
@@ -196,7 +196,7 @@ TEST_F(ResultFolders, SettleWhatAKilledRunHasLeft)
 {
   put(results + "/.unfinished/half", "half");
   make_results("one");
-  // Killed while files were moved: no record may list files of two runs.
+  // The run was killed while files were moved: no record may list files of two runs
   put(results + "/.unfinished/half", "half");
   fs::remove(results + "/run.json");
   make_results("two");

@@ -33,7 +33,7 @@ TEST(Tables, TwelveDigitsAndUnitsOnDisk)
   EXPECT_EQ(csv.str(), "label,frequency [Hz],share [-],number [-],rest [1/s]\n"
                        "A0-2 -,333.333333333,1e-20,42,\n"
                        "\"a,\"\"b\"\"\",0,2.5,-1,1\n");
-  // On the screen all lines have the same width
+  // On the screen, all lines have the same width
   table.print(screen);
   std::istringstream         lines(screen.str());
   std::multiset<std::size_t> widths;

@@ -29,7 +29,7 @@ TEST(AccuracyGoal, MeshesAreFinerAndToleranceSmallerFromGoalToGoal)
       const Parameters fine = with_goal(goal(goals[g])), coarse = with_coarser_mesh(goal(goals[g]));
       fine.check();
       coarse.check();
-      // Idempotent, so that a run can be repeated from the parameters it writes
+      // with_goal() is idempotent, so that a run can be repeated from the parameters that it writes
       EXPECT_EQ(printed(with_goal(fine)), printed(fine));
       EXPECT_GT(coarse.discretization.maximum_frequency, fine.discretization.maximum_frequency);
       EXPECT_GE(coarse.geometry.element_size, fine.geometry.element_size);
@@ -49,7 +49,7 @@ TEST(AccuracyGoal, MeshesFollowTheScene)
 {
   const Parameters reference = with_goal(goal(AccuracyGoal::one_percent));
 
-  // Bending wavelength ∝ 1/√f, limited by the plate width
+  // The element size is proportional to the bending wavelength ∝ 1/√f, limited by the plate width
   Parameters fast                       = goal(AccuracyGoal::one_percent);
   fast.discretization.maximum_frequency = 4. * reference.discretization.maximum_frequency;
   fast                                  = with_goal(fast);
@@ -98,7 +98,7 @@ TEST(CoarserMesh, SetsParametersOfTheGeometry)
 
 TEST(MeshFamily, ScalesElementsLayersAndPinFaces)
 {
-  // 11.5 mm; 19 nodes, k = 2; 4 and 3 layers
+  // The given mesh: 11.5 mm; 19 nodes, k = 2; 4 and 3 layers
   for (const auto &[factor, size, nodes, of_pin, of_disc] :
        std::vector<std::tuple<double, double, unsigned int, unsigned int, unsigned int>>{{1., 0.0115, 19, 4, 3},
                                                                                          {2., 0.00575, 61, 8, 6},
@@ -114,7 +114,7 @@ TEST(MeshFamily, ScalesElementsLayersAndPinFaces)
       result.check();
     }
 
-  // The bodies are the same; volumes differ only by the polygonal outlines
+  // Refinement does not change the bodies; volumes differ only because of the polygonal outlines
   const Mesh coarse = generate_mesh(one_pin()), fine = generate_mesh(refined(one_pin(), 2.));
   EXPECT_EQ(coarse.volume_names, fine.volume_names);
   EXPECT_GT(fine.cells.size(), 6 * coarse.cells.size());

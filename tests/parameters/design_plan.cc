@@ -37,7 +37,7 @@ namespace
     return result;
   }
 
-  /// Parameters with the plan of a file.
+  /// Parameters that read the designs from a file.
   Parameters reading(const File &file)
   {
     Parameters parameters;
@@ -66,7 +66,7 @@ TEST(DesignPlan, GridsAndOneAtATime)
   EXPECT_EQ(plan_of(DesignChoice::full_grid, "A/x = 0.03 to 0.04 in 3; B/y = 0.044, 0.046").designs,
             (Designs{{"0.03", "0.044"}, {"0.03", "0.046"}, {"0.035", "0.044"}, {"0.035", "0.046"}, {"0.04", "0.044"}, {"0.04", "0.046"}}));
   EXPECT_EQ(plan_of(DesignChoice::full_grid, "A/x = 1e9 to 1e11 in 3 by ratio").designs, (Designs{{"1e+09"}, {"1e+10"}, {"1e+11"}}));
-  // Values with commas
+  // Values that contain commas
   const DesignPlan lists = plan_of(DesignChoice::full_grid, "Geometry/Top pin angles = -10, 0, 10 | -20, 0, 20");
   EXPECT_EQ(lists.names, Values{"Geometry/Top pin angles"});
   EXPECT_EQ(lists.designs, (Designs{{"-10, 0, 10"}, {"-20, 0, 20"}}));
@@ -91,7 +91,7 @@ TEST(DesignPlan, LatinHypercubeMeetsEveryPartOnce)
   EXPECT_EQ(parts_y.size(), n);
   EXPECT_EQ(std::count_if(plan.designs.begin(), plan.designs.end(), [](const Values &design) { return design[2] == "red"; }), n / 2);
 
-  // Equal seeds give equal designs, different seeds different ones
+  // The same seed gives the same designs, another seed different ones
   EXPECT_EQ(plan_of(DesignChoice::latin_hypercube, "A/x = 2 to 6", n, 7).designs,
             plan_of(DesignChoice::latin_hypercube, "A/x = 2 to 6", n, 7).designs);
   EXPECT_NE(plan_of(DesignChoice::latin_hypercube, "A/x = 2 to 6", n, 7).designs,
@@ -103,7 +103,7 @@ TEST(DesignPlan, SobolSequenceFillsTheRanges)
   // The first points of the sequence in two dimensions, without the origin
   EXPECT_EQ(plan_of(DesignChoice::sobol, "A/x = 0 to 1; B/y = 0 to 1", 3, 0).designs,
             (std::vector<Values>{{"0.5", "0.5"}, {"0.75", "0.25"}, {"0.25", "0.75"}}));
-  // Shifted sequences are as uniform: every sixteenth of the range has two to six of 64 points
+  // Shifted sequences are equally uniform: every sixteenth of the range has two to six of 64 points
   for (const unsigned int seed : {1u, 2u})
     {
       const DesignPlan plan = plan_of(DesignChoice::sobol, "A/x = 0 to 1; B/y = 0 to 1", 64, seed);

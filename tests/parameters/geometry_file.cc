@@ -75,7 +75,7 @@ TEST_F(GeometryFiles, CopiesHoldWhatIsIncluded)
     names += file.to + " ";
   EXPECT_EQ(names, "geometry/own.geo geometry/parts/part.geo geometry/shape.step ");
 
-  // Files outside the folder would not be found from the copy
+  // The copy would not find files outside the folder
   const std::string inner = write("inner/own.geo", "Include \"../parts/part.geo\";");
   EXPECT_EQ(copy_of(inner).name, inner);
   EXPECT_TRUE(copy_of(find_geometry("disc_pins.geo", "")).files.empty());

@@ -58,7 +58,7 @@ TEST_F(ParameterFile, StatementsComeInTheirOrder)
 TEST_F(ParameterFile, IncludesAreFollowed)
 {
   write("below/inner.prm", "subsection C\nset d = 2\nend\n");
-  write("below/outer.prm", "include inner.prm\n"); // next to the including file
+  write("below/outer.prm", "include inner.prm\n"); // found in the folder of the including file
   EXPECT_EQ(statements(write("a.prm", "subsection B\ninclude below/outer.prm\nset e = 3\nend\n")),
             (Statements{"B/", "B/C/", "B/C/d=2", "B/e=3"}));
   // Including a file twice is not a cycle
@@ -125,7 +125,7 @@ TEST_F(ParameterFile, ValuesBetweenQuotesAreTakenAsTheyAre)
 
 TEST_F(ParameterFile, WrittenValuesReadBackUnchanged)
 {
-  EXPECT_EQ(written_value("disc_bore: 0, 7.8e10; \"b\" \\x"), "disc_bore: 0, 7.8e10; \"b\" \\x"); // quotes only where needed
+  EXPECT_EQ(written_value("disc_bore: 0, 7.8e10; \"b\" \\x"), "disc_bore: 0, 7.8e10; \"b\" \\x"); // quotes are used only where needed
   const std::vector<std::string> parts = {
     "", " ", "\t", "#", "\"", "\\", "\n", "\r", "\"\"", "\\n", "\\\"", "set a = 1\nend", "\xC3\xBC", "\xFF", "$(x)", "a = b"};
   std::vector<std::string> values = parts;

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""A small geometry that tests change line by line."""
+"""A small geometry script to which tests add or in which they replace lines."""
 
-# Two stacked blocks; tests add names
+# Two stacked blocks without names, which tests add
 BLOCKS = """
 SetFactory("OpenCASCADE");
 Box(1) = {0.1, 0, -0.05, 0.1, 0.1, 0.05};

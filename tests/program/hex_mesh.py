@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Hexahedral meshes of a disc with pads, to which tests add typical faults of real meshes."""
+"""Hexahedral meshes of a disc with pads; tests add typical faults of real meshes."""
 
 import math
 
-# Corners of a hexahedron in Gmsh's order, and of its faces by their normal
+# Corners of a hexahedron in Gmsh's order, and the corners of its faces by their normal
 CORNERS = ((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1))
 SIDES = {"-a": (0, 4, 7, 3), "+a": (1, 2, 6, 5), "-b": (0, 1, 5, 4), "+b": (3, 7, 6, 2), "-c": (0, 3, 2, 1), "+c": (4, 5, 6, 7)}
 
@@ -14,7 +14,7 @@ def cylindrical(r, theta, z):
 
 
 class HexMesh:
-    """Bodies of hexahedra, and faces with one or several names. Blocks share no nodes."""
+    """A mesh of bodies of hexahedra and of named faces. Blocks share no nodes."""
 
     def __init__(self):
         self.points = []
@@ -22,7 +22,8 @@ class HexMesh:
         self.faces = []  # (names, nodes)
 
     def block(self, body, a, b, c, place=cylindrical, is_ring=False):
-        """Adds a grid over three lists of coordinates, closed along b for a ring. Returns its faces: side -> {cell: nodes}."""
+        """Adds a grid given by three lists of coordinates; a ring is closed along b. Returns its faces: side -> {cell:
+        nodes}."""
         n_b = len(b) - is_ring
         first = len(self.points)
         self.points += [place(x, y, z) for x in a for y in b[:n_b] for z in c]
@@ -39,7 +40,7 @@ class HexMesh:
         return faces
 
     def name(self, faces, *names):
-        """Adds faces, given by lists of nodes, with these names."""
+        """Adds faces, given as lists of nodes, with these names."""
         self.faces += [(names, list(nodes)) for nodes in faces]
 
     def bodies(self):
@@ -49,7 +50,8 @@ class HexMesh:
         return list(dict.fromkeys(name for names, _ in self.faces for name in names))
 
     def write_2(self, path, elementary=None):
-        """Writes Gmsh's text format 2.2, with a face once for each name. `elementary`: tag of all entities, by default one per name."""
+        """Writes Gmsh's text format 2.2, with a copy of a face for each of its names. `elementary`: tag of all
+        entities; by default one tag per name."""
         surfaces, bodies = self.surfaces(), self.bodies()
         elements = [(3, surfaces.index(name) + 1, nodes) for names, nodes in self.faces for name in names]
         elements += [(5, len(surfaces) + bodies.index(body) + 1, nodes) for body, nodes in self.cells]
@@ -61,7 +63,7 @@ class HexMesh:
         write(path, "2.2", {"PhysicalNames": [len(groups), *groups], "Nodes": [len(points), *points], "Elements": [len(rows), *rows]})
 
     def write_4(self, path):
-        """Writes Gmsh's text format 4.1, with an entity for each combination of names."""
+        """Writes Gmsh's text format 4.1, with one entity for each combination of names."""
         combinations = {}  # (dimension, names) -> nodes of elements
         for dimension, named in ((2, self.faces), (3, [((body,), nodes) for body, nodes in self.cells])):
             for names, nodes in named:
@@ -100,7 +102,7 @@ def write(path, version, sections):
 
 
 def angles(n, first=0, last=None):
-    """Angles of n equal parts of the circle, from one part to another."""
+    """Angles that divide the circle into n equal parts, from index `first` to index `last`."""
     return [2 * math.pi * part / n for part in range(first, (n if last is None else last) + 1)]
 
 
@@ -112,7 +114,7 @@ def disc_with_pads(n_parts=24, pad_parts=(0, 3), disc_layers=1):
     levels = [-t + 2 * t * layer / disc_layers for layer in range(disc_layers + 1)]
     faces = {"disc": mesh.block("disc", radii, angles(n_parts), levels, is_ring=True)}
     mesh.name(faces["disc"]["-a"].values(), "disc_bore")
-    rubbed = [(1, part) for part in range(*pad_parts)]  # cells of the disc under a pad
+    rubbed = [(1, part) for part in range(*pad_parts)]  # cells of the disc under the pad
     for body, side, z in (("pin_top", "+c", [t, t + 0.015, t + 0.03]), ("pin_bottom", "-c", [-t - 0.03, -t - 0.015, -t])):
         pad = mesh.block(body, radii[1:3], angles(n_parts, *pad_parts), z)
         faces[body] = pad
@@ -123,7 +125,7 @@ def disc_with_pads(n_parts=24, pad_parts=(0, 3), disc_layers=1):
     return mesh, faces
 
 
-# Parameter file for such a mesh
+# Parameter file for these meshes
 PARAMETERS = """
 subsection Geometry
   set File = {file}

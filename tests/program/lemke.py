@@ -9,12 +9,13 @@ import scipy.io
 import scipy.sparse as sparse
 import scipy.sparse.linalg
 
-# Origin of the travel of backplates, so that travel is positive even if the disc recedes [m]
+# Initial travel of the backplates, negative so that d >= 0 even if the disc recedes [m]
 START = -1e-4
 
 
 class SlidingContact:
-    """Contact of disc and pins condensed to the contact nodes, from the matrices of a run in which all are closed."""
+    """Contact of disc and pins condensed to the contact nodes, from the exported matrices of a run with all nodes
+    closed."""
 
     def __init__(self, folder, friction_coefficient):
         K, P_n, P_t = (sparse.csc_matrix(scipy.io.mmread(folder / "matrices" / f"{name}.mtx")) for name in ("K", "P_n", "P_t"))
@@ -32,7 +33,7 @@ class SlidingContact:
         self.axis_distances = np.hypot(self.positions[:, 0], self.positions[:, 1])
 
     def gaps(self, pins):
-        """Initial gaps [m] of all nodes from gap, sliding taper and radial taper of some pins."""
+        """Initial gaps [m] of all nodes from the gap, sliding taper and radial taper of each pin in `pins`."""
         gaps = np.zeros(len(self.pins))
         for pin, (gap, along, outwards) in pins.items():
             nodes = [c for c, name in enumerate(self.pins) if name == pin]
@@ -42,10 +43,11 @@ class SlidingContact:
         return gaps
 
     def solve(self, gaps, plates, loads):
-        """Compression [N] of every node and travel [m] of every backplate; plates: index of the backplate of each node.
+        """Compression [N] of every node and travel [m] of every backplate; `plates` is the index of the backplate of
+        each node.
 
-        Compressions p >= 0 and travels d >= 0 from START are complementary to the remaining gaps G p - B (d + START) + gaps >= 0 and
-        to the excess loads B^T p - loads >= 0.
+        The compressions p >= 0 are complementary to the remaining gaps G p - B (d + START) + gaps >= 0; the travels d
+        >= 0, measured from START, are complementary to the excess loads B^T p - loads >= 0.
         """
         n, unit = len(gaps), np.mean(np.diag(self.flexibility))
         B = np.equal.outer(np.array(plates), np.arange(len(loads))).astype(float)
@@ -54,7 +56,8 @@ class SlidingContact:
         return solution[:n], unit * solution[n:] + START
 
     def pressed_along_normals(self, load):
-        """Normal load [N] and travel [m] of each body if all nodes are closed and it is pressed along its mean normal."""
+        """Normal load [N] and travel [m] of each body if all its nodes are closed and it is pressed along its mean
+        normal."""
         names = list(dict.fromkeys(self.pins))
         n, k = len(self.pins), len(names)
         closing, balance = np.zeros((n, k)), np.zeros((k, n))
@@ -64,7 +67,7 @@ class SlidingContact:
             travel = -mean / np.linalg.norm(mean)
             closing[nodes, j] = -self.normals[nodes] @ travel
             balance[j, nodes] = (self.normals[nodes] + self.friction_coefficient * self.sliding[nodes]) @ travel
-        # g = G r + B z = 0 at every node, L r = load of every body
+        # Solve g = G r + B z = 0 at every node and L r = load of every body
         unit = np.mean(np.diag(self.flexibility))
         matrix = np.block([[self.flexibility / unit, closing], [balance, np.zeros((k, k))]])
         solution = np.linalg.solve(matrix, np.concatenate([np.zeros(n), np.full(k, load)]))
@@ -73,11 +76,11 @@ class SlidingContact:
 
 
 def lemke(matrix, vector):
-    """z >= 0 with matrix z + vector >= 0 and z^T (matrix z + vector) = 0."""
+    """Solution of the linear complementarity problem z >= 0, w = matrix z + vector >= 0, z^T w = 0."""
     n = len(vector)
     if vector.min() >= 0:
         return np.zeros(n)
-    # Slack variables 0 ... n - 1, z n ... 2 n - 1, the artificial variable 2 n
+    # Columns: slack variables 0 ... n - 1, z n ... 2 n - 1, artificial variable 2 n
     tableau = np.hstack([np.eye(n), -matrix, -np.ones((n, 1)), vector[:, None]])
     basis, row, entering = list(range(n)), int(np.argmin(vector)), 2 * n
     for _ in range(100 * n):
@@ -95,6 +98,6 @@ def lemke(matrix, vector):
         if len(positive) == 0:
             break
         ratios = tableau[positive, -1] / column[positive]
-        # In case of ties the artificial variable leaves
+        # In case of ties, the artificial variable leaves the basis
         row = int(min(positive[ratios <= ratios.min() * (1 + 1e-12)], key=lambda i: basis[i] != 2 * n))
     raise RuntimeError("Lemke's method ended on a ray.")

@@ -2,7 +2,8 @@
 
 """Runs the executable on a small model and reads its results.
 
-Environment variables: SQUEAL, the executable; MPIRUN, the launcher of several processes; STARTER, the optional library of starter.cc.
+Environment variables: SQUEAL, the executable; MPIRUN, the launcher for several processes; STARTER, the optional library
+of starter.cc.
 """
 
 import atexit
@@ -23,7 +24,8 @@ MPIRUN = os.environ.get("MPIRUN", "mpirun")
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(SOURCE / "scripts"), str(SOURCE / "python")]
 
-# Two pins on each side with seven nodes each, large elements: less than a second, 38 modes, unstable ones of disc and pins
+# Two pins on each side with seven nodes each, and large elements: solved in less than a second, with 38 modes, some of
+# disc and pins unstable
 SCENE = """
 subsection Geometry
   set Top pin radii = 0.2275, 0.2275
@@ -41,14 +43,14 @@ subsection Output
 end
 """
 
-# The disc has a fifth of the elements, for tests that do not need resolved modes
+# A disc with a fifth of the elements, for tests that do not need resolved modes
 COARSE = SCENE.replace("Element size = 0.04", "Element size = 0.08")
 
 COMPLEX_COLUMNS = ["label", "share [-]", "frequency [Hz]", "growth rate [1/s]", "divergence rate [%]", "effective damping ratio -2R/omega [%]",
                    "residual [-]", "eps_res [-]", "unstable [-]", "wave with rotation [-]", "wave against rotation [-]",
                    *(f"strain energy in {part} [%]" for part in ("disc", "pins", "mounts")), "verdict"]
 
-# Relative difference of an eigenvalue between two methods [-]
+# Largest relative difference of an eigenvalue computed by two methods [-]
 SAME = 1e-9
 
 
@@ -58,7 +60,7 @@ def settings(overrides):
 
 
 class Starter:
-    """The program with all its libraries loaded, which forks for every call (starter.cc)."""
+    """A process of the program that has loaded all its libraries and forks for every call (starter.cc)."""
 
     def __init__(self):
         self.socket, its_socket = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
@@ -73,7 +75,7 @@ class Starter:
         self.process.wait()
 
     def run(self, arguments, folder, timeout):
-        """The finished process."""
+        """The finished process of a call."""
         words = [folder, EXECUTABLE, *arguments]
         with tempfile.TemporaryFile() as output, tempfile.TemporaryFile() as errors:
             socket.send_fds(self.socket, [b"".join(os.fsencode(word) + b"\0" for word in words)], [output.fileno(), errors.fileno()])
@@ -81,7 +83,7 @@ class Starter:
             try:
                 status, = struct.unpack("i", self.socket.recv(struct.calcsize("i")))
             except TimeoutError:
-                self.process.kill()  # ends its child, too
+                self.process.kill()  # ends its child as well
                 ProgramTest.starter = None
                 raise
             texts = []
@@ -92,7 +94,7 @@ class Starter:
 
 
 class ProgramTest(unittest.TestCase):
-    """A temporary folder with `scene` in scene.prm, shared by the tests of a class."""
+    """Tests with a temporary folder that contains `scene` as scene.prm, shared by the tests of a class."""
 
     scene = SCENE
     starter = None
@@ -106,7 +108,7 @@ class ProgramTest(unittest.TestCase):
 
     @classmethod
     def call(cls, *arguments, n_processes=1):
-        """The finished process, without hwloc's messages on virtual machines."""
+        """The finished process of a call, without hwloc's messages on virtual machines."""
         if n_processes > 1 or "STARTER" not in os.environ:
             launcher = [MPIRUN, "-np", str(n_processes)] if n_processes > 1 else []
             process = subprocess.run([*launcher, EXECUTABLE, *arguments], cwd=cls.folder, text=True, errors="surrogateescape", capture_output=True,
@@ -119,12 +121,12 @@ class ProgramTest(unittest.TestCase):
 
     @classmethod
     def call_scene(cls, output, *overrides):
-        """The finished process of scene.prm with overrides "Section/Name=value"."""
+        """The finished process for scene.prm with overrides "Section/Name=value"."""
         return cls.call("scene.prm", "--output", output, *settings(overrides))
 
     @classmethod
     def run_scene(cls, output, *overrides, file="scene.prm", n_processes=1):
-        """Runs a parameter file with overrides "Section/Name=value" and returns the folder of the results."""
+        """Runs a parameter file with overrides "Section/Name=value" and returns the result folder."""
         process = cls.call(file, "--output", output, *settings(overrides), n_processes=n_processes)
         if process.returncode != 0:
             raise AssertionError(f"the run {output} failed:\n{process.stdout}\n{process.stderr}")
@@ -132,7 +134,7 @@ class ProgramTest(unittest.TestCase):
 
     @classmethod
     def shared(cls, *overrides, file="scene.prm"):
-        """Results that no test changes, computed once for each file and overrides."""
+        """Result folder that no test changes, computed once for each combination of file and overrides."""
         runs = cls.__dict__.get("shared_runs")
         if runs is None:
             runs = cls.shared_runs = {}
@@ -157,7 +159,8 @@ class ProgramTest(unittest.TestCase):
         self.assert_message(process, mentions)
 
     def assert_refused(self, mentions, *overrides):
-        """The run with these overrides fails with one message that says what, where and what to change, and writes nothing."""
+        """Checks that the run with these overrides writes nothing and fails with one message that says what happened,
+        where, and what to change."""
         before = contents(self.folder)
         process = self.call_scene("refused", *overrides)
         self.assertEqual(contents(self.folder), before)
@@ -165,7 +168,7 @@ class ProgramTest(unittest.TestCase):
         self.assert_message(process, mentions)
 
     def assert_message(self, process, mentions):
-        """The program or a script failed with one message in three parts that contains these words."""
+        """Checks that the program or a script failed with one message in three parts that contains these words."""
         self.assertNotEqual(process.returncode, 0, process.stdout)
         lines = process.stderr.strip().splitlines()
         for start in ("error: ", "  where:  ", "  change: "):
@@ -174,8 +177,8 @@ class ProgramTest(unittest.TestCase):
             self.assertIn(text, process.stderr)
 
     def interrupt(self, output, overrides, ends, kind="design"):
-        """Starts or resumes a study once for each (number, signal) in `ends`: the signal is sent as soon as this number of files of
-        finished designs, or of sets of samples, is stored, and no results are written."""
+        """Starts or resumes a study once for each (number, signal) in `ends`. The signal is sent as soon as this number
+        of files of finished designs, or of sets of samples, is stored; no results are written."""
         for number, how in ends:
             with open(self.folder / "interrupted.log", "w+", encoding="utf-8") as log:
                 process = subprocess.Popen([EXECUTABLE, "scene.prm", "--output", output, *settings(overrides)], cwd=self.folder, stdout=log, stderr=log)
@@ -190,11 +193,11 @@ class ProgramTest(unittest.TestCase):
             self.assertFalse((self.folder / output / "run.json").exists())
 
     def stored(self, output, kind="design"):
-        """Files of the designs or sets of samples solved by an interrupted study."""
+        """Files of the designs, or sets of samples, that an interrupted study has stored."""
         return sorted((self.folder / f"{output}.checkpoint").glob(f"{kind}-*.result"))
 
     def assert_same_eigenvalues(self, actual, expected, tolerance=SAME):
-        """Compares two lists of eigenvalues, independent of the order within clusters."""
+        """Compares two lists of eigenvalues, regardless of the order within clusters."""
         self.assertEqual(len(actual), len(expected))
         self.assertLessEqual(distance(actual, expected), tolerance)
 
@@ -206,7 +209,7 @@ def read_table(path):
 
 
 def design_tables(folder):
-    """All tables of a design study without the times."""
+    """All tables of a design study, without the times."""
     return {name: [{key: value for key, value in row.items() if key != "time [s]"} for row in read_table(folder / f"{name}.csv")]
             for name in ("designs", "design_thresholds", "design_modes")}
 
@@ -227,7 +230,7 @@ def real_frequencies(folder, table="real_modes.csv"):
 
 
 def distance(actual, expected):
-    """Largest relative difference of eigenvalues, each compared with the nearest remaining one."""
+    """Largest relative difference of eigenvalues; each is compared with the nearest one not yet used."""
     left, largest = list(expected), 0.0
     for value in actual:
         nearest = min(left, key=lambda other: abs(other - value))
@@ -237,7 +240,7 @@ def distance(actual, expected):
 
 
 def numbers(path):
-    """Every number of a table."""
+    """All numbers in a table."""
     for row in read_table(path):
         for text in row.values():
             try:
@@ -247,5 +250,5 @@ def numbers(path):
 
 
 def contents(folder):
-    """Every file below a folder with its content."""
+    """The content of every file in a folder and its subfolders."""
     return {str(path.relative_to(folder)): path.read_bytes() if path.is_file() else None for path in sorted(folder.rglob("*"))}

@@ -41,7 +41,7 @@ class Accuracy(ProgramTest):
         self.assertIn("yes", [row["Pareto front"] for row in self.meshes])
 
     def test_frequencies_are_those_of_a_run_on_that_mesh(self):
-        """Compared with a stability run on the same mesh."""
+        """Frequencies agree with a stability run on the same mesh."""
         found = self.run_scene("twice", *TWICE, f"Band/Maximum frequency={1.1 * BAND}")
         expected = [float(row["frequency [Hz]"]) for row in read_table(found / "complex_modes.csv")]
         rows = self.of(element="trilinear", factor="2", method="full order")
@@ -51,7 +51,7 @@ class Accuracy(ProgramTest):
                 self.assertLess(min(abs(float(row["frequency [Hz]"]) / frequency - 1) for frequency in expected), 1e-8)
 
     def test_kinds(self):
-        """Full order has no reduction error; a basis has the discretisation error of full order."""
+        """Full order has no reduction error; a basis has the same discretisation error as full order."""
         for row in self.of(method="full order"):
             if row["counterpart"] != "none":
                 self.assertEqual(float(row["reduction frequency error [%]"]), 0)
@@ -73,7 +73,7 @@ class Accuracy(ProgramTest):
             self.assertIn("Largest number of dofs", row["reason"])
 
     def test_orders(self):
-        """Two meshes show no order."""
+        """Two meshes do not determine an order of convergence."""
         self.assertEqual({row["family"] for row in self.orders}, {"trilinear, true area", "incompatible modes, true area"})
         self.assertEqual({row["order of frequency [-]"] for row in self.orders}, {""})
         self.assertEqual(sorted({row["reference"] for row in self.orders}), ["no", "yes"])
@@ -100,7 +100,7 @@ class Goal(ProgramTest):
                 found, exact = ([float(mode[column]) for column in ("frequency [Hz]", "divergence rate [%]")] for mode in (row, by_label[row["label"]]))
                 self.assertLess(abs(found[0] / exact[0] - 1), 0.05, row["label"])
                 self.assertLess(abs(found[1] - exact[1]), 0.5, row["label"])
-                # The estimate is not a bound: frequencies on two meshes may agree by chance
+                # Twice, because the estimate is not a bound: frequencies on two meshes may agree by chance
                 estimated = float(row["estimated frequency error by the mesh [%]"]) / 100
                 self.assertLess(abs(found[0] / exact[0] - 1), 2 * estimated + 0.005, row["label"])
                 n_compared += 1
@@ -113,7 +113,7 @@ class Goal(ProgramTest):
         self.assertNotIn("chooses it", process.stdout)
 
     def test_unstable_modes_that_are_not_converged_are_named(self):
-        """With strong friction, errors on coarse meshes exceed 0.1 percentage points of the divergence rate."""
+        """On coarse meshes with strong friction, errors of divergence rates exceed 0.1 percentage points."""
         process = self.call_scene("strong", "Accuracy=1 %", "Operation/Friction coefficient=1.5", f"Band/Maximum frequency={BAND}")
         self.assertEqual(process.returncode, 0, process.stderr)
         rows = read_table(self.folder / "strong" / "complex_modes.csv")

@@ -2,7 +2,7 @@
 
 """Parameters far from the default: the spectrum is right and complete, or the run stops early with a reason.
 
-References are eigenvalues of the exported matrices that scripts/extremes/oracle.py refines with a 64-bit mantissa.
+References are eigenvalues of the exported matrices, refined with a 64-bit mantissa by scripts/extremes/oracle.py.
 """
 
 import os
@@ -29,7 +29,7 @@ FRICTION = "Operation/Friction coefficient"
 MATRICES = "Output/Write matrices=true"
 RESIDUAL_ITERATION = "Complex modes/Solver=residual iteration"
 
-# A pin on each side, a narrow disc of one layer: 780 dofs
+# One pin on each side of a narrow disc with one layer: 780 dofs
 SMALL = [
     *(f"Geometry/{side} pin {what}" for side in ("Top", "Bottom") for what in ("radii=0.257", "angles=0")),
     "Geometry/Disc inner radius=0.2",
@@ -47,7 +47,7 @@ def real_values(folder):
 
 
 class Extremes(ProgramTest):
-    """In the model of program.py, unless stated otherwise."""
+    """Runs of the model in program.py, unless stated otherwise."""
 
     def succeed(self, output, *overrides):
         process = self.call("scene.prm", "--output", output, *settings(overrides))
@@ -59,7 +59,7 @@ class Extremes(ProgramTest):
         self.assertFalse((self.folder / "refused").exists())
 
     def assert_spectrum(self, folder, friction_coefficient=0.4, slowest=0.0, tolerance=1e-6):
-        """The tables contain exactly the eigenvalues between `slowest` and the radius."""
+        """Checks that the tables contain exactly the eigenvalues between `slowest` and the radius."""
         solution = oracle.Oracle(exported_matrices.read_matrices(folder), friction_coefficient, BAND / (2 * np.pi)).solve(RADIUS)
         self.assertLess(solution.error, 0.01 * tolerance)
         inside = [root for root in solution.values if slowest < abs(root) <= RADIUS and root.imag <= BAND]
@@ -70,7 +70,8 @@ class Extremes(ProgramTest):
     # ------------------------------------------------------------ real eigenvalues
 
     def test_large_friction(self):
-        """Static divergence is listed, counted and reported; both solvers omit eigenvalues outside the radius."""
+        """Static divergence is listed, counted and reported; both solvers omit eigenvalues outside the search radius.
+        """
         n_real = set()
         for friction_coefficient in (3, 10):
             folder, screen = self.succeed("friction", *SMALL, f"{FRICTION}={friction_coefficient}", MATRICES)
@@ -102,7 +103,7 @@ class Extremes(ProgramTest):
     # ------------------------------------------------------------ wide bands
 
     def test_small_pins_in_a_wide_band(self):
-        """The block of the solver is large compared with the dofs of the pins."""
+        """The solver uses large blocks compared with the number of dofs of the pins."""
         folder, screen = self.succeed("wide", "Band/Maximum frequency=10000")
         found, counted = map(int, re.search(r"Real modes .* (\d+) found, (\d+) counted", screen).groups())
         self.assertEqual(found, counted)
@@ -138,7 +139,7 @@ class Extremes(ProgramTest):
             self.assertIn(f"note: trilinear elements lock at {place}", process.stdout)
             self.assertIn(change, process.stdout)
             self.assertNotIn("lock", self.dry_run(*SMALL, override, "Discretization/Element=incompatible modes").stdout)
-        # Soft along axis 3: a single large ratio does not cause locking
+        # Soft only along axis 3: a single large Poisson's ratio does not cause locking
         self.assertNotIn("lock", self.dry_run(*SMALL, constants("1.9e9, 1.9e9, 0.5e9", "0.1, 0.1")).stdout)
 
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""scripts/import_mesh.py: the same mesh from several pre-processors gives the same modes; every omission is reported."""
+"""scripts/import_mesh.py: the same mesh from several pre-processors gives the same modes; everything that is omitted is
+reported."""
 
 import itertools
 import json
@@ -19,7 +20,7 @@ from hex_mesh import PARAMETERS, disc_with_pads
 from program import EXECUTABLE, SOURCE, ProgramTest, eigenvalues
 from tet_mesh import BRAKE, brake
 
-# Sides S1 to S6 of C3D8 by the corners of the element, from 0
+# Corners of the sides S1 to S6 of C3D8, counted from 0
 SIDES = ((0, 1, 2, 3), (4, 5, 6, 7), (0, 1, 4, 5), (1, 2, 5, 6), (2, 3, 6, 7), (0, 3, 4, 7))
 SURFACES = {"disc_contact": "ROTOR_SURF", "pin_contact": "PAD_SURF", "disc_bore": "HUB"}
 NAMES = {"disc": "ROTOR", "pin_top": "PAD_T", "pin_bottom": "PAD_B"}
@@ -32,7 +33,8 @@ def rows(numbers, per_row=10):
 
 
 def abaqus(mesh):
-    """Text in millimetres, with contact and bore as surfaces of element faces, backs of the pads as a node set, bodies renamed."""
+    """Abaqus input in millimetres with contact and bore as surfaces of element faces, the backs of the pads as a node
+    set, and renamed bodies."""
     lines = ["** a comment", "*NODE"] + [f"{i}, " + ", ".join(repr(1e3 * x) for x in point) for i, point in enumerate(mesh.points, 1)]
     for body, name in NAMES.items():
         lines.append(f"*Element, type=C3D8R, elset={name.lower()}")
@@ -56,7 +58,8 @@ def abaqus(mesh):
 
 
 def bulk(mesh, elements, groups):
-    """Nastran cards in free format, millimetres: (card, name of the group, nodes) of each element, whose property is the number of its group."""
+    """Nastran cards in free format, in millimetres. `elements`: (card, name of the group, nodes); the property of an
+    element is the number of its group."""
     numbers = {name: i for i, name in enumerate(groups, 1)}
     lines = ["BEGIN BULK"] + [f"GRID,{i},," + ",".join(repr(1e3 * x) for x in point) for i, point in enumerate(mesh.points, 1)]
     for i, (card, name, nodes) in enumerate(elements, 1):
@@ -66,7 +69,7 @@ def bulk(mesh, elements, groups):
 
 
 def nastran(mesh):
-    """Text with bodies, and surfaces as shells."""
+    """Nastran input with the bodies, and surfaces as shells."""
     cells = [("CHEXA", body, nodes) for body, nodes in mesh.cells]
     return bulk(mesh, cells + [("CQUAD4", name, nodes) for names, nodes in mesh.faces for name in names], [*mesh.bodies(), *mesh.surfaces()])
 
@@ -77,7 +80,8 @@ def assignments(numbers, mesh):
 
 
 def abaqus_tetrahedra(mesh):
-    """Text in millimetres with C3D10, whose last two mid-side nodes Gmsh swaps, element sets, surfaces and materials."""
+    """Abaqus input in millimetres with C3D10 (Gmsh swaps the last two mid-side nodes), element sets, surfaces and
+    materials."""
     lines = ["*NODE"] + [f"{i}, " + ", ".join(repr(1e3 * x) for x in point) for i, point in enumerate(mesh.points, 1)]
     for volume in mesh.volumes():
         lines.append(f"*ELEMENT, TYPE=C3D10, ELSET={volume.upper()}")
@@ -94,12 +98,12 @@ def abaqus_tetrahedra(mesh):
 
 
 def nastran_tetrahedra(mesh):
-    """Text with CTETRA of ten nodes in the order of Abaqus, and surfaces as CTRIA6."""
+    """Nastran input with ten-node CTETRA in the node order of Abaqus, and surfaces as CTRIA6."""
     cells = [("CTETRA", volume, (*c[:8], c[9], c[8])) for volume, c in mesh.cells]
     return bulk(mesh, cells + [("CTRIA6", *face) for face in mesh.faces], [*mesh.volumes(), *mesh.surfaces()])
 
 
-# N, mm, t, s; as BRAKE
+# In N, mm, t, s; the same materials as BRAKE
 TETRAHEDRA = {"disc": ("110000.", "0.28", "7.2e-9"), **{f"pad_{side}_{part}": material for side in ("outer", "inner") for part, material in (
     ("lining", ("5000.", "0.25", "2.6e-9")), ("backplate", ("210000.", "0.3", "7.85e-9")))}}
 PAIRS = ("disc_top / pad_outer_face", "disc_bottom / pad_inner_face")
@@ -156,7 +160,7 @@ class Import(ProgramTest):
             self.assertEqual(len(meshio.read(self.folder / "variant.msh").cells[0].data), len(self.mesh.faces))
 
     def test_engineering_constants(self):
-        """In the axes of an orientation, or in x, y and z without one; other axes are omitted."""
+        """Constants refer to the axes of an orientation or, without one, to x, y and z; other axes are omitted."""
         constants = "*ELASTIC, TYPE=ENGINEERING CONSTANTS\n2000., 1500., 500., 0.2, 0.1, 0.15, 800., 300.\n250."
         text = abaqus(self.mesh).replace("*ELASTIC\n2000., 0.1", constants)
         for orientation, is_about_z in (("\n0., 0., 0., 0., 0., 1.\n3, 0.", True), ("\n0., 0., 0., 1., 0., 0.", False)):
@@ -180,7 +184,7 @@ class Import(ProgramTest):
             self.assertEqual(meshio.read(self.folder / f"{name}.msh").cells[0].data.shape, (len(self.mesh.faces), 4))
 
     def test_commands_of_the_page(self):
-        """From an Abaqus mesh to the chart."""
+        """Runs the commands of the page, from an Abaqus mesh to the chart."""
         (self.folder / "build").mkdir()
         for link, target in (("scripts", SOURCE / "scripts"), ("build/release", pathlib.Path(EXECUTABLE).parent)):
             (self.folder / link).symlink_to(target)
@@ -202,7 +206,7 @@ class Import(ProgramTest):
                 self.assert_same_eigenvalues(eigenvalues(self.run_mesh(name)), self.baseline)
 
     def test_brake_of_quadratic_tetrahedra(self):
-        """Two nonmatching pads of two volumes each: the parameter file written with the mesh runs."""
+        """Two nonmatching pads with two volumes each: the parameter file written with the mesh can be run."""
         mesh = brake()
         mesh.write_msh(self.folder / "tet.msh")
         mesh.write_msh(self.folder / "tet_4.msh", "4.1")
@@ -227,7 +231,7 @@ class Import(ProgramTest):
                 self.imported(source, f"{name}.msh", "--unit", unit, *words, *rubs)
                 overrides = ["Operation/Friction coefficient=0.5", "Output/Mode shapes=none", *materials]
                 self.assert_same_eigenvalues(eigenvalues(self.run_scene(f"out_{name}", *overrides, file=f"{name}.prm")), baseline)
-        # Without contact and mounts: comments to fill in
+        # Without contact and mounts, the parameter file has comments to be completed
         self.imported("tet.inp", "blank.msh", "--unit", "mm", *words)
         stub = (self.folder / "blank.prm").read_text(encoding="utf-8")
         for line in ("# Surfaces of the disc: disc_bottom, disc_hub, disc_top; of other bodies: pad_outer_face, ", "# set Pairs", "# set Elastic mounts",

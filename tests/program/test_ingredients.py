@@ -12,7 +12,7 @@ RICH = ["Operation/Radial dissipation=consistent", "Operation/Friction slope=-1e
 
 
 def tried_eigenvalues(folder, ingredient, tried=None):
-    """lambda [rad/s] of a variant, from the table of its modes."""
+    """lambda [rad/s] of a variant from the table of modes."""
     result = []
     for row in read_table(folder / "ingredients_modes.csv"):
         if row["ingredient"] == ingredient and tried in (None, row["variant"]) and row["variant frequency [Hz]"]:
@@ -34,7 +34,7 @@ class Ingredients(ProgramTest):
         return {(row["ingredient"], row["variant"]): row for row in read_table(folder / "ingredients.csv")}
 
     def test_effects_are_those_of_single_runs(self):
-        """Effects are the same in separate runs."""
+        """The effects of variants agree with separate runs."""
         study, here, modes = self.study, self.here, read_table(self.study / "ingredients_modes.csv")
         for (ingredient, tried), override in {("radial dissipation", "none"): "Operation/Radial dissipation=none",
                                               ("contact state", "equal load"): "Steady sliding/Contact state=equal load",
@@ -64,7 +64,7 @@ class Ingredients(ProgramTest):
         self.assertIn(promise[1:], process.stdout)
         found, promised = eigenvalues(self.folder / "cheapest"), tried_eigenvalues(study, "together")
         self.assert_same_eigenvalues(promised, found, 1e-7)
-        # Each mode within the required accuracy
+        # Each mode is within the required accuracy
         reference = self.here
         self.assertEqual(len(found), len(reference))
         self.assertLess(distance(found, reference), 0.01)
@@ -80,7 +80,7 @@ class Ingredients(ProgramTest):
         self.assertIn("Ingredients/Trial friction slope", why["friction slope"])
         self.assertEqual(why["radial dissipation"], "")
         self.assertIn("no feature of it can be removed", (study / "cheapest.prm").read_text(encoding="utf-8"))
-        # The rotation of a free disc is not supported in the fixed frame
+        # Rotation of a free disc is not supported in the fixed frame
         free = self.run_scene("free", "Study=ingredients", "Mounts/Elastic mounts=", "Band/Maximum frequency=2000")
         self.assertIn("rigid body", self.rows(free)["rotation of the disc", "on"]["reason not tried"])
 

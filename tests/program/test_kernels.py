@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""A sweep of twelve pins refines at the same friction coefficients with BLAS kernels for other processors."""
+"""A sweep with twelve pins refines at the same friction coefficients with BLAS kernels for other processors."""
 
 import os
 import pathlib
@@ -12,13 +12,14 @@ from test_sweep import THRESHOLD_TOLERANCE, SweepTest
 
 
 class OtherProcessors(SweepTest):
-    """The default twelve pins, which have close modes, on a coarse mesh: BLAS kernels for other processors round differently."""
+    """The default twelve pins, which have close modes, on a coarse mesh. BLAS kernels for other processors cause other
+    rounding errors."""
 
-    # Processor flags that the kernels require
+    # Kernels and the processor flags that they require
     KERNELS = {"Prescott": {"pni"}, "Haswell": {"avx2", "fma"}, "SkylakeX": {"avx512f", "avx512dq", "avx512bw", "avx512vl", "avx512cd"}}
 
     def refinements(self, kernels):
-        """Friction coefficients between those of the grid, by chart."""
+        """Friction coefficients added by refinement, for each chart."""
         with unittest.mock.patch.dict(os.environ, OPENBLAS_CORETYPE=kernels):
             folder = self.run_scene(kernels, "Geometry/Nodes per pin face=7", "Geometry/Pin layers=2", "Geometry/Disc layers=2",
                                     "Geometry/Element size=0.04", "Sweep/Number of friction coefficients=20",

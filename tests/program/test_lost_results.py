@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Results are never lost: concurrent runs in one folder, files of the user, killed runs, full disks, read-only folders."""
+"""Results are never lost: concurrent runs in one folder, files of the user, killed runs, full disks, read-only folders.
+"""
 
 import json
 import os
@@ -15,12 +16,12 @@ from program import EXECUTABLE, ProgramTest, contents, settings
 
 TABLES = ["component_modes.csv", "real_modes.csv", "complex_modes.csv"]
 
-# All mode shapes, so that writing takes half of the time
+# Write all mode shapes, so that writing takes half of the time
 LONG = ["Output/Mode shapes=all", "Output/Animation frames=3"]
 
 
 def limit_files(size):
-    """Limits the size of files of a process [byte]."""
+    """Limits the size of files that a process writes [byte]."""
     return lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
 
 
@@ -63,14 +64,14 @@ class LostResults(ProgramTest):
             time.sleep(0.005)
 
     def assert_complete(self, folder):
-        """Every file in the record exists with its size."""
+        """Checks that every file in the record exists and has its size."""
         record = json.loads((folder / "run.json").read_text(encoding="utf-8"))
         sizes = record["files [byte]"]
         self.assertLessEqual({*TABLES, "parameters.prm", "mesh.msh"}, set(sizes))
         self.assertEqual({name: (folder / name).stat().st_size for name in sizes}, sizes)
 
     def refused(self, mentions, *words):
-        """The run is rejected before meshing."""
+        """Checks that the run is rejected before meshing."""
         before = contents(self.folder)
         process = self.call(*words)
         self.assertEqual(contents(self.folder), before)
@@ -137,7 +138,7 @@ class FullDisks(LostResults):
         self.assert_message(subprocess.CompletedProcess(process.args, 1, *streams), [name, cause])
 
     def test_limited_sizes(self):
-        """The first file beyond the limit is named, independent of the library that writes it."""
+        """The message names the first file beyond the limit, regardless of the library that writes it."""
         sizes = json.loads((self.run_scene("whole", *self.EVERYTHING) / "run.json").read_text(encoding="utf-8"))["files [byte]"]
         copy = self.copy()
         before = contents(copy)

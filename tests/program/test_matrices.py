@@ -14,7 +14,7 @@ from program import COARSE, SOURCE, ProgramTest
 MATRICES = ["M", "C", "K", "C_b", "P_n", "P_t", "P_b", "K_n", "T_c"]
 DISSIPATION = "Operation/Radial dissipation=consistent"
 
-# Open contact nodes, radial and tangential contact damping, material damping, friction
+# A model with open contact nodes, radial and tangential contact damping, material damping, and friction
 DAMPED = ["Steady sliding/Contact state=steady sliding", "Steady sliding/Gaps=pin_top_1: 1e-4", DISSIPATION,
           "Operation/Friction slope=-0.02", "Pin material/Rayleigh beta=1e-7", "Disc material/Rayleigh alpha=2"]
 
@@ -37,7 +37,7 @@ class Matrices(ProgramTest):
                 entries = file.read().splitlines()
             self.assertEqual(len(entries), n_entries)
             if name in ("M", "K"):
-                # 17 digits reproduce every double; shorter numbers end in zeros
+                # 17 digits reproduce every double; trailing zeros are omitted
                 self.assertEqual(max(len(re.sub(r"e.*|[-.]", "", entry.split()[2]).lstrip("0")) for entry in entries), 17, name)
                 n = n_dofs
         with open(folder / "nodes.csv", newline="", encoding="utf-8") as file:

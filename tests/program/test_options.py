@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Options that only print, and the parameter files of the program."""
+"""Options that only print, and the parameter files supplied with the program."""
 
 from program import SOURCE, ProgramTest, contents
 
 
 class Options(ProgramTest):
     def printed(self, *arguments):
-        """The output of a call, which must succeed without writing files."""
+        """The output of a call, which must succeed and write no files."""
         before = contents(self.folder)
         process = self.call(*arguments)
         self.assertEqual((process.returncode, process.stderr), (0, ""))

@@ -25,10 +25,11 @@ class OwnGeometry(ProgramTest):
     # ------------------------------------------------------------- permissions
 
     def test_geometry_reaches_nothing_but_the_mesh(self):
-        """tests/geometry/mesher.cc covers all statements and terminations of Gmsh."""
+        """A geometry script can affect only the mesh; tests/geometry/mesher.cc covers all statements and terminations
+        of Gmsh."""
         self.write("part.geo", 'x = 1;\nSystemCall "touch trace";')
         self.geometry_refused(["starts a program", "part.geo, line 2", "Allow shell commands"], 'Include "part.geo";')
-        # A mesh in name, a script in content
+        # The name is that of a mesh, the content a script
         self.write("script.msh", 'SystemCall "touch trace";')
         self.dry_run_refused(["starts a program"], "Geometry/File=script.msh")
         self.assertFalse((self.folder / "trace").exists())
@@ -92,7 +93,8 @@ class OwnGeometry(ProgramTest):
         self.assertRegex(text, r"pin_top_2: 0\.0318 m high.*; bar waves 556\.3 m/s")
 
     def doubted(self, mentions, *overrides, refused):
-        """The summary has warnings, also if the run is then rejected because of its shear waves."""
+        """Checks that the summary has warnings, also if the run is then rejected because shear waves are not resolved.
+        """
         process = self.dry_run(*overrides)
         for word in ["disc: radii", "warning: ", *mentions]:
             self.assertIn(word, process.stdout)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The comparison with the paper, scripts/paper.py, of the default model on a coarse mesh."""
+"""scripts/paper.py, the comparison with the paper, for the default model on a coarse mesh."""
 
 import os
 import subprocess
@@ -22,10 +22,10 @@ class Paper(ProgramTest):
             raise AssertionError(process.stdout + process.stderr)
 
     def test_every_printed_number_has_one_to_compare(self):
-        """Growing modes are compared with growing modes."""
+        """Every number of the paper has a counterpart; growing modes are compared with growing modes."""
         for row in read_table(self.results / "table1.csv"):
             if row["label"][:4] in ("A0-6", "A1-3"):
-                continue  # beyond the band on the coarse mesh
+                continue  # beyond the band for the coarse mesh
             for column in ("component", "coupled", "without C_b", "with C_b"):
                 self.assertEqual(row[f"{column} paper [Hz]"] == "", row[f"{column} [Hz]"] == "", f"{row['label']}, {column}")
             for column in ("without C_b", "with C_b"):
@@ -39,7 +39,8 @@ class Paper(ProgramTest):
         self.assertEqual(statements["bending modes F1 per pin below 5 kHz"]["verdict"], "holds")
 
     def test_readings(self):
-        """A coefficient without the factor mu = 0.4 damps T1 about 2.5 times as much; equal load and steady sliding differ."""
+        """Without the factor mu = 0.4, the damping coefficient damps T1 about 2.5 times as much; equal load and steady
+        sliding differ."""
         most = min((row for row in read_table(self.results / "dissipation.csv") if row["label"] == "T1"),
                    key=lambda row: float(row["steady sliding consistent [%]"]))
         self.assertAlmostEqual(float(most["no C_b [%]"]), 0, delta=1e-6)

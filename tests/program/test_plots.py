@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The plots of every study: their number, labels, files and repetition."""
+"""The plots of every study: their number, labels and files, and that they can be drawn again."""
 
 import json
 import os
@@ -27,18 +27,18 @@ except ModuleNotFoundError as missing:
 
 
 def draw(folder, *options, environment=None):
-    """The finished script."""
+    """The finished process of the script."""
     return subprocess.run([sys.executable, SCRIPTS / "plot_results.py", folder, *options], text=True, capture_output=True, check=False,
                           timeout=120, env={**os.environ, **(environment or {})})
 
 
 @unittest.skipIf(figures is None, "python3-matplotlib is not installed")
 class Studies(ProgramTest):
-    """The pictures of every study; tests/scripts/test_plot_results.py checks their content for small tables."""
+    """The plots of every study; tests/scripts/test_plot_results.py checks their content for small tables."""
 
     scene = COARSE
 
-    # Overrides and names of pictures; families may have several
+    # Overrides and names of plots; there may be several plots of families
     STUDIES = {"stability": ([], {"complex_plane"}),
                "sweep": (["Study=sweep", "Operation/Radial dissipation=consistent", "Sweep/Last friction coefficient=0.45",
                           "Sweep/Number of friction coefficients=10", "Sweep/Complex plane at=0.4, 0.22", "Sweep/Map parameter=load",
@@ -48,7 +48,7 @@ class Studies(ProgramTest):
                              {"reduction_errors", "reduction_cost"}),
                "ingredients": (["Study=ingredients", "Ingredients/Divergence tolerance=0.2"], {"ingredients"}),
                "sensitivity": (["Study=sensitivity", "Sensitivity/Thresholds=false"], {"sensitivity"})}
-    WITH_NAMES_ABOVE = ("ingredients", "sensitivity")  # bar charts with a name for each row
+    WITH_NAMES_ABOVE = ("ingredients", "sensitivity")  # bar charts in which each row has a name
 
     def test_pictures(self):
         for name, (overrides, expected) in self.STUDIES.items():
@@ -66,7 +66,7 @@ class Studies(ProgramTest):
                     getattr(self, f"assert_bars_of_{name}")(results, drawn[name].axes)
 
     def assert_holds_something(self, picture):
-        """The picture is neither empty nor cut off at its edges."""
+        """Checks that the plot is neither empty nor cut off at its edges."""
         pixels = matplotlib.image.imread(picture)[..., :3]
         self.assertGreater(min(pixels.shape[:2]), 400, picture)
         ink = pixels.min(axis=2) < 0.9
@@ -74,7 +74,7 @@ class Studies(ProgramTest):
         self.assertFalse(any(edge.any() for edge in (ink[0], ink[-1], ink[:, 0], ink[:, -1])), picture)
 
     def assert_says_what_it_shows(self, name, figure):
-        """Axes have units, and the legend is complete."""
+        """Checks that axes have units and the legend is complete."""
         self.assertTrue(any(text.get_text() for text in figure.texts), name)
         for axes in figure.axes:
             if name not in self.WITH_NAMES_ABOVE:
@@ -111,7 +111,7 @@ class Studies(ProgramTest):
 
 @unittest.skipIf(figures is None, "python3-matplotlib is not installed")
 class Pictures(ProgramTest):
-    """Pictures that are drawn again, and pictures of a repeated run."""
+    """Plots that are drawn again, and plots of a repeated run."""
 
     scene = COARSE
 
@@ -185,7 +185,7 @@ class Refusals(ProgramTest):
 
 
 class WithoutMatplotlib(ProgramTest):
-    """scripts/run.sh in a fully built checkout."""
+    """scripts/run.sh in a fully built checkout, without matplotlib."""
 
     scene = COARSE
 
@@ -200,7 +200,7 @@ class WithoutMatplotlib(ProgramTest):
             encoding="utf-8")
         (cls.checkout / "build" / "release").mkdir(parents=True)
         (cls.checkout / "build" / "release" / "squeal").symlink_to(pathlib.Path(EXECUTABLE).resolve())
-        # Replaces the package
+        # A folder that replaces the package
         (cls.folder / "nothing").mkdir()
         (cls.folder / "nothing" / "matplotlib.py").write_text("raise ModuleNotFoundError('none', name='matplotlib')\n", encoding="utf-8")
 
@@ -211,7 +211,7 @@ class WithoutMatplotlib(ProgramTest):
         return process
 
     def test_what_is_missing_is_said(self):
-        # A shell function overrides the command
+        # Hide the package, or override the command by a shell function
         for environment in ({"PYTHONPATH": str(self.folder / "nothing")}, {"BASH_FUNC_command%%": "() { return 1; }"}):
             process = self.run_script(**environment)
             line, = [line for line in process.stderr.splitlines() if "No plots" in line]
@@ -228,7 +228,7 @@ class WithoutMatplotlib(ProgramTest):
         self.run_script()
         picture = self.checkout / "results" / "scene" / "plots" / "complex_plane.svg"
         self.assertTrue(picture.is_file())
-        # A call without results draws nothing
+        # A call without results draws no plot
         picture.unlink()
         self.assertNotIn("plots", self.run_script("--", "--dry-run").stdout)
         self.assertFalse(picture.exists())

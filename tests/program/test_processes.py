@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The same results on several processes as on one: solvers, steady sliding, damping, and a sweep.
+"""Results on several processes agree with results on one: solvers, steady sliding, damping, and a sweep.
 
 These tests are separate because they need exclusive cores: processes that share cores with other programs wait for each other.
 """
@@ -30,7 +30,7 @@ class Solvers(ProgramTest):
         for name, overrides in {"Krylov": [], "quadratic": ["Discretization/Element=quadratic"], "residual iteration": RESIDUAL_ITERATION,
                                 "residual iteration, dissipation": [DISSIPATION, *RESIDUAL_ITERATION]}.items():
             one = self.run_scene("one", UNSTABLE_SHAPES, COMPONENT_SHAPES, *overrides)
-            # Three processes run the same code as two, four do not
+            # Three processes execute the same code as two; four execute additional code
             for n_processes in {"Krylov": (2, 4), "residual iteration, dissipation": (3,)}.get(name, (2,)):
                 with self.subTest(name, n_processes=n_processes):
                     several = self.run_scene("several", UNSTABLE_SHAPES, COMPONENT_SHAPES, *overrides, n_processes=n_processes)

@@ -14,7 +14,7 @@ DISC, PINS_FREE, PINS_SLIDING = 30, 36, 20
 
 
 def by_basis(path):
-    """Rows of a table with one row for each basis."""
+    """Rows of a table by the name of the basis."""
     return {row["basis"]: row for row in read_table(path)}
 
 
@@ -33,7 +33,7 @@ class Friction(ProgramTest):
             self.assertTrue(all(math.isfinite(number) for number in numbers(self.results / f"{name}.csv")), name)
 
     def test_sizes(self):
-        """Tables 2, 4 and 5 of the paper: columns of T_r0 and of T_r."""
+        """Sizes agree with Tables 2, 4 and 5 of the paper: columns of T_r0 and of T_r."""
         n_c, n_r = N_CONTACT, self.n_real
         sizes = {"free": (DISC + PINS_FREE + n_c, DISC + PINS_FREE),
                  "fixed": (DISC + PINS_SLIDING + 2 * n_c, DISC + PINS_SLIDING + n_c),
@@ -52,13 +52,13 @@ class Friction(ProgramTest):
                 self.assertLess(float(row["orthonormality [-]"]), 1e-10)
 
     def test_charges(self):
-        """The cost of a basis includes the sets that it requires; modes are computed once without surplus."""
+        """The cost of a basis includes the sets that it requires; modes are computed once, and no more than needed."""
         costs = {row["set"]: row for row in read_table(self.results / "reduction_costs.csv")}
         for name, wanted in (("free modes of the disc", DISC), ("free modes of the pins", PINS_FREE),
                              ("sliding modes of the pins", PINS_SLIDING), ("real coupled modes", self.n_real)):
             row = costs[name]
             self.assertEqual(int(row["vectors [-]"]), wanted, name)
-            # Modes of the pins come in fours, bending modes in eights, those of the disc in pairs
+            # Multiplicities: four for modes of the pins, eight for their bending modes, two for modes of the disc
             self.assertTrue(wanted <= int(row["modes in the band [-]"]) < wanted + (8 if "pins" in name else 2), name)
         self.assertEqual(int(costs["coupled tangential attachment modes"]["vectors [-]"]), N_CONTACT)
 
@@ -79,7 +79,7 @@ class Friction(ProgramTest):
         self.assertLess(worst["residual-grown 1e-07"], worst["residual-grown 0.0001"])
 
     def test_verdicts(self):
-        """An accurate basis decides all modes with a relevant rate, with the verdicts of the reference."""
+        """An accurate basis decides all modes with a relevant rate and agrees with the verdicts of the reference."""
         verdicts = set()
         for row in read_table(self.results / "reduction_modes.csv"):
             rate = float(row["reference divergence rate [%]"])
@@ -117,7 +117,7 @@ class Frictionless(ProgramTest):
         self.assertEqual([row["component modes"] for row in rows if row["basis"] == "mixed"], ["28/20/12", "36/36/16", "9000 Hz"])
         truncations = [tuple(row.values()) for row in read_table(results / "reduction_truncations.csv")]
         self.assertEqual(truncations[:2], [("28/20/12", "28", "20", "12"), ("36/36/16", "36", "36", "16")])
-        # More component modes reduce the error; Ritz values are upper bounds
+        # More component modes reduce the error, because Ritz values are upper bounds
         frequency = {}
         for row in read_table(results / "reduction_modes.csv"):
             self.assertGreater(float(row["frequency [Hz]"]), float(row["reference frequency [Hz]"]) * (1 - 1e-9))

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Rejected runs: one message that says what, where and what to change, a nonzero exit status, and no files."""
+"""Rejected runs: one message that says what happened, where, and what to change; a nonzero exit status; no files."""
 
 import os
 import resource
@@ -20,7 +20,7 @@ class Refusals(ProgramTest):
         cls.results = cls.run_scene("results")
 
     def refused(self, mentions, *arguments, n_processes=1):
-        """Calls the program and looks for the words in its message."""
+        """Checks that a call of the program fails with a message that contains the words."""
         before = contents(self.folder)
         process = self.call(*arguments, n_processes=n_processes)
         self.assertEqual(contents(self.folder), before)
@@ -34,14 +34,14 @@ class Refusals(ProgramTest):
         return self.refused(mentions, "scene.prm", "--output", output, *settings(overrides), n_processes=n_processes)
 
     def sliding_refused(self, mentions, *overrides, n_processes=1):
-        """The run is rejected before assembly and factorisation, without a results folder."""
+        """Checks that the run is rejected before assembly and factorisation and creates no result folder."""
         process = self.scene_refused(mentions, "Steady sliding/Contact state=steady sliding", *overrides, n_processes=n_processes,
                                      output="new")
         for step in ("Assembly", "Steady sliding", "Component modes"):
             self.assertNotIn(step, process.stdout)
 
     def test_limit_of_threads(self):
-        """With a stack larger than the address space no thread can be started: the run uses one."""
+        """If the stack size exceeds the address space, no thread can be started, and the run uses one thread."""
         stack, (_, most) = 1 << 47, resource.getrlimit(resource.RLIMIT_STACK)
         if most != resource.RLIM_INFINITY:
             self.skipTest("the size of stacks is limited")
@@ -104,7 +104,7 @@ class Refusals(ProgramTest):
                              "Steady sliding/Gaps=pin_top_1: 1e-5; pin_top_2: 2e-6")
 
     def test_disc_that_nothing_holds(self):
-        # Friction pushes the disc in its plane, which is only known after a factorisation
+        # Friction pushes the disc in its plane; this is detected only after a factorisation
         self.scene_refused(["nothing holds the disc in its plane", "Mounts/Elastic mounts"], "Steady sliding/Contact state=steady sliding",
                            "Mounts/Elastic mounts=", output="new")
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""scripts/report.py: its page agrees with the tables, and a browser displays it."""
+"""scripts/report.py: the page agrees with the tables, and a browser displays it."""
 
 import html
 import json
@@ -20,25 +20,25 @@ SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "scripts" / "report.py"
 
 from squeal.reporting.page import missing_packages  # noqa: E402
 
-WIDE, NARROW = 1200, 390  # [pixel] of a screen
-LARGEST_FILE = 15e6  # [byte]
+WIDE, NARROW = 1200, 390  # width of a screen [pixel]
+LARGEST_FILE = 15e6  # limit of the size of a page [byte]
 RATE, LARGEST, ONSET, CHANGE = "divergence rate [%]", "largest divergence rate [%]", "mu of 0.01 % [-]", "divergence rate per 1 % [percentage points]"
 QUICK = ("Sweep/Tolerance=1e-3", "Sweep/Threshold tolerance=1e-3", "Sweep/Number of friction coefficients=3")
 SCENES = {"stability": ("Output/Mode shapes=unstable",),
           "sweep": ("Study=sweep", "Sweep/Last friction coefficient=0.4", "Sweep/Number of friction coefficients=5"),
-          # Cells that are stable, unstable and undecided
+          # With cells that are stable, unstable and undecided
           "map": ("Study=sweep", "Operation/Radial dissipation=consistent", "Sweep/Compare dissipation=false", "Sweep/Map parameter=load",
                   "Sweep/Number of map values=3", "Sweep/Map friction coefficients=4", *QUICK),
-          # Solved and rejected designs
+          # With solved and rejected designs
           "designs": ("Study=geometry", "Designs/Variables=Geometry/Pin height = 0.030, 0.034; Pin material/Young modulus = 1.9e9, 1", *QUICK),
           "search": ("Study=search", "Designs/Variables=Geometry/Pin diameter = 0.05 to 0.09; Geometry/Pin height = 0.03 to 0.034",
                      "Search/Samples=3", "Search/Evaluations=5", *QUICK),
-          # Thresholds with and without derivatives
+          # With thresholds that have derivatives, and thresholds that have none
           "sensitivity": ("Study=sensitivity", "Sensitivity/Largest number of modes=2", "Sensitivity/Tolerance=1e-2", *QUICK)}
-# A table of each page, and a column by which it is sorted
+# A table of each page, and a column by which the test sorts it
 SORTED = {"stability": ("complex_modes", "frequency [Hz]"), "sweep": ("thresholds", "frequency [Hz]"), "map": ("map", "growth rate [1/s]"),
           "designs": ("design_modes", "frequency [Hz]"), "search": ("search", LARGEST), "sensitivity": ("sensitivities", CHANGE)}
-# Titles and legends of a chart that overlap or exceed it
+# Script that returns the titles and legends of a chart that overlap or extend beyond it
 CROWDED = """
 return [...document.querySelectorAll('.chart')].flatMap(chart => {
   const frame = chart.getBoundingClientRect();
@@ -53,7 +53,7 @@ return [...document.querySelectorAll('.chart')].flatMap(chart => {
 
 
 def browser(width):
-    """Headless Chromium, or None."""
+    """Headless Chromium; None if it is not available."""
     try:
         from selenium import webdriver
         from selenium.webdriver.chrome.options import Options
@@ -67,7 +67,7 @@ def browser(width):
     for argument in ("--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
                      f"--window-size={width},900"):
         options.add_argument(argument)
-    # Windows have a minimum width, emulated phones do not
+    # Emulate a phone: a browser window has a minimum width
     options.add_experimental_option("mobileEmulation", {"deviceMetrics": {"width": width, "height": 900, "pixelRatio": 1.0}})
     options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
     return webdriver.Chrome(service=Service(driver), options=options)
@@ -103,7 +103,7 @@ class Reports(ProgramTest):
         return html.unescape(re.search(r'<h1 id="verdict">(.*?)</h1>', self.page(name))[1])
 
     def section(self, name, which):
-        """The text of a section without tags."""
+        """The text of a section of a page, without tags."""
         return html.unescape(re.sub("<[^>]*>", " ", re.search(rf'<section id="{which}">(.*?)</section>', self.page(name), re.S)[1]))
 
     def test_verdicts_name_what_the_tables_say(self):
@@ -125,7 +125,7 @@ class Reports(ProgramTest):
         self.assertIn('<header class="unstable">', self.page("stability"))
 
     def test_charts(self):
-        """A curve for each branch, a mark for each mode."""
+        """Charts have a curve for each branch and a mark for each mode."""
         rows = self.rows("stability", "complex_modes")
         damping = self.charts("stability")["damping"]
         self.assertEqual([len(trace["x"]) for trace in damping["data"]],
@@ -139,7 +139,7 @@ class Reports(ProgramTest):
         self.assertEqual(sum(len(trace["x"]) for trace in curves), len(rows))
         events = self.rows("sweep", "thresholds")
         self.assertEqual(sum(len(trace["x"]) for trace in charts["branches"]["data"][-2:]), len(events))
-        # Two coalescing modes have the frequency of the threshold there
+        # Two coalescing modes have the frequency of the threshold at this friction coefficient
         first, second = charts["bifurcations"]["data"][:2]
         event = next(row for row in events if first["name"].startswith(f"{row['label']} and {row['partner label']}, "
                                                                        f"{float(row['frequency [Hz]']):.1f} Hz"))
@@ -164,11 +164,11 @@ class Reports(ProgramTest):
         undecided = [row for row in rows if row not in growing and int(row["undecided modes [-]"]) > 0]
         self.assertEqual([len(one) for one in cells], [len(growing), len(rows) - len(growing) - len(undecided), len(undecided)])
         self.assertGreater(len(undecided), 0)
-        # The table is in the order of the cells
+        # The table lists the cells in the same order
         for (value, text), row in zip(cells[0], growing):
             self.assertAlmostEqual(value / float(row[RATE]), 1, delta=1e-5)
             self.assertIn(row["label"], text)
-        # Cells extend to the geometric mean of neighbouring loads
+        # The boundary between two cells is the geometric mean of their loads
         self.assertAlmostEqual(maps[0]["y"][1] / math.sqrt(100 * 1000), 1)
         self.assertGreater(sum(x is not None for x in limit["x"]), 3)
         self.assertLessEqual(set(names["text"]), {row["label"] for row in growing})
@@ -236,7 +236,7 @@ class Reports(ProgramTest):
             self.assertEqual(re.findall(r"url\((?!data:|none)[^)]{0,60}", text.split("</style>")[0]), [])
 
     def test_belongs_to_the_run(self):
-        """The next run removes the page together with its results."""
+        """The next run removes the page together with the results to which it belongs."""
         stability = self.folder / "stability"
         record = json.loads((stability / "run.json").read_text(encoding="utf-8"))
         self.assertEqual(record["files [byte]"]["report.html"], (stability / "report.html").stat().st_size)
@@ -246,7 +246,7 @@ class Reports(ProgramTest):
         self.assertFalse((again / "report.html").exists())
 
     def test_how_to_repeat_it(self):
-        """The command in the page runs in a shell."""
+        """The command shown on the page runs in a shell."""
         for name, overrides in SCENES.items():
             command = html.unescape(re.search(r'<section id="repeat">.*?<pre>(.*?)</pre>', self.page(name), re.S)[1])
             self.assertEqual(shlex.split(command), [EXECUTABLE, "scene.prm", "--output", name, *settings(overrides)])
@@ -280,7 +280,7 @@ class Reports(ProgramTest):
             time.sleep(0.1)
         self.assertEqual([entry for entry in driver.get_log("browser") if entry["level"] == "SEVERE"], [])
         self.assertEqual(driver.find_element("id", "verdict").text, self.verdict(name))
-        # Nothing is wider than the screen, and no parts overlap
+        # Nothing is wider than the screen, and nothing overlaps
         self.assertLessEqual(driver.execute_script("return document.documentElement.scrollWidth"), width)
         places = driver.execute_script("return [...document.querySelectorAll('main > *')].map(e => { const r = e.getBoundingClientRect();"
                                        " return [r.top, r.bottom]; })")
@@ -293,21 +293,21 @@ class Reports(ProgramTest):
             self.assertEqual(shown, len(traces))
 
     def use(self, driver, name):
-        """Checks that do not depend on the width."""
+        """Checks in the browser that do not depend on its width."""
         self.assert_tables(driver, name)
         self.assert_sorts(driver, self.folder / name / f"{SORTED[name][0]}.csv", SORTED[name][1])
         if name == "stability":
             self.assert_moves(driver)
 
     def assert_tables(self, driver, name):
-        """Every table has the rows of its file."""
+        """Checks that every table has the rows of its file."""
         shown = driver.execute_script("return [...document.querySelectorAll('table.sortable')].map(t => [t.id, $(t).DataTable().rows().count()])")
         self.assertGreater(len(shown), 0)
         self.assertEqual(shown, [[table, len(self.rows(name, table.removeprefix("table-")))] for table, _ in shown])
         self.assertIn("table-" + SORTED[name][0], [table for table, _ in shown])
 
     def assert_sorts(self, driver, path, name):
-        """A click on a header sorts its column, a second click reverses the order."""
+        """Checks that a click on a header sorts by its column, and a second click reverses the order."""
         column = list(read_table(path)[0]).index(name)
         values = sorted(float(row[name]) for row in read_table(path) if row[name])
         head = driver.find_elements("css selector", f"#table-{path.stem} thead th")[column]

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The files of a run, and its repetition from these."""
+"""The files of a run, and the repetition of the run from these files."""
 
 import json
 import math
@@ -56,7 +56,7 @@ class Results(ProgramTest):
             shares = [float(value) for name, value in row.items() if name.startswith("strain energy")]
             self.assertAlmostEqual(sum(shares), 100, places=6)
             self.assertGreaterEqual(min(shares), 0)
-        # Ascending, except for modes that are equal to rounding
+        # Frequencies ascend, except for modes that are equal within rounding
         for lower, upper in zip(frequencies, frequencies[1:]):
             self.assertLessEqual(lower, upper * (1 + SAME))
         self.assertLessEqual(frequencies[-1], 5000)
@@ -67,7 +67,7 @@ class Results(ProgramTest):
             self.assertAlmostEqual(damping, -2 * rate, delta=1e-9 * abs(rate))
             self.assertLessEqual(float(row["residual [-]"]), 1e-9)
             self.assertTrue(0 < float(row["share [-]"]) <= 1)
-        # Without dissipation, growing and decaying modes form pairs
+        # Without dissipation, modes form pairs of growing and decaying modes
         values = eigenvalues(self.results)
         self.assertLess(distance([-value.conjugate() for value in values], values), 1e-9)
 
@@ -107,7 +107,8 @@ class Results(ProgramTest):
             self.assertEqual(set(VtuFile(picture).cell_types), {9})
 
     def test_energy(self):
-        """Contributions of all bodies add up to the divergence rate of a growing mode; friction is assigned to the pins."""
+        """The contributions of all bodies add up to the divergence rate of a growing mode; friction is attributed to
+        the pins."""
         rows = read_table(self.results / "energy.csv")
         modes = read_table(self.results / "complex_modes.csv")
         growing = [number for number, row in enumerate(modes, start=1) if row["unstable [-]"] == "1"]
@@ -139,12 +140,12 @@ class Results(ProgramTest):
                              [row["label"] for row in read_table(self.results / name)])
 
 
-# Unstable complex modes, and all component and real modes
+# Write unstable complex modes, and all component and real modes
 SHAPES = ("Output/Mode shapes=unstable", "Output/Component mode shapes=true", "Output/Real mode shapes=true")
 
 
 class Repetition(ProgramTest):
-    """The parameter file of a run repeats it, with any file names, and with closed standard streams."""
+    """The parameter file of a run repeats it, for any file names, and with closed standard streams."""
 
     BAND = ("--set", "Band/Maximum frequency=1000")
 
@@ -202,7 +203,7 @@ class Shapes(ProgramTest):
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
-        # Trilinear, on a coarse mesh
+        # Trilinear elements on a coarse mesh
         cls.results = cls.run_scene("results", *SHAPES)
 
     def fields_of(self, pattern):
@@ -211,7 +212,7 @@ class Shapes(ProgramTest):
     def assert_normalised(self, fields):
         self.assertAlmostEqual(max(abs(u) for vector in fields["displacement"] for u in vector), 1, delta=STEP)
         for displacement, amplitude in zip(fields["displacement"], fields["amplitude"]):
-            self.assertAlmostEqual(math.hypot(*displacement), amplitude, delta=1.4 * STEP)  # all four are rounded
+            self.assertAlmostEqual(math.hypot(*displacement), amplitude, delta=1.4 * STEP)  # four rounded numbers
 
     def test_real_modes(self):
         rows = read_table(self.results / "real_modes.csv")
@@ -250,19 +251,19 @@ class Shapes(ProgramTest):
                     self.assertEqual([face.get("timestep") for face in faces], [entry.get("timestep") for entry in entries])
                     self.assertEqual([self.results / face.get("file") for face in faces], [path for path in everything if path not in files])
                 self.assertEqual([self.results / entry.get("file") for entry in entries], files)
-                # ParaView distinguishes times by their texts
+                # ParaView distinguishes times by their text
                 times = [entry.get("timestep") for entry in entries]
                 self.assertEqual(len(set(times)), len(times))
                 self.assertEqual(sorted(times, key=float), times)
                 frequencies = real_frequencies(self.results, f"{table}.csv")
                 for path, time in zip(files, times):
                     number = next(int(word) for word in path.stem.split("_") if word.isdigit())
-                    # Times of modes with equal frequencies are shifted to be distinct
+                    # Times of modes with equal frequencies are shifted to make them distinct
                     self.assertAlmostEqual(float(time) / frequencies[number - 1], 1, delta=2e-6 * len(times))
 
     @unittest.skipUnless(shutil.which("pvpython") and shutil.which("xvfb-run"), "ParaView is not installed")
     def test_paraview(self):
-        """A picture, a film and a session of the leading mode; the session opens again with its times."""
+        """A picture, a film and a session of the leading mode; the session can be opened again with its times."""
         rows = read_table(self.results / "complex_modes.csv")
         leader = max(range(len(rows)), key=lambda i: float(rows[i]["growth rate [1/s]"]))
         picture, film, session = (self.folder / name for name in ("pictures", "mode.gif", "mode.pvsm"))
@@ -283,5 +284,5 @@ class Shapes(ProgramTest):
         self.assertIn("ProgrammableFilter", session.read_text(encoding="utf-8"))
 
 def file_text(label):
-    """A label as in file names."""
+    """A label in the form used in file names."""
     return label.replace(" -", "_minus").replace(" +", "_plus")

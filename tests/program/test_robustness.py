@@ -20,7 +20,7 @@ BOX = ("Operation/Friction coefficient = uniform 0.1 to 0.6; Pin material/Young 
 
 
 def quantile(values, part, n):
-    """Quantile of n values, of which the largest may be missing; None if it is among these."""
+    """Quantile of n values, of which `values` may lack the largest ones; None if the quantile is among these."""
     place = part * (n - 1)
     number = int(place)
     values = sorted(values)
@@ -30,7 +30,7 @@ def quantile(values, part, n):
 
 
 class OfSystem(test_systems.SystemTest):
-    """mu kappa > c is unstable, with mu uniform in (0, 1) and kappa in (0.5, 2)."""
+    """Samples of a system that is unstable for mu kappa > c, with mu uniform in (0, 1) and kappa in (0.5, 2)."""
 
     def setUp(self):
         self.write_system({"mu": (0.6, 0., 1.), "kappa": (1., 0.5, 2.)}, flutter_terms())
@@ -63,7 +63,7 @@ class OfSystem(test_systems.SystemTest):
         self.assertEqual(list(draw.figures(Results(results))), ["robustness"])
 
     def test_onsets_are_those_of_the_closed_form(self):
-        """mu kappa = c at the first growth, for either of them as the parameter of the sweep."""
+        """Growth begins at mu kappa = c; either of the two is the parameter of the sweep."""
         c = test_systems.Flutter.MU_C
         for other, uncertain, swept in (("kappa", "kappa = uniform 0.5 to 2", "mu, 0, 1, 11"), ("mu", "mu = uniform 0.1 to 1", "kappa, 0.5, 2, 11")):
             name, first, last = swept.split(", ")[0], float(swept.split(", ")[1]), float(swept.split(", ")[2])
@@ -119,7 +119,8 @@ class OfSystem(test_systems.SystemTest):
 
 
 class SearchOfSystem(test_systems.SystemTest):
-    """mu g > c is unstable, with mu uniform in (0, 1) and g = 0.8 + 4 (x - 0.3)^2, or g = kappa."""
+    """Search for a system that is unstable for mu g > c, with mu uniform in (0, 1) and g = 0.8 + 4 (x - 0.3)^2, or g =
+    kappa."""
 
     SEARCH = ("Robustness/Number of samples=300", "Search/Samples=5", "Search/Evaluations=30")
 
@@ -142,19 +143,19 @@ class SearchOfSystem(test_systems.SystemTest):
                 self.assertEqual(row["probability of squeal or doubt [%]"], row["probability of squeal [%]"] + row["undecided samples [%]"])
             best = min(rows, key=lambda row: row[column])
             self.assertEqual(rows[-1][f"best {column}"], best[column])
-            # The probability from 300 samples is piecewise constant
+            # The probability estimated from 300 samples is piecewise constant
             self.assertAlmostEqual(best["x"], 0.3, delta=0.01 if goal == "quantile" else 0.05)
 
             said = content.content(Results(results))
             self.assertIn(f"number {int(best['design [-]'])} is the best", json.dumps(said, ensure_ascii=False))
 
-            # The same samples again
+            # A repetition with the same samples
             again = self.run_scene("again", "Robustness/Sobol indices=false", file=str(results / "best.prm"))
             squeal = self.rows(again, "probabilities")[0]
             self.assertEqual(squeal["probability of squeal [%]"], best["probability of squeal [%]"])
             rates = [row["divergence rate [%]"] or 0. for row in self.rows(again, "samples")]
             self.assertAlmostEqual(best["divergence rate at 90 % of the samples [%]"], quantile(rates, 0.9, 300), delta=1e-6)
-            # Other samples, and the worst of them at full order
+            # Compare with other samples, and with the worst of them at full order
             checked = self.rows(results, "best_design")
             self.assertEqual([row["seed [-]"] for row in checked], [1., 2.])
             self.assertEqual(checked[0][column], best[column])
@@ -164,7 +165,8 @@ class SearchOfSystem(test_systems.SystemTest):
             self.assertAlmostEqual(self.rows(results, "full_order")[0]["divergence rate [%]"], worst, delta=1e-6)
 
     def test_numbers_in_percent_follow_the_design(self):
-        """P(mu kappa r g > c) = 1 - c/(g kappa) E(1/r) with r uniform in (0.9, 1.1), smallest for the smallest kappa."""
+        """P(mu kappa r g > c) = 1 - c/(g kappa) E(1/r) with r uniform in (0.9, 1.1) is smallest for the smallest kappa.
+        """
         c = test_systems.Flutter.MU_C
         results = self.study("search", "Robustness/Distributions=mu = uniform 0 to 1; kappa = uniform 90 % to 110 %", "Designs/Variables=kappa = 0.9 to 1.8",
                              "Search/Goal=probability", *self.SEARCH)
@@ -200,7 +202,7 @@ class OfScene(ProgramTest):
         self.assertEqual(len(again), 700)
         for row, other in zip(again, whole):
             self.assertEqual(row["Operation/Friction coefficient"], other["Operation/Friction coefficient"])
-            # Another basis, with the same tolerance of 1e-4
+            # Both bases have the tolerance 1e-4
             rates = [float(r["divergence rate [%]"] or 0.) for r in (row, other)]
             self.assertAlmostEqual(*rates, delta=0.02)
 
@@ -247,13 +249,13 @@ class OfScene(ProgramTest):
         best = min(rows, key=lambda row: float(row[column]))
         for seed, row in zip((1, 2), read_table(results / "best_design.csv")):
             again = self.run_scene(f"again_{seed}", "Robustness/Sobol indices=false", f"Robustness/Seed={seed}", file=str(results / "best.prm"))
-            # Except for samples that one of the two bases does not decide
+            # The counts agree, except for samples that one of the two bases leaves undecided
             squeal = read_table(again / "probabilities.csv")[0]
             for one, other in ((row, squeal), (squeal, row)):
                 doubt = float(other["undecided samples [%]"]) + 1e-6
                 self.assertLessEqual(float(one["probability of squeal [%]"]), float(other["probability of squeal [%]"]) + doubt)
             rates = sorted(float(sample["divergence rate [%]"] or 0.) for sample in read_table(again / "samples.csv"))
-            self.assertAlmostEqual(float(row[column]), quantile(rates, 0.8, 12), delta=0.01)  # to the tolerance of 1e-4
+            self.assertAlmostEqual(float(row[column]), quantile(rates, 0.8, 12), delta=0.01)  # tolerance 1e-4
         self.assertEqual(read_table(results / "best_design.csv")[0][column], best[column])
         self.assertAlmostEqual(float(read_table(results / "full_order.csv")[0]["divergence rate [%]"]), rates[-1], delta=0.01)
 

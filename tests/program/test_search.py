@@ -43,7 +43,7 @@ class SearchTest(ProgramTest):
         found = max(float(row["divergence rate [%]"]) for row in read_table(sweep / "branches.csv"))
         self.assertAlmostEqual(found, best, delta=1e-3 * best)
         rows = read_table(self.search / "full_order.csv")
-        # The last row is at the worst point of the sweep
+        # The last row is for the worst point of the sweep
         self.assertAlmostEqual(float(rows[-1]["divergence rate [%]"]), best, delta=1e-3 * best)
         for row in rows:
             self.assertLess(float(row["residual [-]"]), 1e-8)
@@ -63,7 +63,7 @@ class SearchTest(ProgramTest):
         n_known = len(self.stored("killed"))
         process = self.call("scene.prm", "--output", "killed", *settings(SEARCH))
         self.assertEqual(process.returncode, 0, process.stderr)
-        # Reported once, not in every repeated round
+        # Continuing is reported once, not in every repeated round
         self.assertEqual(re.findall("continuing an .*", process.stdout), [f"continuing an interrupted search: {n_known} designs are finished"])
         resumed = self.folder / "killed"
         self.assertEqual(read_table(resumed / "search.csv"), read_table(self.search / "search.csv"))
@@ -79,7 +79,7 @@ class SearchTest(ProgramTest):
                 self.assertFalse((self.folder / "none").exists())
 
     def test_designs_that_cannot_be_meshed_are_walls(self):
-        """Part of the range cannot be meshed: the search continues and ends at a valid design."""
+        """If part of the range cannot be meshed, the search continues and ends at a valid design."""
         folder = self.run_scene("walls", "Study=search", "Designs/Variables=Geometry/Pin diameter = 0.05 to 0.09", "Search/Samples=3",
                                 "Search/Evaluations=6", "Sweep/Number of friction coefficients=4", "Band/Maximum frequency=4000")
         rows = read_table(folder / "designs.csv")

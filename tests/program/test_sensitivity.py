@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""`Study = sensitivity`: derivatives compared with differences of runs, and its tables."""
+"""`Study = sensitivity`: its tables, and derivatives compared with differences between runs."""
 
 import math
 
@@ -10,7 +10,7 @@ from program import COARSE, ProgramTest, read_table
 STUDY = "Study=sensitivity"
 NO_THRESHOLDS, NO_GEOMETRY = "Sensitivity/Thresholds=false", "Sensitivity/Geometry=none"
 ITERATED = ["Complex modes/Solver=residual iteration", "Complex modes/Iteration tolerance=1e-12"]
-# All parameters are nonzero
+# A model in which all parameters are nonzero
 RICH = ["Operation/Radial dissipation=consistent", "Operation/Friction slope=-0.002", "Operation/Gyroscopic forces=true",
         "Operation/Rotation speed=20", "Operation/Load per side=2000", "Disc material/Rayleigh alpha=2", "Disc material/Rayleigh beta=1e-8",
         "Pin material/Rayleigh alpha=3", "Pin material/Rayleigh beta=2e-8", "Mounts/Elastic mounts=disc_bore: 3e10, 7.8e10, 1.88e10"]
@@ -23,7 +23,7 @@ STEADY = "Steady sliding/Contact state=steady sliding"
 # The travel is about 1e-5 m; two of 28 nodes are open
 GAPS = "Steady sliding/Gaps=pin_top_2: 1e-6, 5e-4, -3e-4; pin_bottom_1: 0, -2e-4, 4e-4"
 
-# Rounding of the difference of two frequencies with twelve printed digits, relative [-]
+# Relative rounding error of the difference of two frequencies printed with twelve digits [-]
 PRINTED = 5e-12
 
 # Relative step of a parameter [-]
@@ -32,7 +32,7 @@ STEP = 3e-5
 # Relative step of a parameter for thresholds [-]
 THRESHOLD_STEP = 2e-5
 
-# Uncertainty of differences of thresholds with respect to ln p [-]
+# Uncertainty of thresholds in differences with respect to ln p [-]
 RESOLUTION = 2e-6
 
 
@@ -41,7 +41,7 @@ def eigenvalue(row):
 
 
 def derivative(row):
-    """With respect to the parameter."""
+    """Derivative in a row, with respect to the parameter."""
     return complex(float(row["growth rate per unit [1/s]"]), 2 * math.pi * float(row["frequency per unit [Hz]"]))
 
 
@@ -50,7 +50,7 @@ def modal(ratios):
 
 
 def override(path, value):
-    """The parameter `path` with another value."""
+    """Override that sets the parameter `path` to another value."""
     if path.startswith("Mounts/"):
         direction = path.rsplit(" ", 1)[1]
         return "Mounts/Elastic mounts=disc_bore: " + ", ".join(repr(value if name == direction else stiffness)
@@ -64,7 +64,7 @@ def override(path, value):
 # ---------------------------------------------------------------- moving nodes
 
 THICKNESS, HEIGHT, INNER, OUTER, DIAMETER = 0.0463, 0.0318, 0.1505, 0.3155, 0.052
-# Component -> side, angle [degree]; all pins have the same distance from the axis
+# Side and angle [degree] of each component; all pins have the same distance from the axis
 PINS = {"pin_top_1": (1, -10), "pin_top_2": (1, 10), "pin_bottom_1": (-1, -10), "pin_bottom_2": (-1, 10)}
 PIN_RADIUS = 0.2275
 
@@ -78,7 +78,8 @@ GAP = min(2 * PIN_RADIUS * math.sin(math.radians(10)) - DIAMETER, PIN_RADIUS - D
 
 
 def share(pin, x, y, z, component):
-    """Share of the motion of a pin at a node: 1 on the pin, decreasing to 0 at other pins, rims and the other face of the disc."""
+    """Fraction of the motion of a pin that a node follows: 1 on the pin, falling to 0 at other pins, rims and the other
+    face of the disc."""
     if component not in ("disc", pin):
         return 0.0
     if component == pin:
@@ -88,7 +89,7 @@ def share(pin, x, y, z, component):
 
 
 def motion(path, pin):
-    """Velocity of a node by position and component, as in include/squeal/sensitivity/mesh_motions.h."""
+    """Velocity of a node as a function of position and component, as in include/squeal/sensitivity/mesh_motions.h."""
     def radial(x, y, component, rim, nearest):
         r = math.hypot(x, y)
         s = max(0.0, (r - nearest) / (rim - nearest)) if component == "disc" else 0.0
@@ -121,7 +122,7 @@ def motion(path, pin):
 
 
 def move_nodes(still, path, motions):
-    """Writes the mesh of a run with its nodes moved: (velocity, change) of each motion."""
+    """Writes the mesh of a run with displaced nodes; `motions`: (velocity, change) of each motion."""
     mesh = MeshFile(still / "mesh.msh")
     for component in ("disc", *PINS):
         for node in mesh.nodes_of(component):
@@ -132,27 +133,27 @@ def move_nodes(still, path, motions):
 
 
 def steps_of(slopes, step, most):
-    """Relative changes of parameters with similar effects, up to `most` steps; a single parameter would have one step."""
+    """Relative changes of up to `most` parameters with similar effects; a single parameter would have `step`."""
     largest = {key: max(map(abs, of_key.values())) for key, of_key in slopes.items()}
     share = max(largest.values()) / len(largest)
     return {key: step * min(most, share / size) for key, size in largest.items()}
 
 
 class Sensitivity(ProgramTest):
-    # The band ends above the first bending of the pins
+    # The band ends above the first bending modes of the pins
     scene = COARSE + "subsection Band\n  set Maximum frequency = 4200\nend\n"
 
     @classmethod
     def mesh_of_scene(cls, *overrides):
-        """Results of a minimal run, for its mesh."""
+        """Result folder of a minimal run, for its mesh."""
         return cls.shared("Band/Maximum frequency=1000", "Operation/Friction coefficient=0", *overrides)
 
     def eigenvalues_at(self, *overrides):
         return [eigenvalue(row) for row in read_table(self.run_scene("single", *ITERATED, *overrides) / "complex_modes.csv")]
 
     def check_modes(self, rows, keys, eigenvalues_at, most=100):
-        """Compares derivatives with respect to the parameters (path, pin), also of the growth rate alone, with central differences along a
-        direction that depends on all of them. `eigenvalues_at` takes changes of the parameters."""
+        """Compares derivatives, also of the growth rate alone, with central differences along a direction that depends
+        on all parameters in `keys`, (path, pin). `eigenvalues_at` takes changes of the parameters."""
         slopes, here, values = {}, {}, {}
         for key in keys:
             of_key = [row for row in rows if (row["parameter"], row["body"]) == key]
@@ -172,7 +173,7 @@ class Sensitivity(ProgramTest):
                 self.assertLessEqual(abs(error.real), 1e-5 * sum(abs(part.real) for part in parts) + resolution)
 
     def check_parameters(self, scene, paths):
-        """Compares with complete runs; returns the names of all parameters."""
+        """Compares derivatives with complete runs; returns the names of all parameters."""
         folder = self.run_scene("rich", STUDY, NO_THRESHOLDS, NO_GEOMETRY, "Sensitivity/Tolerance=1e-7",
                                 "Sensitivity/Largest number of modes=4", *scene)
         rows = read_table(folder / "sensitivities.csv")
@@ -183,14 +184,15 @@ class Sensitivity(ProgramTest):
         return set(values)
 
     def test_differences(self):
-        """With all kinds of damping, a rotating disc and steady sliding; tests/sensitivity covers all material constants."""
+        """Model with all kinds of damping, a rotating disc and steady sliding; tests/sensitivity covers all material
+        constants."""
         paths = [*(f"Operation/{name}" for name in ("Friction coefficient", "Friction slope", "Load per side", "Rotation speed")),
                  "Disc material/Young modulus", "Disc material/Rayleigh beta", "Pin material/Poisson ratio", "Pin material/Rayleigh alpha",
                  "Mounts/Elastic mounts: disc_bore axial"]
         self.assertEqual(len(self.check_parameters([*RICH, STEADY, GAPS], paths)), 17)
 
     def test_modal_damping(self):
-        """The damped modes change with the bodies, the ratios with their frequencies."""
+        """Damped modes change with the bodies; their damping ratios change with their frequencies."""
         ratios = [f"Damping/Modal damping ratio: {frequency} Hz" for frequency in RATIOS]
         paths = ["Disc material/Density", "Operation/Friction coefficient", "Operation/Load per side",
                  "Mounts/Elastic mounts: disc_bore tangential", ratios[1]]
@@ -198,15 +200,15 @@ class Sensitivity(ProgramTest):
         self.assertEqual({name for name in names if "ratio: " in name}, set(ratios))
 
     def test_orthotropic_pin(self):
-        """Every constant in fixed axes."""
+        """All constants of an orthotropic pin with fixed axes."""
         self.check_orthotropic("pin_top_1", (2e9, 1.5e9, 1e9, 0.25, 0.4, 0.3, 0.8e9, 0.4e9, 0.3e9), 3070, "1, 0.2, 0, 0, 1, 0.3")
 
     def test_orthotropic_disc(self):
-        """Cylindrical axes."""
+        """Constants of an orthotropic disc with cylindrical axes."""
         self.check_orthotropic("disc", (210e9, 180e9, 150e9, 0.3, 0.25, 0.2, 80e9, 70e9, 60e9), 7850, "", ("E2", "nu12", "G23"))
 
     def check_orthotropic(self, volume, values, density, axes, checked=()):
-        """Compares constants with complete runs; E1 changes all moduli."""
+        """Compares derivatives with respect to the constants with complete runs; E1 changes all moduli."""
         numbers = dict(zip(("E1", "E2", "E3", "nu12", "nu13", "nu23", "G12", "G13", "G23"), values))
 
         def scene(**changed):
@@ -232,7 +234,8 @@ class Sensitivity(ProgramTest):
         self.check_modes(rows, names, eigenvalues_at)
 
     def test_identities(self):
-        """Results are independent of the unit of force, derivatives of all pins are sums, and percentages are consistent."""
+        """Results do not depend on the unit of force, derivatives for all pins are sums over the pins, and percentages
+        are consistent."""
         folder = self.run_scene("plain", STUDY, NO_THRESHOLDS, "Sensitivity/Tolerance=1e-8")
         rows = read_table(folder / "sensitivities.csv")
         for mode in {row["mode [-]"] for row in rows}:
@@ -259,7 +262,8 @@ class Sensitivity(ProgramTest):
         self.assertEqual(ranking, sorted(ranking, key=abs, reverse=True))
 
     def test_thresholds(self):
-        """dmu_c/dp compared with differences of thresholds; for lengths and positions, the nodes of meshes are moved here."""
+        """Compares dmu_c/dp with differences of thresholds; for lengths and positions, the test moves the nodes of
+        meshes."""
         folder = self.run_scene("thresholds", STUDY, *THRESHOLDS, "Sensitivity/Geometry=sizes and places")
         rows = [row for row in read_table(folder / "sensitivities_thresholds.csv") if row["derivative of"] != "none"]
         self.assertEqual({row["derivative of"] for row in rows}, {"squared difference of the pair"})
@@ -272,7 +276,7 @@ class Sensitivity(ProgramTest):
         self.check_thresholds(rows, [(poisson, ""), *places], overrides, most=10)
 
     def test_damped_thresholds(self):
-        """The same with damping in steady sliding, where modes lose stability individually."""
+        """Thresholds with damping in steady sliding, where modes lose stability individually."""
         light = {frequency: 0.1 * ratio for frequency, ratio in RATIOS.items()}
         scene = [*RICH, modal(light), STEADY]
         folder = self.run_scene("damped", STUDY, NO_GEOMETRY, *THRESHOLDS, *scene)
@@ -287,7 +291,8 @@ class Sensitivity(ProgramTest):
         self.check_thresholds(rows, [(load, ""), (ratio, "")], overrides, most=100)
 
     def check_thresholds(self, rows, keys, overrides, most):
-        """Along one direction, as check_modes(); `overrides` takes changes of the parameters."""
+        """Compares derivatives of thresholds along one direction, as check_modes() does; `overrides` takes changes of
+        the parameters."""
         of_keys = {key: [row for row in rows if (row["parameter"], row["body"]) == key] for key in keys}
         slopes = {key: {float(row["mu [-]"]): float(row["mu per unit [-]"]) * float(row["value"]) for row in of_key} for key, of_key in of_keys.items()}
         steps = steps_of(slopes, THRESHOLD_STEP, most)
@@ -302,26 +307,26 @@ class Sensitivity(ProgramTest):
             before, after = (min((mu for mu, event in others if event == row["event"]), key=lambda mu, here=here: abs(mu - here)) for others in found)
             parts = {key: step * slopes[key][here] for key, step in steps.items()}
             with self.subTest(mu=here, label=row["label"]):
-                # Thresholds are known to 1e-10, that of A0-0, whose growth rate has a small slope, to 4e-8
+                # Thresholds have an accuracy of 1e-10; that of A0-0, whose growth rate has a small slope, only 4e-8
                 tolerance = 1e-5 * sum(map(abs, parts.values())) + THRESHOLD_STEP * RESOLUTION
                 self.assertLessEqual(abs(sum(parts.values()) - (after - before) / 2), tolerance)
-        # The tolerance would detect an error of a thousandth of the largest slope of each parameter
+        # The tolerance is small enough to detect an error of a thousandth of the largest slope of each parameter
         for key in keys:
             largest = max(map(abs, slopes[key].values())) * steps[key]
             self.assertGreater(1e-3 * largest, 1e-5 * len(keys) * largest + THRESHOLD_STEP * RESOLUTION, key)
 
     def test_geometry(self):
-        """Lengths and positions compared with runs on meshes whose nodes are moved here; gaps move with their pins."""
+        """Lengths and positions, compared with runs on meshes whose nodes the test moves; gaps move with their pins."""
         of_all = ("Disc thickness", "Pin height", "Disc inner radius", "Disc outer radius", "Pin diameter")
         self.check_geometry([*RICH, STEADY, GAPS], [*((path, "") for path in of_all), ("Top pin radii", "pin_top_2"),
                                                     ("Bottom pin angles", "pin_bottom_1")])
 
     def test_curved_elements(self):
-        """The same with curved elements along the growing circle."""
+        """The same comparison with curved elements on a circle that grows."""
         self.check_geometry([*RICH, "Discretization/Element=quadratic"], [("Pin diameter", "")], "sizes")
 
     def test_geometry_of_orthotropic_volumes(self):
-        """Cylindrical axes follow the nodes, fixed axes do not."""
+        """Cylindrical axes follow the nodes; fixed axes do not."""
         materials = ("disc: 210e9, 180e9, 150e9, 0.3, 0.25, 0.2, 80e9, 70e9, 60e9, 7850; "
                      "pin_bottom_1: 2e9, 1.5e9, 1e9, 0.25, 0.4, 0.3, 0.8e9, 0.4e9, 0.3e9, 3070; "
                      "pin_top_2: 2e9, 1.5e9, 1e9, 0.25, 0.4, 0.3, 0.8e9, 0.4e9, 0.3e9, 3070")
@@ -337,7 +342,7 @@ class Sensitivity(ProgramTest):
                          lambda changes: self.eigenvalues_at(*scene, *self.moved(changes, *element)), most=10)
 
     def moved(self, changes, *overrides):
-        """The setting for the mesh of the model with moved nodes."""
+        """Override that sets the mesh of the model with displaced nodes."""
         motions = [(motion(path.removeprefix("Geometry/"), pin), change) for (path, pin), change in changes.items()]
         move_nodes(self.mesh_of_scene(*overrides), self.folder / "moved.msh", motions)
         return ["Geometry/File=moved.msh"]

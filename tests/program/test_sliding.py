@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Runs about steady sliding: the contact state, its effect on modes, and damping."""
+"""Runs in steady sliding: the contact state, its effect on modes, and damping."""
 
 import cmath
 import importlib.util
@@ -24,7 +24,7 @@ SINGLE = 1e-6
 
 
 def pins(folder):
-    """Rows of sliding_pins.csv by pin, numbers as numbers."""
+    """Rows of sliding_pins.csv by pin, with converted numbers."""
     return {row["pin"]: {name: float(text) for name, text in row.items() if name != "pin"}
             for row in read_table(folder / "sliding_pins.csv")}
 
@@ -42,7 +42,7 @@ def growth_rates(folder):
 
 
 class ContactFaces:
-    """Fields of a _contact.vtu at the nodes of each pin's face, each node once."""
+    """Fields of a _contact.vtu file at the nodes of each pin's face, with each node once."""
 
     def __init__(self, path):
         file = VtuFile(path)
@@ -56,7 +56,7 @@ class ContactFaces:
                 raise AssertionError(f"{path} has several values at {point}")
 
     def of_pin(self, pin):
-        """Pairs of a point and its fields by name."""
+        """Pairs of a point and its fields by name, for one pin."""
         return list(self.nodes[pin].values())
 
     def all(self):
@@ -67,7 +67,7 @@ class SlidingTest(ProgramTest):
     scene = COARSE
 
     def assert_close(self, actual, expected, tolerance):
-        """Compares lists, with errors relative to the largest expected number."""
+        """Compares lists; errors are relative to the largest expected number."""
         self.assertEqual(len(actual), len(expected))
         largest = max(map(abs, expected))
         self.assertLessEqual(max(abs(a - b) for a, b in zip(actual, expected)), tolerance * largest)
@@ -87,7 +87,7 @@ class SlidingTest(ProgramTest):
 
 
 class State(SlidingTest):
-    """The state of contact of a run with consistent radial dissipation."""
+    """The contact state of a run with consistent radial dissipation."""
 
     @classmethod
     def setUpClass(cls):
@@ -111,7 +111,8 @@ class State(SlidingTest):
         for name, pin in self.pins.items():
             with self.subTest(name):
                 self.assertEqual([pin[column] for column in ("nodes [-]", "open nodes [-]", "largest gap [m]", "c_t [N s/m]")], [7, 0, 0, 0])
-                # Friction tilts a pin about its clamp: a stiff pin's centre of pressure moves by mu times half its height
+                # Friction tilts a pin about its clamp: the centre of pressure of a stiff pin moves by mu times half its
+                # height
                 self.assertAlmostEqual(pin["pressure offset along t [m]"], -FRICTION * height / 2, delta=0.05 * FRICTION * height / 2)
                 self.assertGreater(pin["backplate travel [m]"], 0)
                 self.assertGreater(pin["largest pressure [Pa]"], pin["load [N]"] / (math.pi * 0.026**2))
@@ -137,13 +138,13 @@ class State(SlidingTest):
         state = VtuFile(self.results / "sliding_state.vtu")
         ends = [(point, u) for point, u in zip(state.points, state.fields["displacement"]) if abs(abs(point[2]) - 0.05495) < 1e-6]
         self.assertGreater(len(ends), 0)
-        # The clamped ends of the pins move with their backplate
+        # The clamped end of a pin moves with its backplate
         way = self.pins["pin_top_1"]["backplate travel [m]"]
         for (_, _, z), u in ends:
             self.assert_close(u, (0, 0, -math.copysign(way, z)), SINGLE)
 
     def test_state_does_not_matter_without_dissipation(self):
-        # If all nodes are closed, reactions only enter through the dissipation
+        # If all nodes are closed, reactions affect only the dissipation
         self.assert_same_eigenvalues(eigenvalues(self.run_scene("steady", STEADY)), eigenvalues(self.run_scene("plain")))
 
 
@@ -172,7 +173,7 @@ class Gaps(SlidingTest):
         return [int(pin["open nodes [-]"]) for pin in pins(folder).values()]
 
     def test_short_and_worn_pins(self):
-        # Worn at its trailing edge, where friction reduces the pressure
+        # A pin is worn at its trailing edge, where friction reduces the pressure
         results = self.run_scene("results", STEADY, CONSISTENT, "Steady sliding/Gaps=pin_top_1: 2e-5; pin_bottom_2: 0, 4e-4, 0", *SHAPES)
         n_open = self.assert_open_nodes(results)
         self.assertEqual(n_open[:3], [7, 0, 0])
@@ -190,7 +191,7 @@ class Gaps(SlidingTest):
 
 @unittest.skipUnless(importlib.util.find_spec("scipy"), "needs SciPy")
 class Independent(SlidingTest):
-    """The same state and modes from the exported matrices alone."""
+    """The state and the modes, computed independently from the exported matrices."""
 
     CASES = {"even": (0.4, {}), "strong friction": (1.0, {}), "hardly touching": (0.4, {"pin_top_1": (1e-5, 0, 0)}),
              "short": (0.4, {"pin_top_1": (2e-5, 0, 0)}), "worn": (0.4, {"pin_bottom_2": (0, 4e-4, 0), "pin_top_1": (-1e-6, 0, -1e-4)}),
@@ -199,7 +200,7 @@ class Independent(SlidingTest):
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
-        # Equal load keeps all contact nodes; all runs have the same mesh
+        # With equal load, all contact nodes are kept; all runs have the same mesh
         cls.matrices = cls.run_scene("matrices", "Output/Write matrices=true")
 
     def run_case(self, friction, gaps, *overrides):
@@ -208,7 +209,8 @@ class Independent(SlidingTest):
                               "Output/Write matrices=true", *overrides)
 
     def assert_same_state(self, results, contact, friction, compressions, ways):
-        """Compares loads, travel and open nodes of the table, and reactions, to which the dissipation is proportional."""
+        """Compares loads, travel and open nodes in the table, and the reactions, to which the dissipation is
+        proportional."""
         import scipy.io
         table = pins(results)
         compression = {name: [p for p, pin in zip(compressions, contact.pins) if pin == name] for name in PINS}
@@ -264,7 +266,7 @@ class Damping(SlidingTest):
         cls.values = eigenvalues(cls.results)
 
     def test_damping_of_the_mass(self):
-        # With friction, too: lambda^2 + alpha lambda replaces lambda^2
+        # Also with friction: lambda^2 + alpha lambda replaces lambda^2
         alpha = 20.0
         expected = []
         for value in self.values:
@@ -275,7 +277,7 @@ class Damping(SlidingTest):
 
     def test_damping_of_the_pins(self):
         beta = 1e-8
-        # Without friction it damps all modes: pin modes by beta omega / 2, since the disc hardly moves
+        # Without friction, it damps all modes: pin modes by beta omega / 2, because the disc hardly moves
         still = self.run_scene("still", "Operation/Friction coefficient=0", f"Pin material/Rayleigh beta={beta}")
         for value in eigenvalues(still):
             self.assertLessEqual(value.real, 1e-9)
@@ -286,7 +288,7 @@ class Damping(SlidingTest):
             self.assertAlmostEqual(value.real, -beta * abs(value) ** 2 / 2, delta=1e-3 * beta * abs(value) ** 2 / 2)
 
     def test_friction_slope(self):
-        # A rising friction coefficient is stabilising, a falling one destabilising
+        # Friction that rises with speed stabilises, friction that falls destabilises
         for state in ([], [STEADY]):
             without = self.run_scene("without", *state) if state else self.results
             sums = {}
@@ -301,7 +303,7 @@ class Damping(SlidingTest):
             self.assertAlmostEqual(sums[-0.01], -sums[0.01], delta=1e-3 * sums[-0.01])
 
     def test_modal_damping(self):
-        # Without friction modes are uncoupled; the ratio is 0.01 at 0 Hz and 0.03 at 5000 Hz
+        # Without friction, modes are uncoupled; the ratio is 0.01 at 0 Hz and 0.03 at 5000 Hz
         damped = self.run_scene("damped", "Operation/Friction coefficient=0", "Damping/Modal damping ratio=0: 0.01, 5000: 0.03")
         expected = []
         for frequency in real_frequencies(damped):
@@ -311,11 +313,12 @@ class Damping(SlidingTest):
 
 
 class Shoes(SlidingTest):
-    """Bodies pressed on the rim of a ring, with radial contact normals."""
+    """Shoes pressed on the rim of a ring, with radial contact normals."""
 
     @classmethod
     def write_shoes(cls, name, *parts, n_parts=24):
-        """Writes a ring with shoes, each from one part of the circle to another, as NAME.msh and NAME.prm."""
+        """Writes a ring with shoes as NAME.msh and NAME.prm; each shoe extends from one part of the circle to another.
+        """
         mesh, levels = HexMesh(), [-0.02, 0, 0.02]
         disc = mesh.block("disc", [0.15, 0.2, 0.25, 0.3], angles(n_parts), levels, is_ring=True)
         mesh.name(disc["-a"].values(), "disc_bore")

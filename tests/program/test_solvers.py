@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The same eigenvalues by all solvers, with and without friction, dissipation and rotation."""
+"""All solvers give the same eigenvalues, with and without friction, dissipation and rotation."""
 
 import json
 import math
@@ -8,7 +8,7 @@ import math
 from mesh_file import MeshFile
 from program import COARSE, ProgramTest, distance, eigenvalues, numbers, read_table, real_frequencies
 
-# The default tolerance of 1e-7 of the residual iteration is too large for the comparison
+# The default tolerance of the residual iteration, 1e-7, is too large for this comparison
 RESIDUAL_ITERATION = ["Complex modes/Solver=residual iteration", "Complex modes/Iteration tolerance=1e-10"]
 DISSIPATION = "Operation/Radial dissipation=consistent"
 
@@ -39,7 +39,7 @@ class Solvers(ProgramTest):
     def test_residual_iteration(self):
         self.assert_same_eigenvalues(eigenvalues(self.run_scene("results", *RESIDUAL_ITERATION)), self.values)
 
-        # Errors are within the default tolerance
+        # With the default tolerance, errors are below it
         results = self.run_scene("results", RESIDUAL_ITERATION[0])
         estimates = [float(row["estimated error of lambda [-]"]) for row in read_table(results / "complex_modes.csv")]
         self.assertLessEqual(max(estimates), 1e-7)
@@ -61,7 +61,7 @@ class Solvers(ProgramTest):
 
 
 class Rotation(ProgramTest):
-    """Reversed rotation is equivalent to a mirrored mesh."""
+    """Reversed rotation is equivalent to rotation with a mirrored mesh."""
 
     scene = COARSE
 
@@ -103,7 +103,7 @@ class Mounts(ProgramTest):
     scene = COARSE
 
     def test_free_disc(self):
-        # Pins only support the disc axially: it has three rigid-body modes in its plane
+        # Pins support the disc only axially: it has three rigid-body modes in its plane
         for overrides in (["Mounts/Elastic mounts=", DISSIPATION], ["Mounts/Elastic mounts=disc_bore: 0, 0, 1.88e10"]):
             values = []
             for solver in ([], RESIDUAL_ITERATION):
@@ -118,5 +118,5 @@ class Mounts(ProgramTest):
                     for table in ("real_modes.csv", "complex_modes.csv", "component_modes.csv"):
                         self.assertTrue(all(abs(number) < 1e9 for number in numbers(results / table)), table)
                     values.append(eigenvalues(results))
-            # Rounding errors of K reduce the accuracy of very low modes
+            # Rounding errors of K reduce the accuracy of modes with very low frequencies
             self.assert_same_eigenvalues(*values, 1e-7)

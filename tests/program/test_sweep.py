@@ -18,10 +18,10 @@ KRYLOV = ["Complex modes/Solver=Krylov", "Complex modes/Tolerance=1e-11"]
 # Default parameters
 SPEED, LOAD, TOLERANCE, THRESHOLD_TOLERANCE = 4.0, 1000.0, 1e-6, 1e-6
 
-# Twice the tolerance, since estimates are not bounds [-]
+# Twice the tolerance, because estimates are not bounds [-]
 DEFAULT_ACCURACY = 2 * TOLERANCE
 
-# Least growth per radian of a growing mode, and rounding of numbers in tables [-]
+# Smallest growth per radian of a growing mode, and rounding error of numbers in tables [-]
 GROWING, PRINTED = 1e-8, 1e-10
 
 
@@ -30,12 +30,12 @@ def eigenvalue(row):
 
 
 def divergence(value):
-    """Growth per radian."""
+    """Growth per radian of an eigenvalue."""
     return value.real / value.imag
 
 
 def by_mu(rows):
-    """Friction coefficient -> rows of a table, ascending as in the table."""
+    """Rows of a table by friction coefficient, in the order of the table."""
     result = {}
     for row in rows:
         result.setdefault(float(row["mu [-]"]), []).append(row)
@@ -63,7 +63,7 @@ class SweepTest(ProgramTest):
 
     @classmethod
     def alone(cls, mu, *overrides):
-        """Results of a run at one friction coefficient, at full order."""
+        """Result folder of a run at one friction coefficient, at full order."""
         return cls.shared(*KRYLOV, f"Operation/Friction coefficient={mu!r}", *overrides)
 
     @classmethod
@@ -71,7 +71,7 @@ class SweepTest(ProgramTest):
         return eigenvalues(cls.alone(mu, *overrides))
 
     def assert_same_modes(self, actual, expected, tolerance):
-        """Compares lambda and growth per radian with those of another run."""
+        """Compares lambda and growth per radian with the results of another run."""
         self.assert_same_eigenvalues(actual, expected, tolerance)
         left = list(expected)
         for value in actual:
@@ -80,7 +80,8 @@ class SweepTest(ProgramTest):
             self.assertAlmostEqual(divergence(value), divergence(nearest), delta=tolerance)
 
     def assert_complete(self, folder, suffix=""):
-        """Checks that branches have the numbers of modes in counts.csv, each branch once per friction coefficient."""
+        """Checks that the branches contain the numbers of modes in counts.csv, each branch once for each friction
+        coefficient."""
         rows = by_mu(read_table(folder / f"branches{suffix}.csv"))
         counts = read_table(folder / f"counts{suffix}.csv")
         self.assertEqual([float(row["mu [-]"]) for row in counts], list(rows))
@@ -108,7 +109,7 @@ class SweepTest(ProgramTest):
 
 
 class Sweep(SweepTest):
-    """A sweep with consistent radial dissipation, and its chart without."""
+    """A sweep with consistent radial dissipation, and its chart without dissipation."""
 
     @classmethod
     def setUpClass(cls):
@@ -142,10 +143,10 @@ class Sweep(SweepTest):
                 self.assertEqual(row["growing [-]"], "1" if rate > GROWING else "0", row)
                 if row["verdict"] == "unstable":
                     self.assertGreater(rate, 0)
-                # Near coalescence, even larger rates are undecided
+                # Near coalescence, larger rates may also be undecided
                 elif row["refinement [-]"] == "0":
                     self.assertLess(rate, 10 * TOLERANCE, row)
-            # Branches are complete, and each keeps its label
+            # Branches are complete, and each branch keeps its label
             branches = {}
             for row in (row for here in rows.values() for row in here):
                 branches.setdefault(row["branch [-]"], []).append(row["label"])
@@ -160,7 +161,7 @@ class Sweep(SweepTest):
                     self.assert_same_modes(modes[mu], self.modes_at(mu, *overrides), DEFAULT_ACCURACY)
 
     def test_complex_plane(self):
-        """Modes agree with a run at that friction coefficient, also between values of the sweep."""
+        """Modes agree with a run at the same friction coefficient, also between values of the sweep."""
         rows = read_table(self.results / "complex_plane.csv")
         self.assertEqual(list(dict.fromkeys((float(row["mu [-]"]), row["radial dissipation"]) for row in rows)),
                          [(mu, dissipation) for mu in (0.33, 0.4) for dissipation in ("consistent", "none")])
@@ -187,14 +188,14 @@ class Sweep(SweepTest):
                 self.assertIn(row["event"], ("onset", "restabilisation"))
                 self.assertTrue(0 < row["uncertainty [-]"] < 1e-4, row)
                 self.assertEqual(row["partner [-]"] != "", mechanism == "coalescence")
-            # A mode that coalesces alone; several pin modes grow at nearly the same value
+            # A mode that coalesces alone; by contrast, several pin modes grow at nearly the same value
             row, = [row for row in found if row["label"] == "A1-2 +"]
             step = max(1e-5, row["uncertainty [-]"])
             below, above = (sum(divergence(value) > GROWING for value in self.modes_at(row["mu [-]"] + sign * step, *overrides)) for sign in (-1, 1))
             self.assertEqual(above - below, 1 if row["event"] == "onset" else -1, row)
 
     def test_thresholds_lie_between_the_values_of_the_sweep(self):
-        """The verdicts of a branch only change at its thresholds."""
+        """The verdict of a branch changes only at its thresholds."""
         for suffix in ("", "_without_dissipation"):
             rows = [row for row in read_table(self.results / f"branches{suffix}.csv") if row["refinement [-]"] == "0"]
             events = thresholds(self.results, f"thresholds{suffix}.csv")
@@ -207,14 +208,14 @@ class Sweep(SweepTest):
 
     def test_mode_shapes(self):
         modes = sorted(path.name for path in (self.results / "modes").iterdir())
-        # Named after the mode at this friction coefficient, not after the start of the branch
+        # Labelled like the mode at this friction coefficient, not like the start of the branch
         leader = max(read_table(self.alone(0.4, CONSISTENT) / "complex_modes.csv"), key=lambda row: float(row["divergence rate [%]"]))
         name = f"mu_0.4_{leader['label'].replace(' ', '_')}"
         self.assertEqual(modes, [f"{name}.vtu", f"{name}_contact.vtu"])
         self.assertEqual(sorted(path.name for path in (self.results / "animations").iterdir()), [f"{name}.pvd", f"{name}_frames"])
 
     def test_no_mode_shape_where_none_grows(self):
-        """Shapes of leading modes without a complex plane write the plane at the same friction coefficient."""
+        """If mode shapes but no complex plane are requested, the plane is written at the same friction coefficient."""
         screen = self.screen_of("quiet", "Sweep/Last friction coefficient=0.1", "Sweep/Number of friction coefficients=2", CONSISTENT,
                                 "Sweep/Compare dissipation=false", "Sweep/Mode shapes at=0.1", "Output/Mode shapes=unstable")
         self.assertIn("no mode grows at mu = 0.1", screen)
@@ -233,7 +234,7 @@ class Sweep(SweepTest):
             self.assert_same_modes(modes[mu], self.modes_at(mu, CONSISTENT), 2e-8)
 
     def test_maps(self):
-        """Contact damping is proportional to load over speed; nothing else depends on these."""
+        """Contact damping is proportional to load over speed; nothing else depends on load and speed."""
         by_load = read_table(self.results / "map.csv")
         fast = self.sweep("fast", CONSISTENT, "Sweep/Number of friction coefficients=4", "Sweep/Compare dissipation=false",
                           "Sweep/Map parameter=speed", "Sweep/First map value=1", "Sweep/Last map value=16", *MAP)
@@ -251,7 +252,7 @@ class Sweep(SweepTest):
         self.assertTrue(any(one["unstable modes [-]"] != "0" for one, _ in places.values()))
         for (mu, _), (one, other) in places.items():
             self.assertEqual(one["unstable modes [-]"], other["unstable modes [-]"])
-            # The least damped of several modes that do not grow depends on rounding
+            # Among modes that do not grow, it depends on rounding which is the least damped
             if one["unstable modes [-]"] != "0":
                 self.assertLessEqual(distance([eigenvalue(one)], [eigenvalue(other)]), DEFAULT_ACCURACY, mu)
                 self.assertEqual(one["label"], other["label"])
@@ -266,7 +267,8 @@ class Sweep(SweepTest):
 
 
 class Onsets(SweepTest):
-    """The onset of squeal with unequal material damping: the same in the summary, all tables and runs at single friction coefficients."""
+    """Onset of squeal with unequal material damping: the summary, all tables and runs at single friction coefficients
+    agree."""
 
     DAMPED = ["Disc material/Rayleigh beta=1.8e-8", "Pin material/Rayleigh beta=4.5e-7"]
 
@@ -308,7 +310,7 @@ class Onsets(SweepTest):
             self.assertGreater(above, level)
 
     def test_growth_at_the_only_value(self):
-        """The onset lies below the only value; the uncertainty extends to zero."""
+        """If the onset lies below the only value of the sweep, its uncertainty extends to zero."""
         results = self.sweep("late", *self.DAMPED, "Sweep/First friction coefficient=0.4", "Sweep/Number of friction coefficients=1")
         for row in read_table(results / "onsets.csv"):
             self.assertEqual((row["mu [-]"], row["uncertainty [-]"]), ("0.4", "0.4"))
@@ -324,12 +326,12 @@ class OtherSweeps(SweepTest):
     def test_small_basis(self):
         screen = self.screen_of("small", CONSISTENT, "Sweep/Compare dissipation=false", "Sweep/Maximum basis=40", "Sweep/Tolerance=1e-9",
                                 "Sweep/Count modes at=0.4", "Sweep/Mode shapes at=0.4", "Output/Mode shapes=unstable")
-        # Reported once, although three outputs are affected
+        # Reported once, although it affects three outputs
         self.assertEqual(screen.count("at mu = 0.4 the modes miss the tolerance"), 1)
         self.assertIn("operating points miss the tolerance", screen)
         self.assertIn("Sweep/Maximum basis", screen)
         results = self.folder / "small"
-        # Without friction the real modes in the basis are exact
+        # Without friction, the real modes in the basis are exact
         self.assertEqual(list(grid_of(results)), [0.0])
         self.assertNotIn("stable: no mode", screen)
         self.assert_within_tolerance(results, 1e-9)
@@ -337,7 +339,7 @@ class OtherSweeps(SweepTest):
 
     def test_end_of_band(self):
         wide = self.sweep("wide", "Sweep/Number of friction coefficients=4")
-        # The band ends at the mean frequency of the branch whose frequency changes most
+        # Let the band end at the mean frequency of the branch whose frequency changes most
         branches = {}
         for row in read_table(wide / "branches.csv"):
             branches.setdefault(row["branch [-]"], []).append(float(row["frequency [Hz]"]))

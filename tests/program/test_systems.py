@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Systems of matrices instead of a mesh: compared with dense eigenvalues and closed forms, written and read back."""
+"""Systems of matrices instead of a mesh: compared with dense eigenvalues and closed forms; written and read back."""
 
 import csv
 import importlib.util
@@ -17,10 +17,10 @@ HAS_NUMPY = importlib.util.find_spec("numpy") is not None
 if HAS_NUMPY:
     import numpy as np
 
-BAND = 3.  # [Hz]
+BAND = 3.  # end of the band [Hz]
 STUDY = "set System = system\nset Study = {study}\nsubsection Band\n  set Maximum frequency = {band}\nend\n"
 
-# k_11, k_22, k_12 and the contact stiffness of two degrees of freedom with friction (Hoffmann et al. 2002)
+# k_11, k_22, k_12 and the contact stiffness of a system with two degrees of freedom and friction (Hoffmann et al. 2002)
 FLUTTER = (100., 80., -30., 60.)
 
 
@@ -31,7 +31,8 @@ def matrix_text(A):
 
 class SystemTest(ProgramTest):
     def write_system(self, parameters, terms, folder="system", **more):
-        """Terms as (power, coefficient, matrix, symmetry); parameters as name: (value, lower, upper)."""
+        """Writes a system. Terms are (power, coefficient, matrix, symmetry); parameters are name: (value, lower,
+        upper)."""
         for number, (_, _, A, _) in enumerate(terms):
             self.write(f"{folder}/A{number}.mtx", matrix_text([[float(x) for x in row] for row in A]))
         description = {"format": "squeal system", "version": 1,
@@ -69,7 +70,7 @@ def flutter_terms():
 
 
 def flutter_squares(mu):
-    """λ² of the two modes."""
+    """λ² of the two modes of the flutter system."""
     k11, k22, k12, k_c = FLUTTER
     discriminant = ((k11 - k22) / 2.) ** 2 + k12 * (k12 + mu * k_c)
     root = complex(discriminant) ** 0.5
@@ -77,7 +78,7 @@ def flutter_squares(mu):
 
 
 class Flutter(SystemTest):
-    """Two degrees of freedom with closed forms."""
+    """A system with two degrees of freedom that has closed-form solutions."""
 
     MU_C = (((FLUTTER[0] - FLUTTER[1]) / 2.) ** 2 + FLUTTER[2] ** 2) / (-FLUTTER[2] * FLUTTER[3])
 
@@ -121,7 +122,7 @@ class Flutter(SystemTest):
             self.assertAlmostEqual(2. * math.pi * row["frequency per unit [Hz]"], expected.imag, delta=1e-5 * abs(expected))
 
     def test_refusals(self):
-        """Each mistake has one message with file and entry."""
+        """Each mistake gives one message with file and entry."""
         singular = [(2, "1", [[1., 0.], [0., 0.]], "symmetric"), (0, "1", [[1., 0.], [0., 0.]], "symmetric")]
         mass, stiffness, friction = flutter_terms()
         cases = [([mass, stiffness, (0, "1", [[1.]], "none")], ["1 rows", "A2.mtx", "terms[3].matrix"]),
@@ -155,7 +156,8 @@ class Flutter(SystemTest):
             self.assert_message(self.call("study.prm", "--output", "refused", "--set", override), mentions)
 
     def test_maximum_rate(self):
-        """Lightly and heavily damped modes, with and without a definite part: the modes and their number agree with the QZ algorithm."""
+        """Lightly and heavily damped modes, with and without a definite part: the modes and their number agree with the
+        QZ algorithm."""
         n, end = 16, 2. * math.pi * BAND
         chain = 200. * np.eye(n) - 90. * (np.eye(n, k=1) + np.eye(n, k=-1))
         damping = np.diag(np.where(np.arange(n) % 4 == 1, 24., 0.06 + 0.02 * np.arange(n)))
@@ -174,7 +176,7 @@ class Flutter(SystemTest):
                     self.assertEqual(counts["complex modes counted by the argument principle"], len(expected))
 
     def test_growth_beyond_the_maximum_rate(self):
-        """Faster growing modes are listed but not counted; a contour through an eigenvalue is rejected."""
+        """Modes that grow faster are listed but not counted; a contour through an eigenvalue is rejected."""
         identity = np.eye(3)
         self.write_system({}, [(2, "1", identity, "symmetric"), (1, "1", np.diag([-3., 0.5, 1.]), "symmetric"), (0, "1", np.diag([90., 100., 110.]), "symmetric")])
         found = self.lambdas(self.study("stability", "Band/Maximum rate=0.3"))
@@ -217,7 +219,7 @@ class Flutter(SystemTest):
         self.assert_message(self.call("study.prm", "--output", "refused", "--set", "Reduction/Bases=real"), ["no definite part", "POD"])
 
     def check_reduction(self, n):
-        """POD and a written reduced model against the modes at full order of a system without a definite part."""
+        """Compares POD and a written reduced model with full-order modes, for a system without a definite part."""
         results = self.study("reduction", "Band/Maximum frequency=1.5", "Reduction/Snapshots=0.6, 1.5", "Reduction/POD tolerance=1e-9")
         for row in self.rows(results, "reduction_modes"):
             self.assertLess(row["error of lambda [-]"], 1e-5)
@@ -239,7 +241,8 @@ class Flutter(SystemTest):
                 self.assertLess(min(abs(value - other) for other in expected), 2e-8 * abs(value))
 
     def test_flutter_with_multiplier(self):
-        """Flutter of two dofs and a third one fixed by a Lagrange multiplier: threshold, map and samples at full order."""
+        """Flutter of two dofs, with a third dof fixed by a Lagrange multiplier: threshold, map and samples at full
+        order."""
         padded = [(power, coefficient, [[*row, 0., 0.] for row in A] + [[0.] * 4] * 2, symmetry) for power, coefficient, A, symmetry in flutter_terms()]
         mass, stiffness, friction = ([list(row) for row in term[2]] for term in padded)
         mass[2][2] = 1.
@@ -268,7 +271,7 @@ class Flutter(SystemTest):
         self.assertAlmostEqual(squeal_probability, 100. * (1. - self.MU_C), delta=5.)
 
     def test_derivatives_of_expressions(self):
-        """Rapidly varying, huge and tiny values: the step of differences adapts to the expression."""
+        """Rapidly varying, huge and tiny values: the difference step adapts to the expression."""
         for expression, value, theta, rate in (("exp(-t/1e-3)", 1e-3, 1. / math.e, -1e3 / math.e), ("sqrt(t)", 1e12, 1e6, 0.5e-6),
                                                ("1e-6/(t+1e-6)", 1e-6, 0.5, -0.25e6), ("t^1.5", 1e-5, 1e-5 ** 1.5, 1.5 * 1e-5 ** 0.5)):
             self.write_system({"t": (value, 0.5 * value, 2. * value)},
@@ -279,7 +282,7 @@ class Flutter(SystemTest):
             self.assertAlmostEqual(2. * math.pi * row["frequency per unit [Hz]"], expected, delta=1e-6 * abs(expected))
 
     def test_complete_basis(self):
-        """With all modes in the band, a sweep uses no more vectors than dofs."""
+        """If all modes are in the band, a sweep uses no more vectors than dofs."""
         n = 6
         K = [[200. if i == j else -90. if abs(i - j) == 1 else 0. for j in range(n)] for i in range(n)]
         F = [[40. if j == i + 1 else -25. if j == i - 2 else 0. for j in range(n)] for i in range(n)]
@@ -294,7 +297,7 @@ class Flutter(SystemTest):
         self.assert_message(self.call("study.prm", "--output", "refused"), ["no parameters", "system.json"])
 
     def test_strict_files(self):
-        """Numbers that lenient readers misread."""
+        """Numbers that a lenient reader would misread."""
         self.write("study.prm", STUDY.format(study="stability", band=BAND))
         head = "%%MatrixMarket matrix coordinate real "
         for text, mentions in ((head + "general\n2 2 2\n1 1 1.5D2\n2 2 1\n", ["line 3", "1.5D2"]), (head + "general\n2 2 1\n1 1 3,5\n", ["3,5"]),
@@ -383,7 +386,7 @@ class Brake(SystemTest):
                 self.assert_same(found, self.eigenvalues(omega), 1e-8)
 
     def test_accuracy(self):
-        """Definite systems have backward errors and condition numbers, too."""
+        """Backward errors and condition numbers are also given for definite systems."""
         self.write_system({"omega": (2., 1., 4.)}, self.terms)
         results, exact = self.study("stability"), self.eigenvalues(2.)
         for row, value in zip(self.rows(results, "complex_modes"), self.lambdas(results)):
@@ -393,7 +396,7 @@ class Brake(SystemTest):
             self.assertLess(min(abs(value - other) for other in exact), (10. * row["error of lambda [-]"] + 1e-10) * abs(value))
 
     def test_reduction(self):
-        """Bases of modes and their responses meet their estimated errors."""
+        """Errors of bases of modes and their responses are within the estimated errors."""
         self.write_system({"omega": (2., 1., 4.)}, self.terms)
         results = self.study("reduction", "Reduction/Snapshots=1, 2.5, 4", "Reduction/Grown tolerances=1e-4, 1e-7")
         bases = {row["basis"]: row for row in self.rows(results, "reduction_bases")}
@@ -437,7 +440,7 @@ class Brake(SystemTest):
             self.assertLess(abs(found - expected), 1e-5 * max(abs(expected), 1e-2 * abs(at[j])))
 
     def test_units(self):
-        """Dofs in units that differ by up to 14 decades, and a massless dof on a spring, do not change eigenvalues."""
+        """Eigenvalues do not change if units of dofs differ by up to 14 decades, or with a massless dof on a spring."""
         reference = self.eigenvalues(2.)
         d = 10. ** np.linspace(-7., 7., self.N)
         scaled = [(power, coefficient, d[:, None] * A * d, symmetry) for power, coefficient, A, symmetry in self.terms]
@@ -449,7 +452,7 @@ class Brake(SystemTest):
 
 
 class RoundTrip(SystemTest):
-    """Systems written by runs on a mesh and read back give the same tables."""
+    """Systems that are written by runs on a mesh and read back give the same tables."""
 
     def system_of(self, folder):
         self.write("again.prm", STUDY.format(study="stability", band=5000).replace("= system\n", f"= {folder}/system\n"))
@@ -468,7 +471,7 @@ class RoundTrip(SystemTest):
                     self.assertLess(abs(value - other), SAME * abs(other))
 
     def test_shapes(self):
-        """A point for each free node with its displacement; bodies become groups."""
+        """There is a point with its displacement for each free node; bodies become groups."""
         results = self.run_scene("mesh", "Output/Write system=full", "Output/Mode shapes=all", "Output/Real mode shapes=true")
         again = self.run_scene("again", "Output/Mode shapes=all", "Output/Real mode shapes=true", "System=mesh/system")
         for name, field in (("complex_*", "displacement_real"), ("complex_*", "amplitude"), ("real_*", "amplitude")):
@@ -497,7 +500,7 @@ class RoundTrip(SystemTest):
             self.assertAlmostEqual(sum(row[column] for column in bodies), 100., places=3)
 
     def test_processes(self):
-        """Two processes write and read the same points and groups as one."""
+        """Two processes write and read the same points and groups as one process."""
         self.run_scene("mesh", "Output/Write system=full")
         self.run_scene("mesh_2", "Output/Write system=full", n_processes=2)
         found = [self.run_scene(f"again_{n}", "Output/Mode shapes=all", f"System={mesh}/system", n_processes=n) for n, mesh in ((1, "mesh"), (2, "mesh_2"))]
@@ -509,7 +512,7 @@ class RoundTrip(SystemTest):
         self.assertEqual(set(points), set(others))
 
     def test_derivatives(self):
-        """Derivatives with respect to factors of terms are the same for the mesh and its system."""
+        """Derivatives with respect to factors of terms agree for the mesh and its system."""
         damping = ["Pin material/Rayleigh beta=1e-7", "Disc material/Rayleigh alpha=2", "Materials/Volumes=pin_top_1: 2e9, 0.25, 3000",
                    "Operation/Gyroscopic forces=true", "Mounts/Dashpots=disc_bore: 0, 1e4, 1e4"]
         study = ["Study=sensitivity", "Sensitivity/Thresholds=false", "Sensitivity/Geometry=none", "Sensitivity/Tolerance=1e-10", "Sensitivity/Largest number of modes=3"]
@@ -575,7 +578,7 @@ class RoundTrip(SystemTest):
 
     @unittest.skipUnless(importlib.util.find_spec("scipy"), "needs SciPy")
     def test_independent_solver(self):
-        """SciPy on the system of a mesh, read by the Python module."""
+        """Eigenvalues by SciPy for the system of a mesh, read by the Python module."""
         results = self.run_scene("mesh", "Output/Write system=full", "Operation/Radial dissipation=consistent")
         system = squeal.System.read(results / "system")
         for value in self.lambdas(results)[::9]:

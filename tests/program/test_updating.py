@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Parameters fitted to synthetic measured modes: true values are recovered, undetermined parameters are reported."""
+"""Fits to synthetic measured modes: true parameter values are recovered, undetermined parameters are reported."""
 
 import collections
 import csv
@@ -11,10 +11,10 @@ import numpy as np
 
 from program import COARSE, ProgramTest, read_table
 from squeal.vtu_file import VtuFile
-import test_systems  # as a module, so that its tests are not run again
+import test_systems  # imported as a module, so that its tests are not run again
 
-BENDING = 3000.  # [Hz]
-FOUND = 1e-6  # relative difference of a recovered parameter
+BENDING = 3000.  # frequency of the bending modes of the pins [Hz]
+FOUND = 1e-6  # largest relative error of a recovered parameter
 
 
 def csv_text(rows, columns=("state", "label", "frequency [Hz]")):
@@ -22,8 +22,8 @@ def csv_text(rows, columns=("state", "label", "frequency [Hz]")):
 
 
 def unique_modes(results, state):
-    """State, label and frequency of modes with a unique label, and their rows; only below the bending modes of the pins, which mix with
-    disc modes and change their labels."""
+    """State, label and frequency of modes with a unique label, and their rows. Only modes below the bending modes of
+    the pins are used, because these mix with disc modes, whose labels then change."""
     rows = [row for row in read_table(results / f"{'real' if state == 'coupled' else state}_modes.csv")
             if (row.get("component"), row.get("contact")) in ((None, None), ("disc", "free"), ("pins", "sliding"))]
     number = collections.Counter(row["label"] for row in rows)
@@ -35,7 +35,7 @@ class OfScene(ProgramTest):
     scene = COARSE
 
     def measure(self, states, *truth):
-        """Modes of the model with true values of the fitted parameters."""
+        """Modes of the model with the true values of the fitted parameters."""
         results = self.shared(*truth)
         return [mode for state in states for mode in unique_modes(results, state)]
 
@@ -63,7 +63,7 @@ class OfScene(ProgramTest):
         self.assertEqual(len(fit), len(modes))
         self.assertLess(max(abs(float(row["residual after the fit [-]"])) for row in fit), 1e-6)
         self.assertGreater(max(abs(float(row["residual at start [-]"])) for row in fit), 1.)
-        # The parameter file has the fitted values, and its run the measured modes
+        # The written parameter file has the fitted values, and its run the measured modes
         again = self.run_scene("again", file=str(results / "updated.prm"))
         found = {label: float(frequency) for (_, label, frequency), _ in unique_modes(again, "coupled")}
         for (state, label, frequency), _ in modes:
@@ -92,7 +92,7 @@ class OfScene(ProgramTest):
         self.assertEqual(sum(row["quantity"] == "damping ratio" for row in read_table(results / "fit.csv")), len(rows))
 
     def test_shapes_at_sensors(self):
-        """Modes without labels are identified by their shapes at fourteen sensors, wrong shapes are rejected."""
+        """Modes without labels are identified by their shapes at fourteen sensors; wrong shapes are rejected."""
         value = 2800.
         truth = self.run_scene("truth", f"Pin material/Density={value}", "Output/Real mode shapes=true", "Output/Mode shapes=all")
         random = np.random.default_rng(1)
@@ -137,7 +137,7 @@ class OfScene(ProgramTest):
         for row in read_table(results / "component_modes.csv"):
             if (row["component"], row["contact"]) == ("pins", "sliding"):
                 pins.setdefault(row["label"], []).append(float(row["frequency [Hz]"]))
-        # Frequencies of clamped pins depend on the ratio of modulus and density
+        # Frequencies of clamped pins determine only the ratio of modulus and density
         rows = [("component", label, 1.01 * sum(found) / len(found)) for label, found in pins.items()]
         self.write("modes.csv", csv_text([*rows, *modes]))
         process = self.call_scene("alike", "Study=updating", "Updating/Measured modes=modes.csv",
@@ -200,7 +200,7 @@ class OfScene(ProgramTest):
 
 
 class OfSystem(test_systems.SystemTest):
-    """Two masses with stiffnesses a and b and damping c."""
+    """Updating of a system of two masses with stiffnesses a and b and damping c."""
 
     A, B = [[2., -1.], [-1., 2.]], [[1., 0.], [0., 3.]]
 
@@ -228,7 +228,7 @@ class OfSystem(test_systems.SystemTest):
             self.assertEqual(rows[name]["status"], "determined")
 
     def test_standard_deviation_is_that_of_the_closed_form(self):
-        # One frequency f = sqrt(k / m) / 2 pi with deviation s: the deviation of k is 2 k s / f
+        # For one frequency f = sqrt(k / m) / 2 pi with deviation s, the deviation of k is 2 k s / f
         self.write_system({"k": (90., 50., 150.)}, [(2, "1", [[1.]], "symmetric"), (0, "k", [[1.]], "symmetric")])
         frequency = math.sqrt(100.) / (2. * math.pi)
         self.write_modes([("coupled", "mode 1", frequency, 0.01)], ("state", "label", "frequency [Hz]", "deviation [Hz]"))

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Growing waves of a sliding pad, compared with the continuum solved by Chebyshev polynomials: doc/well_posedness.md."""
+"""Growing waves of a sliding pad, compared with a solution of the continuum by Chebyshev polynomials:
+doc/well_posedness.md."""
 
 import math
 import os
@@ -27,14 +28,14 @@ class Continuum(unittest.TestCase):
     def test_half_space_flutters_above_one(self):
         self.assertEqual(PAD.half_space(0.99), 0)
         self.assertGreater(PAD.half_space(1.01), 1e-3)
-        # Plane stress with the ratio nu is plane strain with nu / (1 + nu): 1 gives an incompressible half-space
+        # Plane stress with ratio nu is plane strain with nu / (1 + nu); nu = 1 gives an incompressible half-space
         exact = INCOMPRESSIBLE.imag / INCOMPRESSIBLE.real
         self.assertAlmostEqual(Layer(1.0, 1.0, 0.9999999, 1.0).half_space(2.0), exact, delta=1e-5)
 
 
 class Ring(ProgramTest):
     def test_growth_rates_converge_to_those_of_the_layer(self):
-        """The three fastest growing waves, on a ring with several waves so that its curvature hardly matters."""
+        """The three fastest growing waves, on a ring with several waves, so that its curvature has little effect."""
         exact = np.sort([max(values.real[abs(values.imag) < 2 * math.pi * 46e3])
                          for values in (PAD.eigenvalues(n / RADIUS, 1.5, 50) for n in (5, 6, 7))])[::-1]
         errors = []

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Messages of the program on wrong values, unused parameters and results."""
+"""Messages of the program about wrong values, unused parameters and results."""
 
 import os
 import pathlib
@@ -32,7 +32,8 @@ class Words(ProgramTest):
     # ------------------------------------------------------------------ values
 
     def test_refused_values(self):
-        """Messages have name, range, unit and location of the value; tests/parameters covers all kinds."""
+        """Messages contain name, range, unit and location of the value; tests/parameters covers all kinds of
+        parameters."""
         for value, words in {"Operation/Friction coefficient=-0.1": "Operation/Friction coefficient must lie in 0 ... 10, not -0.1\n",
                              "Operation/Load per side=heavy": "must be a number >= 0 N, not `heavy`\n"}.items():
             with self.subTest(value):

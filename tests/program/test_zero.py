@@ -21,7 +21,7 @@ except ImportError:
 sys.path.insert(0, str(SOURCE / "scripts"))
 from squeal import exported_matrices
 
-STIFFNESS = 1e4  # very soft mount [N/m³]
+STIFFNESS = 1e4  # stiffness of a very soft mount [N/m³]
 BANDS = (1000, 5000)
 
 
@@ -42,7 +42,8 @@ def warnings(folder):
 
 
 def of_a_rigid_disc(folder, stiffness):
-    """Frequencies [Hz] of a rigid disc mounted at its polygonal bore: along x and y ω² = k A / m, about z ω² = k ∫r² dA / J."""
+    """Frequencies [Hz] of a rigid disc with a mount on its polygonal bore: along x and y, ω² = k A / m; about z, ω² = k
+    ∫r² dA / J."""
     nodes = [row for row in read_table(folder / "matrices" / "nodes.csv") if row["component"] == "disc"]
     points = np.array([[float(row[f"{axis} [m]"]) for axis in "xyz"] for row in nodes])
     radii, height = np.hypot(points[:, 0], points[:, 1]), np.ptp(points[:, 2])
@@ -88,7 +89,7 @@ class SoftMount(ProgramTest):
         for folder in self.runs.values():
             with self.subTest(folder.name):
                 rows = read_table(folder / "complex_modes.csv")
-                # For all modes, and for slow modes
+                # One warning for all modes, and one for slow modes
                 limits = [float(text) for text in re.findall(r"below ([-+.e0-9]+) %", warnings(folder))]
                 self.assertEqual(len(limits), 2, warnings(folder))
                 for row in rows:
@@ -99,7 +100,7 @@ class SoftMount(ProgramTest):
                 counts = record(folder)["counts"]
                 for verdict in ("unstable", "undecided"):
                     self.assertEqual(counts[f"{verdict} modes"], sum(row["verdict"] == verdict for row in rows))
-                # The two modes along x and y have equal frequencies, hence undecided growth
+                # The two modes along x and y have equal frequencies, so that their growth is undecided
                 self.assertGreater(counts["undecided modes"], 0)
 
 

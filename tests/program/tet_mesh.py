@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""A small brake of quadratic tetrahedra with nonmatching faces, which tests write in several formats and modify."""
+"""A small brake of quadratic tetrahedra with nonmatching faces, which tests modify and write in several formats."""
 
 import itertools
 import math
@@ -8,9 +8,9 @@ import random
 
 from hex_mesh import CORNERS, SIDES, angles, cylindrical, write
 
-# Edges of a tetrahedron in the order of Gmsh's mid-side nodes; the first three are those of a triangle
+# Edges of a tetrahedron in Gmsh's order of mid-side nodes; the first three are the edges of a triangle
 EDGES = ((0, 1), (1, 2), (2, 0), (3, 0), (2, 3), (1, 3))
-KUHN = []  # six tetrahedra of a hexahedron by its corners, which share its main diagonal
+KUHN = []  # division of a hexahedron into six tetrahedra that share its main diagonal
 for axes in itertools.permutations(range(3)):
     tetrahedron, corner = [(0, 0, 0)], [0, 0, 0]
     for axis in axes:
@@ -22,7 +22,7 @@ for axes in itertools.permutations(range(3)):
 
 
 class TetMesh:
-    """Volumes of ten-node tetrahedra and named faces of six nodes."""
+    """A mesh of volumes of ten-node tetrahedra and of named faces with six nodes."""
 
     def __init__(self):
         self.points = []
@@ -38,7 +38,8 @@ class TetMesh:
         return self._known[key]
 
     def block(self, volume, a, b, c, sides, body=None, is_ring=False):
-        """Adds a grid over radii, angles and heights, cut into tetrahedra; `sides`: side of SIDES -> name. Blocks of a body share nodes."""
+        """Adds a grid given by radii, angles and heights, cut into tetrahedra. `sides`: name of each side in SIDES.
+        Blocks of a body share nodes."""
         n = [len(a) - 1, len(b) - 1, len(c) - 1]
         last = {"-": lambda axis: 0, "+": lambda axis: n[axis] - 1}
         for cell in itertools.product(*map(range, n)):
@@ -59,7 +60,7 @@ class TetMesh:
                         self.faces.append((name, nodes_of(face, EDGES[:3])))
 
     def moved(self, place, where=lambda volume: True):
-        """Moves nodes of some volumes to place(x, y, z)."""
+        """Moves the nodes of the volumes for which `where` is true to place(x, y, z)."""
         for node in {node for volume, nodes in self.cells if where(volume) for node in nodes}:
             self.points[node] = place(*self.points[node])
         return self
@@ -105,7 +106,7 @@ class TetMesh:
 
 
 def brake(n_parts=12, n_rings=2, pad_parts=3, backplate_parts=None, has_bond=False):
-    """A ring and two nonmatching pads of lining and backplate."""
+    """A ring and two nonmatching pads, each with lining and backplate."""
     mesh, t = TetMesh(), 0.012
     radii = [0.08 + 0.06 * i / n_rings for i in range(n_rings + 1)]
     mesh.block("disc", radii, angles(n_parts), [-t, t], {"-a": "disc_hub", "+c": "disc_top", "-c": "disc_bottom"}, is_ring=True)
@@ -125,7 +126,7 @@ def brake(n_parts=12, n_rings=2, pad_parts=3, backplate_parts=None, has_bond=Fal
 
 
 def clutch():
-    """Two coaxial discs with a pad between them in contact with both."""
+    """Two coaxial discs and a pad between them that touches both."""
     mesh, radii = TetMesh(), [0.08, 0.11, 0.14]
     for disc, low, high, face, side in (("disc_rear", -0.02, -0.008, "rear_face", "+c"), ("disc_front", 0.008, 0.02, "front_face", "-c")):
         mesh.block(disc, radii, angles(12), [low, high], {"-a": f"{disc}_hub", side: face}, body=disc, is_ring=True)
@@ -134,7 +135,7 @@ def clutch():
     return mesh
 
 
-# Parameter file of the brake
+# Parameter file of brake()
 BRAKE = """
 subsection Geometry
   set File = {file}

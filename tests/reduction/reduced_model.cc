@@ -23,7 +23,7 @@ namespace
     return Scene(extrude(polar_plan(0.1505, 0.3155, 1, 7, pins), layers(1, 2)), materials, operating(dissipation));
   }
 
-  /// The system with 3 % damping of its modes below 15 kHz.
+  /// The system with 3 % modal damping of its modes below 15 kHz.
   CoupledSystem with_modal_damping(CoupledSystem system)
   {
     const auto real = symmetric_modes(*system.stiffness, *system.mass, std::pow(2. * M_PI * 15000., 2));
@@ -51,7 +51,7 @@ TEST(ReducedModel, FullBasisGivesTheFullSpectrum)
       reduced.extend(view(T, n - 15, 15));
       ASSERT_EQ(reduced.size(), n);
 
-      // The upper end of the spectrum is less accurate in a random basis.
+      // In a random basis, the upper end of the spectrum is less accurate
       const double limit = 2. * M_PI * 20000.;
       for (const double mu : {0., 0.6})
         {
@@ -99,7 +99,7 @@ TEST(ReducedModel, ProjectsEveryBlock)
 
 TEST(ReducedModel, ModalDamping)
 {
-  // Alone and with a damping matrix, in a full basis and in a small one extended in parts
+  // Modal damping alone and with a damping matrix, in a full basis and in a small basis extended in parts
   const double limit = 2. * M_PI * 20000., mu = 0.6;
   for (const MaterialParameters &materials : {mounted(), damped(mounted())})
     {
@@ -130,7 +130,7 @@ TEST(ReducedModel, ModalDamping)
 
 TEST(ReducedModel, LessThanAFullBasisIsNotExact)
 {
-  // Shows that the first test fails if one direction is missing.
+  // Check that the first test detects a missing direction
   const Scene       s     = tiny_scene(RadialDissipation::none);
   const int         n     = s.coupled.map().n();
   const MultiVector T     = unit_vectors(s.coupled.map());

@@ -43,7 +43,7 @@ class CheckEigenvalues(unittest.TestCase):
         self.assertRegex(result.stdout + result.stderr, words)
 
     def change_a_mode(self, error=None):
-        """Changes a frequency by 1e-6, optionally with an estimated error for all modes."""
+        """Changes a frequency by a relative 1e-6; `error`: estimated error to be written for all modes."""
         header, *lines = (self.folder / "original" / "complex_modes.csv").read_text(encoding="utf-8").splitlines()
         cells = lines[2].split(",")
         lines[2] = ",".join([*cells[:2], repr(float(cells[2]) * (1 + 1e-6)), *cells[3:]])
@@ -57,7 +57,7 @@ class CheckEigenvalues(unittest.TestCase):
         self.assertGreater(max(growth_rates), 0.5)
 
     def test_system(self):
-        """Half of the stiffness has a coefficient given on the command line."""
+        """Half of the stiffness has a coefficient that is given on the command line."""
         problem = exported_matrices.couple(exported_matrices.read_matrices(self.run_directory), two_blocks.FRICTION_COEFFICIENT)
         shutil.rmtree(self.run_directory / "matrices")
         system = squeal.System({"part": squeal.Parameter(0.3, 0, 1)}, [

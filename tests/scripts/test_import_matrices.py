@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""scripts/import_matrices.py: the same matrices from all formats give the same system; ambiguous input is rejected."""
+"""scripts/import_matrices.py: matrices in all formats give the same system; ambiguous input is rejected."""
 
 import json
 import pathlib
@@ -46,12 +46,12 @@ TERMS = {"M": {"power": 2, "symmetry": "symmetric"}, "G": {"power": 1, "coeffici
 
 
 def abaqus(matrix, half, of=lambda row: f"{LABELS[row][0]},{LABELS[row][1]}"):
-    """Text of *MATRIX OUTPUT; one triangle of a symmetric matrix."""
+    """Text of *MATRIX OUTPUT; `half`: only one triangle of a symmetric matrix."""
     return "".join(f"{of(i)}, {of(j)}, {matrix[i, j]:.17e}\n" for i in range(9) for j in range(9) if matrix[i, j] and (j <= i or not half))
 
 
 def nastran(name, matrix, form, large):
-    """DMIG cards of real double precision; form 6 is symmetric with one triangle."""
+    """DMIG cards in double precision; form 6 is symmetric and contains one triangle."""
     star, width = ("*", 16) if large else ("", 8)
     lines = [f"{'DMIG':8}{name:8}{0:8}{form:8}{2:8}{0:8}{'':8}{'':8}{9 if form != 6 else '':8}"]
     for j, (node, dof) in enumerate(LABELS):
@@ -76,7 +76,7 @@ class ImportMatrices(unittest.TestCase):
         (self.folder / name).write_text(text, encoding="utf-8")
 
     def call(self, files, more=None, **of_terms):
-        """The process of an import with these entries of its terms."""
+        """The process of an import in which the terms have these entries."""
         terms = [{"name": name, **TERMS[name], **source, **of_terms.get(name, {})} for name, source in files.items()]
         config = {"parameters": {"omega": {"value": "4*_pi", "lower": "2*_pi", "upper": "8*_pi", "unit": "rad/s"}, "mu": {"value": 0.5}}, "terms": terms,
                   **(more or {})}
@@ -118,12 +118,12 @@ class ImportMatrices(unittest.TestCase):
         self.assert_rejected_again(files, "`powr` is unknown", "term 2", G={"powr": 1})
 
     def assert_rejected_again(self, files, *words, **of_terms):
-        """As assert_rejected(), after removing the folder of a previous success."""
+        """assert_rejected() after removing the output folder of a previous success."""
         subprocess.run(["rm", "-rf", self.folder / "system"], check=True)
         self.assert_rejected(files, *words, **of_terms)
 
     def test_matlab_7_3(self):
-        """Dense matrices are stored by columns, sparse ones by columns as a group."""
+        """Dense matrices are stored by columns; sparse matrices are stored by columns in a group."""
         if h5py is None:
             self.write("all.mat", "MATLAB 7.3 MAT-file, Platform: GLNXA64".ljust(124) + "\0\2IM" + 400 * " ")
             self.assert_rejected({"M": {"file": "all.mat"}}, "version 7.3", "h5py")
@@ -135,7 +135,7 @@ class ImportMatrices(unittest.TestCase):
             group["data"], group["ir"], group["jc"] = columns.data, columns.indices.astype("u8"), columns.indptr.astype("u8")
             group.attrs["MATLAB_sparse"] = np.uint64(9)
         head = b"MATLAB 7.3 MAT-file, Platform: GLNXA64".ljust(124) + b"\0\2IM"
-        # HDF5 begins after a block of 512 bytes
+        # In these files, HDF5 data begin after a block of 512 bytes
         (self.folder / "all.mat").write_bytes(head.ljust(512, b"\0") + (self.folder / "all.h5").read_bytes())
         self.assert_imported({name: {"file": "all.mat", "variable": name} for name in ("M", "R")})
 
@@ -157,7 +157,7 @@ class ImportMatrices(unittest.TestCase):
         self.assert_rejected_again({**files, "R": {"file": "R.rua"}}, "cannot be read", "R.rua")
 
     def test_abaqus(self):
-        """One triangle of symmetric matrices, rows by node and dof, fixed dofs omitted."""
+        """Files with one triangle of symmetric matrices, rows given by node and dof, without fixed dofs."""
         for name, matrix in self.matrices.items():
             self.write(f"{name}.mtx", "** a comment\n" + abaqus(matrix, half=name in ("M", "K")))
         files = {name: {"file": f"{name}.mtx"} for name in self.matrices}
@@ -166,7 +166,7 @@ class ImportMatrices(unittest.TestCase):
         rows = (self.folder / "system" / "rows.csv").read_text(encoding="utf-8").splitlines()
         self.assertEqual(rows[:3] + rows[-1:], ["row,node,dof", "1,11,1", "2,11,2", "9,20,3"])
         self.assert_rejected_again(files, "one triangle", "K.mtx", K={"symmetry": "none"})
-        # A fixed dof
+        # Add a fixed dof
         self.write("K.mtx", abaqus(self.matrices["K"], half=True) + "11,2,11,2,1e36\n")
         process = self.call({**files, "K": {"file": "K.mtx", "scale": 1e-3}})
         self.assertIn("1 dofs are fixed", process.stdout)

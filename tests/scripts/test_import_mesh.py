@@ -25,12 +25,12 @@ except ImportError:
 
 BODIES = {"disc": "ROTOR", "pin_top": "PAD_T", "pin_bottom": "PAD_B"}
 SURFACES = {"disc_contact": "ROTOR_SURF", "pin_contact": "PAD_SURF", "disc_bore": "HUB", "pin_clamp": "BACKS"}
-# Corners of the sides of a hexahedron in Exodus, from side 1
+# Corners of the sides of a hexahedron in Exodus, starting with side 1
 EXODUS_SIDES = ((0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (0, 4, 7, 3), (0, 3, 2, 1), (4, 5, 6, 7))
 
 
 def places(points, elements):
-    """Names and corners of elements, independent of numbering."""
+    """Names and corner positions of elements, which do not depend on numbering."""
     return {(name, frozenset(map(tuple, np.round(points[nodes], 9) + 0.0))) for name, nodes in elements}
 
 
@@ -49,7 +49,7 @@ class ImportMesh(unittest.TestCase):
         return subprocess.run([sys.executable, "-B", SCRIPTS / "import_mesh.py", *arguments], cwd=self.folder, text=True, capture_output=True, timeout=60)
 
     def imported(self, file, volumes, surfaces=None):
-        """The imported .msh, and (name, nodes) of its elements."""
+        """The imported .msh file, and (name, nodes) of its elements."""
         words = [word for option, names in (("--volume", volumes), ("--surface", surfaces or {})) for name, given in names.items()
                  for word in (option, f"{name}={given}")]
         process = self.imports(file, "imported.msh", "--unit", "m", *words)
@@ -63,7 +63,7 @@ class ImportMesh(unittest.TestCase):
         self.assertEqual((len(mesh.points), places(mesh.points, elements)), (len(self.points), self.expected), file)
 
     def test_exodus(self):
-        """Blocks by number and by name; surfaces as sets of nodes and of sides."""
+        """Exodus: blocks by number and by name; surfaces as node sets and side sets."""
         path = self.folder / "brake.exo"
         meshio.write(path, meshio.Mesh(self.points, [("hexahedron", nodes) for nodes in self.cells.values()],
                                        point_sets={given: np.unique(self.faces[name]) for name, given in SURFACES.items()}))
@@ -85,7 +85,7 @@ class ImportMesh(unittest.TestCase):
         self.assert_is_mesh(path, BODIES, {name: f"S_{given}" for name, given in SURFACES.items()})
 
     def test_med(self):
-        """Groups, which may consist of several families, since a family is a combination of groups."""
+        """MED: a group may consist of several families, because a family is a combination of groups."""
         tags, families, faces = {}, {}, [(names, nodes) for names, nodes in self.mesh.faces]
         for names, given in [((body,), BODIES) for body in BODIES] + [(names, SURFACES) for names, _ in faces]:
             families[tags.setdefault(names, -1 - len(tags))] = [given[name] for name in names]
@@ -103,7 +103,7 @@ class ImportMesh(unittest.TestCase):
         self.assert_is_mesh("brake.med", BODIES, {**SURFACES, "pin_clamp": "NODES"})
 
     def test_vtk(self):
-        """Integer cell data: a set for each value."""
+        """VTK: integer cell data with a set for each value."""
         numbers = {name: i for i, name in enumerate([*BODIES, *SURFACES], 1)}
         blocks = [("hexahedron", name, nodes) for name, nodes in self.cells.items()] + [("quad", name, nodes) for name, nodes in self.faces.items()]
         mesh = meshio.Mesh(self.points, [(shape, nodes) for shape, _, nodes in blocks],
@@ -113,7 +113,7 @@ class ImportMesh(unittest.TestCase):
             self.assert_is_mesh(file, *({name: f"part:{numbers[name]}" for name in names} for names in (BODIES, SURFACES)))
 
     def test_quadratic_tetrahedra(self):
-        """Mid-side nodes stay on their edges, also in left-handed elements."""
+        """Mid-side nodes remain on their edges, also in left-handed elements."""
         source = brake(4, 1, 1)
         volumes, points = source.volumes(), np.array(source.points)
         straight = {volume: np.array([(*nodes[:8], nodes[9], nodes[8]) for v, nodes in source.cells if v == volume]) for volume in volumes}

@@ -10,7 +10,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 
 def rooms():
-    """Folders in the order of the table."""
+    """Folders in the order of the rows of the table."""
     table = (ROOT / "doc" / "structure.md").read_text(encoding="utf-8")
     return re.findall(r"^\| `(\w+)/` \|", table, flags=re.MULTILINE)
 

@@ -23,7 +23,7 @@ MODES = """label,share [-],frequency [Hz],growth rate [1/s],unstable [-],rate [%
 F1,0.5,100.25,2.5,1,1,0.01,unstable
 A0-2 +,1,250,-1,0,,,stable
 """
-# Writes results, or fails as squeal does
+# Program that writes results, or fails as squeal does
 PROGRAM = f'''#!{sys.executable}
 import pathlib, sys
 words = sys.argv[1:]
@@ -108,7 +108,7 @@ class ModuleResults(unittest.TestCase):
             self.assertEqual(program.find_program(), self.folder / "squeal")
 
     def test_import_needs_nothing_else(self):
-        """Reading tables and parameters only requires the standard library."""
+        """Reading tables and parameters requires only the standard library."""
         code = textwrap.dedent(f"""
             import sys
             for name in ("numpy", "scipy", "pandas", "matplotlib", "meshio"):

@@ -29,7 +29,7 @@ class PaperTest(unittest.TestCase):
             csv.writer(file).writerows([columns, *rows])
 
     def results(self, folder, complex_modes, real_modes=(), component_modes=()):
-        """A run with complex modes (label, Hz, %, share of the wave with the rotation or None) and one pin."""
+        """A run with one pin and these complex modes: label, Hz, %, share of the wave with the rotation or None."""
         self.write(folder, "complex_modes", ("label", "frequency [Hz]", "divergence rate [%]", "unstable [-]", "wave with rotation [-]",
                                              "wave against rotation [-]"),
                    [(label, frequency, rate, int(rate > 0), wave, wave and 1 - wave) for label, frequency, rate, wave in complex_modes])
@@ -67,7 +67,7 @@ class TableOne(PaperTest):
         self.assertIsNone(row["with C_b [Hz]"])
 
     def test_groups_of_pin_modes(self):
-        """The 24 F1 modes with divergence rates -12, -11, ... 11 % in another order."""
+        """24 F1 modes with divergence rates -12, -11, ... 11 % in random order."""
         modes = [("F1", 3600 + rate, rate, None) for rate in sorted(range(-12, 12), key=abs)]
         run = self.results("run", modes)
         for label, column, rate in (("F1 damped lowest", "with C_b", -12), ("F1 damped highest", "with C_b", -1),
@@ -88,7 +88,8 @@ class Statements(PaperTest):
     COUPLED = [("A0-4 -", 2290), ("A0-4 +", 2310), ("F1", 3500), ("F1", 3507)]
 
     def statements(self, expected, undamped=None, damped=None):
-        """Number and verdict of statements by their first words; None if there is no such statement."""
+        """Number and verdict of the statements in `expected`, found by their first words; None if there is no such
+        statement."""
         without = self.results("without", undamped or self.UNDAMPED, self.COUPLED)
         rows = paper.statements(without, self.results("with", damped or self.DAMPED, self.COUPLED))
         for words, what in expected.items():

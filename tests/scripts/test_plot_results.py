@@ -19,7 +19,7 @@ except ModuleNotFoundError as missing:
         raise
     branches = None
 
-BAND = 100.0  # [Hz]
+BAND = 100.0  # end of the band [Hz]
 PARAMETERS = {"Band": {"Maximum frequency": BAND}, "Operation": {"Radial dissipation": "none", "Friction coefficient": 0.4},
               "Reduction": {"Problem": "friction"}}
 BRANCHES = ("mu [-]", "branch [-]", "label", "frequency [Hz]", "divergence rate [%]", "verdict", "growing [-]")
@@ -27,7 +27,7 @@ THRESHOLDS = ("mu [-]", "event", "branch [-]", "partner [-]", "frequency [Hz]")
 
 
 def line_of(axes, label):
-    """Points of the line with a label, (NaN, NaN) at breaks; empty if there is no such line."""
+    """Points of the line with a label, with (NaN, NaN) at breaks; empty if there is no such line."""
     for line in axes.get_lines():
         if line.get_label() == label:
             return list(zip(line.get_xdata(), line.get_ydata()))
@@ -35,14 +35,14 @@ def line_of(axes, label):
 
 
 def points_and_parts(line):
-    """Numbers of points and of parts between breaks."""
+    """Number of points, and number of parts between breaks."""
     is_there = [not math.isnan(x) for x, _ in line]
     return sum(is_there), sum(here and not before for before, here in zip([False, *is_there], is_there))
 
 
 @unittest.skipIf(branches is None, "python3-matplotlib is not installed")
 class PlotTest(unittest.TestCase):
-    """A folder with tables."""
+    """Tests with a folder of tables."""
 
     def setUp(self):
         temporary = tempfile.TemporaryDirectory()
@@ -61,7 +61,7 @@ class PlotTest(unittest.TestCase):
         (self.folder / f"{name}.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
 
     def write_chart(self, suffix="", label_of_second="A0-4 +", with_threshold=True, undecided=()):
-        """Two branches that coalesce at 0.25, and a third that is absent at 0.2."""
+        """Writes a chart with two branches that coalesce at 0.25, and a third branch that is absent at 0.2."""
         rows = []
         for k in range(5):
             mu, root = 0.1 * k, math.sqrt(abs(0.25 - 0.1 * k))
@@ -86,18 +86,18 @@ class Charts(PlotTest):
     def test_curves_break_and_meet_at_thresholds(self):
         self.write_chart()
         upper, lower = branches.overview_figure(self.charts(), BAND).axes
-        # Both branches of the pair have five points and the threshold; the third is in two parts
+        # Both branches of the pair have five points and the threshold; the third branch has two parts
         everything = line_of(upper, charts.WITHOUT)
         self.assertEqual(points_and_parts(everything), (6 + 6 + 4, 4))
         self.assertEqual(max(y for _, y in everything if not math.isnan(y)), 50)
-        # One branch grows beyond the threshold
+        # One branch of the pair grows beyond the threshold
         growing = line_of(lower, "growing, " + charts.WITHOUT)
         self.assertEqual(points_and_parts(growing), (3, 1))
         self.assertEqual(growing[0], (0.25, 0.0))
         self.assertAlmostEqual(growing[2][1], math.sqrt(0.15))
-        # The threshold beyond the band is omitted
+        # The threshold above the band is omitted
         self.assertEqual(line_of(upper, "onset"), [(0.25, 10)])
-        # Growing families
+        # Families with growing modes
         figures = branches.family_figures(self.charts())
         self.assertEqual(list(figures), ["sweep_families"])
         upper, lower = figures["sweep_families"].axes
@@ -106,7 +106,7 @@ class Charts(PlotTest):
         self.assertEqual([text.get_text() for text in upper.texts], ["A0-4 -", "A0-4 +"])
 
     def test_one_value(self):
-        """A single point needs a mark to be visible."""
+        """A single point needs a marker to be visible."""
         self.write("branches", BRANCHES, [(0.4, 1, "F1", 50, 0.5, "unstable", 1)])
         self.write("thresholds", THRESHOLDS, [])
         self.write("counts", ("mu [-]",), [(0.4,)])
@@ -122,7 +122,7 @@ class ComplexPlane(PlotTest):
         return complex_plane.sweep_figure(Results(self.folder), self.charts(), BAND).axes
 
     def test_rings_squares_and_names(self):
-        """Without given values, the last one of the sweep is drawn; undecided modes have no ring."""
+        """If no values are requested, the last value of the sweep is drawn; undecided modes have no ring."""
         for undecided, growing in (((3, 4), [(0.010, math.sqrt(0.15))]), ((1, 4), [])):
             self.write_chart(undecided=[undecided])
             axes, = self.sweep_axes()
@@ -132,7 +132,7 @@ class ComplexPlane(PlotTest):
             self.assertEqual([text.get_text() for text in axes.texts], ["A0-4 -"] if growing else [])
 
     def test_values_that_are_asked_for(self):
-        """Values in the table complex_plane need not be values of the chart."""
+        """Friction coefficients in the table complex_plane need not be values of the chart."""
         self.write_chart()
         self.write("complex_plane", self.COLUMNS, [(0.33, "published", "A0-4 +", 20, 0.5, "unstable"),
                                                    (0.33, "none", "A0-4 +", 21, 0.7, "unstable"),
@@ -167,7 +167,7 @@ class Maps(PlotTest):
                "open contact nodes [-]")
 
     def read(self, change=lambda mu, load, row: row):
-        """Unstable from 0.2 at the larger load only, undecided at 0.1."""
+        """Reads a map that is unstable from 0.2 for the larger load only, and undecided at 0.1."""
         rows = []
         for load in (100, 1000):
             for mu in (0, 0.1, 0.2, 0.3):
@@ -195,7 +195,7 @@ class Maps(PlotTest):
             self.assertEqual(line_of(axes, "change of the contact set"), [])
         self.assertEqual([text.get_text() for text in panel.texts], ["F1"])
         self.assertEqual([text.get_text() for text in counts.texts], ["2", "2"])
-        # Halfway between neighbours, geometrically on a logarithmic axis
+        # Edges are halfway between neighbours, in logarithmic scale for a logarithmic axis
         edges = stability_map.StabilityMap(table)
         self.assertAlmostEqual(edges.x_edges[2], 0.15)
         self.assertAlmostEqual(edges.y_edges[1], math.sqrt(1e5))
@@ -215,7 +215,7 @@ class Maps(PlotTest):
 
 class Reduction(PlotTest):
     def write_bases(self, errors):
-        """Writes one group from rows of basis, component modes, solution time and the four errors."""
+        """Writes a table of one group; `errors`: rows of basis, component modes, solution time and the four errors."""
         self.write("reduction_bases", ("basis", "component modes", "build time [s]", "solve time [s]"),
                    [(name, truncation, 10 * seconds, seconds) for name, truncation, seconds, *_ in errors])
         self.write("reduction_errors", ("basis", "component modes", "group", "res [-]", "mac [-]", "frq [-]", "div [-]"),

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Tests of scripts/reproduce.sh: its list, comparison of numbers, and that quoted numbers are in the pages."""
+"""scripts/reproduce.sh: its list, the comparison of numbers, and that quoted numbers occur in the pages."""
 
 import importlib
 import pathlib
@@ -18,7 +18,7 @@ from reproduction.numbers import ENTRIES, Number
 
 
 def text_of(page):
-    """A page with numbers in exponential notation, such as 1e-6."""
+    """Text of a page in which all numbers have an exponential form such as 1e-6."""
     path = SOURCE / "README.md" if page == "README" else SOURCE / "doc" / f"{page}.md"
     text = path.read_text(encoding="utf-8").replace("−", "-")
     for power, digits in ((power, str(power).translate(str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹"))) for power in range(1, 20)):

@@ -41,7 +41,7 @@ def closed_form(mu, k):
 
 
 def chain(n):
-    """A chain of springs and masses with gyroscopic, damping and nonsymmetric terms."""
+    """A chain of masses and springs with gyroscopic, damping and nonsymmetric terms."""
     random = np.random.default_rng(3)
     stiffness = sparse.diags([2 * np.ones(n), -np.ones(n - 1), -np.ones(n - 1)], [0, 1, -1]) * 1e9
     upper = sparse.random(n, n, 0.01, random_state=3)
@@ -54,7 +54,7 @@ def chain(n):
 
 
 def distances(found, expected):
-    """Relative distances of the eigenvalues found from the nearest expected ones."""
+    """Relative distance of each computed eigenvalue to the nearest expected one."""
     return np.array([abs(expected - value).min() / abs(value) for value in found])
 
 
@@ -122,7 +122,7 @@ class Files(InFolder):
             self.assertEqual(again.reduction["points"], system.reduction["points"])
 
     def test_points_without_a_speed(self):
-        """Points as written by the program for a sweep without speed."""
+        """Points that the program writes for a sweep without speed."""
         flutter(reduction={"points": [{"mu": 0.1, "speed": math.nan}]}).write(self.folder)
         self.assertEqual((self.folder / "points.csv").read_text(encoding="utf-8"), "mu,speed\n0.1,\n")
         self.assertTrue(math.isnan(System.read(self.folder).reduction["points"][0]["speed"]))
@@ -216,7 +216,7 @@ class Solutions(InFolder):
         system = chain(quadratic.DENSE_SIZE + 50)
         A, B = (matrix.toarray() for matrix in system.linearise())
         n = system.size
-        scale = 1e6  # of λ, which balances both halves of the state
+        scale = 1e6  # scale of λ that balances both halves of the state vector
         A[:n, n:], A[n:, :n] = A[:n, n:] * scale, A[n:, :n] / scale
         expected = np.linalg.eigvals(np.linalg.solve(B, A))
         bounds = {"number": 12, "largest": 4e5, "region": ((-1500.0, 100.0), (2e5, 6e5))}
@@ -241,7 +241,7 @@ class Solutions(InFolder):
         self.assertEqual(np.linalg.matrix_rank(found.vectors, tol=1e-6), 10)
 
     def test_singular_mass(self):
-        """A massless dof is condensed: K = [[2, -1], [-1, 1]] with mass on the first dof leaves ω² = 1."""
+        """A massless dof is condensed: K = [[2, -1], [-1, 1]] with mass only on the first dof gives ω² = 1."""
         system = System({}, [Term("M", 2, matrix=np.diag([1.0, 0.0])), Term("K", 0, matrix=np.array([[2.0, -1.0], [-1.0, 1.0]]))])
         np.testing.assert_allclose(np.sort_complex(system.solve().eigenvalues), [-1j, 1j], atol=1e-14)
 
@@ -262,7 +262,7 @@ class Solutions(InFolder):
         self.assert_rejected(lambda: flutter().solve(number=1, largest=2.0), "exclude each other")
 
     def test_time_integration_shows_the_growth_rate(self):
-        """M, C and K in scipy.integrate: the envelope of a growing oscillation."""
+        """M, C and K integrated in time by scipy.integrate: the envelope of a growing oscillation."""
         system, p = flutter(), {"mu": 0.4}
         M, C, K = system.M(p), system.C(p), system.K(p)
         rate = closed_form(0.4, 1.5).real.max()

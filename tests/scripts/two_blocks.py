@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Exported results of a run, made without squeal: a plate on springs in frictional contact with a block whose top is clamped.
+"""Files like those of a run, generated without squeal: a plate on springs in frictional contact with a block that is
+clamped at its top.
 
-Both are lattices of point masses with springs along edges and diagonals. The contact normal is z and the plate slides along x, hence
-b = n x t = y.
+Both bodies are lattices of point masses with springs along edges and diagonals. The contact normal is z and the plate
+slides along x, hence b = n x t = y.
 """
 
 import csv
@@ -20,7 +21,7 @@ EDGE, PLATE, BLOCK, FRICTION_COEFFICIENT = 0.01, (5, 4, 1), (2, 2, 2), 0.4
 
 
 def lattice(cells, young_modulus, density):
-    """Stiffness, mass and positions of the point masses."""
+    """Stiffness, mass and positions of a lattice of point masses."""
     places = EDGE * np.array(list(itertools.product(*(range(n + 1) for n in cells))), dtype=float)
     pairs = scipy.spatial.cKDTree(places).query_pairs(1.8 * EDGE, output_type="ndarray")
     lengthening = sparse.lil_matrix((len(pairs), places.size))
@@ -36,7 +37,7 @@ def write_run(directory, band=20000.0):
     K_p, M_p, x_p = lattice(BLOCK, 1.9e9, 3070.0)
     x_p = x_p + EDGE * np.array([(PLATE[0] - BLOCK[0]) // 2, (PLATE[1] - BLOCK[1]) // 2 + 1, PLATE[2]])
 
-    # The plate is on uneven springs, so that eigenvalues are simple
+    # Uneven springs under the plate make all eigenvalues simple
     foot = np.flatnonzero(x_d[:, 2] < EDGE / 2)
     springs = np.zeros(x_d.size)
     for direction, value in enumerate((2.0e6, 2.2e6, 5.0e6)):
@@ -87,9 +88,9 @@ def write_run(directory, band=20000.0):
 
 
 def dense_eigenvalues(M, C_b, K, P_n, P_t, T_c, band):
-    """Eigenvalues of the band from dense matrices.
+    """Eigenvalues in the band, from dense matrices.
 
-    They are reciprocals of those of a standard eigenvalue problem, so that small eigenvalues are accurate.
+    They are computed as reciprocals of the eigenvalues of a standard problem, so that small eigenvalues are accurate.
     """
     M, C_b, K, P_n, P_t, T_c = (matrix.toarray() for matrix in (M, C_b, K, P_n, P_t, T_c))
     friction = np.eye(K.shape[0]) - FRICTION_COEFFICIENT / 2 * P_t.T @ P_n

@@ -52,7 +52,7 @@ namespace
             join({modes.left_real_part.get(), modes.left_imaginary_part.get()})};
   }
 
-  /// dλ/ds of the λ nearest to each @p lambda, by fourth-order central differences from s = −2h, −h, h, 2h.
+  /// dλ/ds of the eigenvalue nearest to each @p lambda, by fourth-order central differences from s = −2h, −h, h, 2h.
   std::vector<Complex> differences(const std::vector<Complex>                               &lambda,
                                    const std::function<std::vector<Complex>(double change)> &eigenvalues,
                                    const double                                              h)
@@ -70,7 +70,7 @@ namespace
     return result;
   }
 
-  /// Tolerance 1e-5; for insensitive modes, the resolution of the differences.
+  /// Compares derivatives with tolerance 1e-5; for insensitive modes, the resolution of the differences is the limit.
   void expect_alike(const std::vector<Complex> &derivatives, const std::vector<Complex> &others, const std::vector<Complex> &lambda)
   {
     for (std::size_t j = 0; j < lambda.size(); ++j)
@@ -95,7 +95,7 @@ TEST(Sensitivities, OfEveryParameterAgreeWithDifferences)
   const ParameterValues values = system.at(friction);
   const auto            D = of_contact.by_lambda(values), Q = of_contact.pencil(values);
 
-  // Vectors of both sides satisfy the pencil and are biorthogonal
+  // Right and left vectors satisfy the pencil and are biorthogonal
   for (Eigen::Index i = 0; i < Q.rows(); ++i)
     for (Eigen::Index j = 0; j < Q.cols(); ++j)
       {
@@ -112,7 +112,7 @@ TEST(Sensitivities, OfEveryParameterAgreeWithDifferences)
   for (const auto &[name, value] : brake.bodies.values)
     {
       SCOPED_TRACE(name);
-      expect(of_bodies.along(brake.bodies.values, {{name, value}}), 1e-4, [&, &name = name](const double change) { // of ln p
+      expect(of_bodies.along(brake.bodies.values, {{name, value}}), 1e-4, [&, &name = name](const double change) { // d/d ln p
         ParameterValues bodies = brake.bodies.values;
         bodies[name].front() *= 1. + change;
         return krylov(brake.system(bodies, brake.damping), friction, 1e-12);
@@ -135,7 +135,7 @@ TEST(Sensitivities, OfEveryParameterAgreeWithDifferences)
 
 TEST(Sensitivities, DoNotChangeWithTheUnitOfForce)
 {
-  // Scaling all stiffnesses scales ω by the square root, whatever the friction
+  // Scaling all stiffnesses by a factor scales ω by its square root, for any friction
   const Scene           s(mesh_of(skewed_pins), mounted(), operating());
   const BodyTerms       bodies = body_terms(s.model, mounted());
   const Eigentriples    modes  = triples(iterated(s.coupled, friction, 1e-13));
@@ -175,7 +175,7 @@ namespace
 
 TEST(Sensitivities, OfACoalescence)
 {
-  // 1 + 2.8 (0.7 − s μ_c) = 0
+  // Threshold from 1 + 2.8 (0.7 − s μ_c) = 0
   const double           s = 1.3, mu_c = Flutter{s}.coalescence();
   const CoupledSystem    system = Flutter{s}.system();
   std::array<Complex, 3> by_friction{}, by_stiffness{};
@@ -190,7 +190,7 @@ TEST(Sensitivities, OfACoalescence)
         const auto         D      = products.by_lambda(values);
         by_friction[distance - 1] +=
           0.5 * squared_difference_derivative(products.along(values, {{SystemParameter::friction, {1.}}}), D, modes.lambda);
-        // dQ/dk of a spring k at the first mass
+        // dQ/dk for a spring k at the first mass
         const DenseMatrix        u = replicate(modes.right), w = replicate(modes.left);
         const auto               x = from_halves(u), y = from_halves(w);
         const ComplexDenseMatrix N = y.row(0).transpose() * x.row(0);
@@ -222,7 +222,7 @@ TEST(Sensitivities, OfTheMeanStayFiniteAtACoalescence)
       const auto         values = system.at(mu);
       const auto         D = products.by_lambda(values), N = products.along(values, {{SystemParameter::friction, {1.}}});
       const double       modulus = std::abs(eigenvalue_derivative(N, D, 0));
-      EXPECT_GT(modulus, 5. * single); // grows like one over the root of the distance
+      EXPECT_GT(modulus, 5. * single); // derivatives grow like the inverse square root of the distance
       single = modulus;
       means.push_back(mean_derivative(N, D, {0, 1}));
     }

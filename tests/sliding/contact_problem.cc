@@ -26,7 +26,8 @@ namespace
     return {F_nn, F_nt, mu, gap, DenseMatrix::Ones(n, 1), -DenseMatrix::Ones(1, n), {load}, {}};
   }
 
-  /// A disc of mass 1 / @p unit² floating between two backplates, three nodes per side, with rounding errors in the motions.
+  /// A disc of mass 1 / @p unit² that floats between two backplates, with three nodes per side and rounding errors in the rigid-body
+  /// motions.
   ContactProblem floating(const double unit, const double tilt, const unsigned int seed, const std::vector<double> &loads)
   {
     constexpr int  n = 6;
@@ -67,7 +68,7 @@ namespace
     std::vector<DenseMatrix> result;
     for (unsigned int set = 0; set < 1u << n; ++set)
       {
-        // One equation per node, g = 0 or r = 0, in all unknowns r, z
+        // One equation for each node, g = 0 or r = 0, in all unknowns r, z
         DenseMatrix A = DenseMatrix::Zero(n + n_z, n + n_z), b = DenseMatrix::Zero(n + n_z, 1);
         for (int i = 0; i < n; ++i)
           if (set >> i & 1)
@@ -98,7 +99,7 @@ namespace
 
 TEST(ContactProblem, TwoSpringsClosedForm)
 {
-  // Springs of flexibility 1 and 2 under one plate, the second with a gap of 3: it closes when the first is compressed by 3.
+  // Springs of flexibility 1 and 2 under one plate; the second has a gap of 3 and closes when the first is compressed by 3
   const DenseMatrix F{{1., 0.}, {0., 2.}}, zero = DenseMatrix::Zero(2, 2);
   const auto        light = solve_contact(pressed(F, zero, 0.4, {0., -3.}, 2.));
   EXPECT_EQ(light.closed, (std::vector<bool>{true, false}));
@@ -107,7 +108,7 @@ TEST(ContactProblem, TwoSpringsClosedForm)
   EXPECT_DOUBLE_EQ(light.motions[0], 2.);
   EXPECT_DOUBLE_EQ(light.gaps[1], -1.);
 
-  // 1·r_1 = d, 2·r_2 = d − 3, r_1 + r_2 = 9: d = 7
+  // Expect 1·r_1 = d, 2·r_2 = d − 3, r_1 + r_2 = 9, hence d = 7
   const auto heavy = solve_contact(pressed(F, zero, 0.4, {0., -3.}, 9.));
   EXPECT_DOUBLE_EQ(heavy.motions[0], 7.);
   EXPECT_DOUBLE_EQ(heavy.reactions[0], -7.);
@@ -117,8 +118,8 @@ TEST(ContactProblem, TwoSpringsClosedForm)
 
 TEST(ContactProblem, FrictionTiltsABlock)
 {
-  // A rigid block that is free to tilt, on two springs at ±a, pushed at height h: moment balance about that height gives
-  // r_{1,2} = −½ (1 ± μ h/a), and beyond μ h = a the block topples.
+  // A rigid block that may tilt, on two springs at ±a, pushed at height h: moment balance about this height gives r_{1,2} = −½ (1 ± μ h/a);
+  // beyond μ h = a, the block topples.
   const double      a = 1., h = 2.;
   const DenseMatrix F = DenseMatrix::Identity(2, 2), zero = DenseMatrix::Zero(2, 2), motions{{1., a}, {1., -a}};
   for (const double mu : {0., 0.2, 0.4, 0.6})
@@ -159,7 +160,7 @@ TEST(ContactProblem, FindsWhatEnumerationFinds)
       n_unique += uniqueness.is_certified;
       n_several += uniqueness.found_other;
     }
-  // The test is meaningful only if both cases occur.
+  // The test is meaningful only if both cases occur
   EXPECT_GT(n_unique, 10);
   EXPECT_GT(n_several, 0);
 }
@@ -178,7 +179,7 @@ TEST(ContactProblem, BoundOfUniquenessIsWhereTheSymmetricPartLosesDefiniteness)
 
 TEST(FloatingDisc, IsHeldWhateverRoundingLeaves)
 {
-  // Only the axial travel of the disc is undetermined; reactions are those of a held disc
+  // Only the axial travel of the disc is undetermined; reactions equal those of a disc that is held
   for (const double unit : {1e-6, 0.07, 1., 1e6})
     {
       for (unsigned int seed = 0; seed < 50; ++seed)

@@ -12,7 +12,7 @@
 using namespace Squeal;
 using namespace Squeal::Testing;
 
-// A pad guided by springs in the plane of its back: only pressure presses it to the disc, and it may tilt.
+// A pad guided by springs in the plane of its back: only the pressure pushes it against the disc, and it may tilt.
 
 namespace
 {
@@ -23,7 +23,7 @@ namespace
     const char                 *name;
     Cut                         disc, pad;
     Element                     element;
-    std::array<unsigned int, 3> bricks = {{5, 2, 2}}; ///< of the pad
+    std::array<unsigned int, 3> bricks = {{5, 2, 2}}; ///< bricks of the pad
   };
 
   const std::vector<PadCase> pad_cases = {{"matching", Cut::hexahedra, Cut::hexahedra, Element::trilinear, {{4, 3, 2}}},
@@ -42,7 +42,7 @@ namespace
 
   const std::vector<Mount> guided = {{"disc_bore", 1e11, 1e11, 1e11}, {"pad_back", 1e9, 1e9, 0.}};
 
-  /// Zero Poisson's ratio: columns in compression.
+  /// Materials with zero Poisson's ratio, so that the pad consists of columns in compression.
   MaterialParameters materials(const std::vector<Mount> &mounts)
   {
     MaterialParameters result = mounted(mounts);
@@ -90,7 +90,7 @@ namespace
       return steady_sliding(*sliding, operation, parameters);
     }
 
-    ContactInterface              springs; ///< contact nodes with a stiffness
+    ContactInterface              springs; ///< contact nodes of pairs with a stiffness
     std::unique_ptr<SlidingModel> sliding;
   };
 
@@ -128,13 +128,13 @@ TEST(PressedFaces, APressedColumnHasUniformPressure)
 
 TEST(PressedFaces, OfTiedNodesPressTheNodesThatTheyFollow)
 {
-  // A lining as long as the plate tied to it or longer, pressed on its own back or on the plate
+  // A lining tied to a plate, as long as the plate or longer, pressed on its own back or on the plate
   for (const Cut cut : {Cut::hexahedra, Cut::tetrahedra})
     for (const double plate_length : {length, 0.4 * length})
       for (const char *pressed_face : {"lining_back", "pad_back"})
         {
           if (plate_length < length && pressed_face == std::string("pad_back"))
-            continue; // would bend
+            continue; // a longer lining would bend
           SCOPED_TRACE(pressed_face);
           Mesh mesh;
           add_box(mesh, {cut, {{4, 3, 1}}, {1., 0., -0.05}, {1. + length, width, 0.}, 0.}, "disc", {{"disc_bore", "disc_contact"}});
@@ -156,7 +156,7 @@ TEST(PressedFaces, OfTiedNodesPressTheNodesThatTheyFollow)
 
 TEST(PressedFaces, FrictionShiftsThePressureToTheLeadingEdge)
 {
-  // Moment balance about the back, where springs hold the pad: F e = μ F h
+  // Moment balance about the back, where the springs hold the pad: F e = μ F h
   for (const PadCase &c : pad_cases)
     for (const double mu : {0.2, 0.5})
       {
@@ -169,7 +169,7 @@ TEST(PressedFaces, FrictionShiftsThePressureToTheLeadingEdge)
         EXPECT_NEAR(pad.sliding_offset, -mu * height, 1e-10);
         EXPECT_NEAR(pad.radial_offset, 0., 1e-10);
         EXPECT_EQ(pad.sliding_speed, s.operation.rotation_speed);
-        double leading = 0., trailing = 0.; // largest pressure
+        double leading = 0., trailing = 0.; // largest pressures at both edges
         for (std::size_t node = 0; node < s.interface.size(); ++node)
           {
             double &largest = s.interface[node].position[0] < 1. + 0.5 * length ? leading : trailing;
@@ -181,7 +181,7 @@ TEST(PressedFaces, FrictionShiftsThePressureToTheLeadingEdge)
 
 TEST(PressedFaces, SpringsTakeTheirShareOfTheLoad)
 {
-  // Springs along the load as well: no free motion, and the state is shown to be unique
+  // Add springs along the load: there is no free motion, and the state is proved to be unique
   std::vector<Mount> mounts = guided;
   mounts[1].axial           = 1e9;
   const PadScene     s(pad_cases[2], 0.3, materials(mounts));
@@ -220,7 +220,7 @@ TEST(PressedFaces, RatesOfReactionsAgreeWithDifferences)
 
 TEST(PressedFaces, ADiscThatFloatsBetweenPads)
 {
-  // Pins on both sides of an axially free disc, each with its own back
+  // Pins on both sides of an axially free disc, each with its own back face
   Mesh mesh = extrude(
     polar_plan(
       0.15, 0.3, 3, 12,
@@ -244,7 +244,7 @@ TEST(PressedFaces, ADiscThatFloatsBetweenPads)
   check(state);
   for (const PinContact &pin : pin_contacts(s.model, s.interface, state, s.operation))
     EXPECT_NEAR(pin.load, 1000., 1e-7);
-  // Loads that do not balance
+  // Loads that are not in equilibrium
   expect_refusal([&] { steady_sliding(sliding, s.operation, pressed({backs[0], backs[1], backs[2]})); }, {"nothing holds pin_"});
 }
 

@@ -18,7 +18,7 @@ namespace
 {
   constexpr double band = 2. * M_PI * 5000.;
 
-  /// Two pins on each side of a disc, opposite each other; mirror images about y = 0.
+  /// Two opposite pins on each side of a disc, mirror images about y = 0.
   Mesh four_pins()
   {
     return extrude(polar_plan(0.15, 0.3, 3, 12,
@@ -68,7 +68,7 @@ namespace
     return std::count(state.closed.begin(), state.closed.end(), false);
   }
 
-  /// Checks that apply to every state.
+  /// Checks that apply to every state
   void check(const SlidingScene &s, const SlidingState &state)
   {
     EXPECT_LT(state.certificate.residual, 1e-10);
@@ -86,7 +86,7 @@ namespace
         EXPECT_EQ(state.closed[c], state.reactions[c] < 0. || state.gaps[c] == 0.);
       }
 
-    // K u = P_nᵀ r + μ P_tᵀ r from the definitions
+    // Check K u = P_nᵀ r + μ P_tᵀ r from the definitions
     const MultiVector r    = distribute(as_column(state.reactions), s.contact.normal->rows());
     const MultiVector rest = *s.system.stiffness * *state.displacement - transpose_times(*s.contact.normal, r) -
                              s.operation.friction_coefficient * transpose_times(*s.contact.tangential, r);
@@ -125,7 +125,7 @@ TEST(SteadySliding, ReactionsBalanceTheLoadOfBothSides)
 
 TEST(SteadySliding, CompressionOfColumnsBetweenPlates)
 {
-  // Zero Poisson's ratio and a stiff disc on a stiff mount: the travel of a backplate is the compression F h / (E A) of the pins.
+  // With zero Poisson's ratio and a stiff disc on a stiff mount, the travel of a backplate is the compression F h / (E A) of the pins.
   auto materials               = mounted({{"disc_bore", 1e18, 1e18, 1e18}});
   materials.pin.poisson_ratio  = 0.;
   materials.disc.young_modulus = 1e18;
@@ -152,7 +152,7 @@ TEST(SteadySliding, WithoutFrictionItIsThePunchOfLeastEnergy)
   const int         n = s.interface.size();
   const DenseMatrix F_nn =
     replicate(*s.contact.normal * s.sliding.response.solve(transpose_times(*s.contact.normal, unit_vectors(s.contact.normal->rows()))));
-  // Gap without the elastic part
+  // Subtract the elastic part from the gap
   const DenseMatrix reactions = as_column(state.reactions), gap = as_column(state.gaps) - F_nn * reactions;
   // Projected Gauss-Seidel converges for a symmetric positive definite matrix
   DenseMatrix r = DenseMatrix::Zero(n, 1);
@@ -161,14 +161,14 @@ TEST(SteadySliding, WithoutFrictionItIsThePunchOfLeastEnergy)
       r(c, 0) = std::min(0., r(c, 0) - (gap(c, 0) + F_nn.row(c).dot(r.col(0))) / F_nn(c, c));
   EXPECT_LT(max_norm(r - reactions), 1e-6 * side_load(s, state, 1));
 
-  // Continuous in friction
+  // The state is continuous in friction
   s.operation.friction_coefficient = 1e-7;
   EXPECT_LT(max_norm(as_column(s.solve(sliding).reactions) - reactions), 1e-5 * side_load(s, state, 1));
 }
 
 TEST(SteadySliding, EqualPinsCarryEqualLoadsOnlyWhereTheLayoutSaysSo)
 {
-  // Without friction the two pins of a side are mirror images; friction breaks this symmetry, but opposite pins stay alike.
+  // Without friction, the two pins of a side are mirror images; friction breaks this symmetry, but opposite pins remain equal.
   SlidingScene s;
   s.operation.friction_coefficient = 0.;
   const auto without               = s.pins(s.solve());
@@ -194,7 +194,7 @@ TEST(SteadySliding, LoadsOfSinglePinsGapsAndDisplacements)
   const SlidingScene s;
   SlidingParameters  sliding = steady(BackplateControl::load_per_pin);
   sliding.pin_loads          = {{s.pin_names[0], 300.}, {s.pin_names[3], 50.}};
-  sliding.gaps               = {{s.pin_names[1], 2e-6}}; // taken up by the actuator
+  sliding.gaps               = {{s.pin_names[1], 2e-6}}; // the travel of the actuator closes this gap
   const SlidingState by_load = s.solve(sliding);
   check(s, by_load);
   const auto   pins    = s.pins(by_load);
@@ -202,7 +202,7 @@ TEST(SteadySliding, LoadsOfSinglePinsGapsAndDisplacements)
   for (int pin = 0; pin < 4; ++pin)
     EXPECT_NEAR(pins[pin].load, loads[pin], 1e-8 * loads[pin]);
 
-  // A short pin opens
+  // A shorter pin opens
   sliding                      = steady();
   sliding.gaps                 = {{s.pin_names[0], 1e-3}};
   const SlidingState short_pin = s.solve(sliding);
@@ -213,9 +213,9 @@ TEST(SteadySliding, LoadsOfSinglePinsGapsAndDisplacements)
   EXPECT_NEAR(others[1].load, 1000., 1e-6);
   EXPECT_EQ(n_open(short_pin), others[0].n_nodes);
 
-  // Prescribing the travel found under load reproduces the load.
+  // Prescribing the travel computed for a load reproduces the load.
   const SlidingState loaded = s.solve();
-  ASSERT_NEAR(loaded.approach[1], loaded.approach[3], 1e-12 * loaded.approach[1]); // both sides alike
+  ASSERT_NEAR(loaded.approach[1], loaded.approach[3], 1e-12 * loaded.approach[1]); // both sides have the same travel
   const SlidingState moved = s.solve(steady(BackplateControl::displacement, loaded.approach[1]));
   check(s, moved);
   EXPECT_NEAR(side_load(s, moved, 1), 1000., 1e-6);
@@ -223,7 +223,7 @@ TEST(SteadySliding, LoadsOfSinglePinsGapsAndDisplacements)
 
 TEST(SteadySliding, ScalesWithTheLoad)
 {
-  // Load and gaps doubled: everything doubles
+  // If load and gaps are doubled, the state is doubled
   SlidingScene      s;
   SlidingParameters sliding = steady();
   sliding.gaps              = {{s.pin_names[1], 4e-7}};
@@ -277,7 +277,7 @@ TEST(SteadySliding, ShoesOutsideAndInsideOfARing)
   SlidingParameters sliding = steady();
   for (const double gap : {0., 1e-6})
     {
-      // A gap is taken up by the travel
+      // The travel closes a gap
       sliding.gaps             = {{s.pin_names[1], gap}};
       const SlidingState state = s.solve(sliding), touching = s.solve();
       check(s, state);
@@ -306,8 +306,8 @@ TEST(SteadySliding, ShoesOutsideAndInsideOfARing)
 
 TEST(SteadySliding, ADiscThatMovesFreely)
 {
-  // An axially free disc floats between equally loaded pins, and no force acts along the axis of a ring. A drive takes the
-  // moment of a freely rotating disc, although rotation changes gaps at the ends of shoes on a polygon.
+  // A disc without axial mount floats between equally loaded pins; no force acts along the axis of a ring. A drive takes the moment of a
+  // freely rotating disc, although rotation changes gaps at the ends of shoes on a polygon.
   const Mount turns = {"disc_bore", 1e10, 0., 1e10};
   for (const auto &[mesh, mount] : {std::make_pair(four_pins(), Mount{"disc_bore", 0., 7.80e10, 0.}),
                                     {four_pins(), turns},
@@ -327,7 +327,7 @@ TEST(SteadySliding, ADiscThatMovesFreely)
       EXPECT_LT(found.force_balance, 1e-9);
       if (mount.radial == 0.)
         {
-          // Without friction the floating disc is centred between the backplates
+          // Without friction, the floating disc is centred between the backplates
           s.operation.friction_coefficient = 0.;
           const SlidingState state         = s.solve();
           EXPECT_NEAR(state.approach[1] / state.approach[3], 1., 1e-6);
@@ -348,7 +348,7 @@ TEST(SteadySliding, RatesOfReactionsAgreeWithDifferences)
     return SlidingScene(mapped(four_pins(),
                                [&](const Point3 &p) {
                                  const double r      = std::hypot(p[0], p[1]),
-                                              factor = 1. + change.bore * std::max(0., 0.2 - r) / r; // pins stay in place
+                                              factor = 1. + change.bore * std::max(0., 0.2 - r) / r; // pins do not move
                                  return Point3{{factor * p[0], factor * p[1], p[2]}};
                                }),
                         materials);
@@ -386,7 +386,8 @@ TEST(SteadySliding, RatesOfReactionsAgreeWithDifferences)
               }
           const DenseMatrix rates = reaction_rates(here.sliding, here.operation, parameters, state, f, gaps);
           EXPECT_GT(max_norm(quotient), 1e-3);
-          // Attachment modes of a floating disc come from a nearly singular matrix: rates are accurate to 3e-8 of the 1000 N load
+          // Attachment modes of a floating disc are computed with a nearly singular matrix: rates have an accuracy of 3e-8 of the 1000 N
+          // load
           EXPECT_LT(max_norm(rates - quotient), 1e-7 * max_norm(quotient) + (mount.axial > 0. ? 0. : 3e-5));
         }
     }
@@ -409,7 +410,7 @@ TEST(SteadySliding, Refusals)
 
 TEST(ContactMotions, OfALevelDisc)
 {
-  // Three motions press the pins and three slide past them, in any basis
+  // Three rigid-body motions press the disc against the pins and three slide past them, in any basis
   const Scene s(four_pins(), mounted({}), operating());
   const auto  N = free_motions(s.model, s.system, 0);
   ASSERT_TRUE(N);
@@ -428,7 +429,7 @@ TEST(ContactMotions, OfALevelDisc)
       EXPECT_LT(max_norm(gram(*sliding, *s.system.mass * *sliding) - DenseMatrix::Identity(3, 3)), 1e-12);
     }
 
-  // A pure rotation leaves only rounding errors along the normals
+  // For a pure rotation, motions along the normals are rounding errors
   const auto turning = free_motions(s.model, assemble(s.model, mounted({{"disc_bore", 1e10, 0., 1e10}})), 0);
   ASSERT_TRUE(turning);
   ASSERT_EQ(turning->n_columns(), 1);

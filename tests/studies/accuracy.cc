@@ -14,14 +14,14 @@ namespace
 {
   constexpr int n_modes = 5;
 
-  /// Limits of the modes: frequencies 1000, 2000, ... Hz, divergence rates 1 %, 2 %, ...
+  /// Exact values of the modes: frequencies 1000, 2000, ... Hz, divergence rates 1 %, 2 %, ...
   Complex limit(const int mode)
   {
     const double omega = circular_frequency(1000. * (mode + 1));
     return {0.01 * (mode + 1) * omega, omega};
   }
 
-  /// Unit vectors as shapes; in a cluster the last two are mixed in equal parts.
+  /// Shapes are unit vectors; in a cluster, the last two are mixed in equal parts.
   ModesAtPoints modes(const double error, const bool has_cluster)
   {
     const RowMap map    = RowMap::even(n_modes, MPI_COMM_WORLD);
@@ -34,7 +34,7 @@ namespace
     return result;
   }
 
-  /// Discretisation error @p constant h²; a reduced basis adds the error @p reduction and takes half the time.
+  /// Results with the discretisation error @p constant h²; a reduced basis adds the error @p reduction and takes half the time.
   SolvedMesh solved(const Element element, const double factor, const double constant, const double reduction, const bool has_cluster)
   {
     const double error = constant / (factor * factor);
@@ -59,7 +59,7 @@ TEST(Accuracy, ExtrapolatesEveryFamilyAndTakesTheBest)
       meshes.push_back(solved(Element::trilinear, factor, 0.01, 0., false));
       meshes.push_back(solved(Element::incompatible_modes, factor, 0.001, 0., factor < 1.));
     }
-  meshes.push_back(solved(Element::quadratic, 0.5, 1e-6, 0., false)); // a single mesh: no order, no limit
+  meshes.push_back(solved(Element::quadratic, 0.5, 1e-6, 0., false)); // a single mesh has no order and no limit
   const auto families = converged_families(meshes, 6000.);
   ASSERT_EQ(families.size(), 2u);
   const ConvergedFamily &best = best_family(families);
@@ -69,7 +69,7 @@ TEST(Accuracy, ExtrapolatesEveryFamilyAndTakesTheBest)
       const ConvergedMode &mode = best.modes[k];
       EXPECT_EQ(mode.in_cluster, k >= 3) << k;
       EXPECT_EQ(mode.numbers, (std::vector<int>(3, k))) << k;
-      if (mode.in_cluster) // value of the finest mesh
+      if (mode.in_cluster) // the value of the finest mesh is used
         EXPECT_NEAR(mode.frequency.value, 1.00025 * 1000. * (k + 1), 1e-9);
       else
         {
@@ -88,7 +88,7 @@ TEST(Accuracy, SplitsErrorsAndMarksTheFront)
   std::vector<SolvedMesh> meshes;
   for (const double factor : {1., 2., 4.})
     meshes.push_back(solved(Element::trilinear, factor, 0.01, 1e-3, false));
-  meshes.push_back(solved(Element::quadratic, 3., 0.5, 1e-3, true)); // slow and inaccurate, with two mixed modes
+  meshes.push_back(solved(Element::quadratic, 3., 0.5, 1e-3, true)); // a slow and inaccurate method with two mixed modes
   meshes.back().mesh.factor = 3.;
   const auto families       = converged_families(meshes, 6000.);
   const auto methods        = compare(meshes, best_family(families), 4500.);
@@ -97,7 +97,7 @@ TEST(Accuracy, SplitsErrorsAndMarksTheFront)
     {
       const ComparedMethod &method = methods[m];
       const double          h2     = std::pow(method.mesh->mesh.factor, -2.);
-      ASSERT_EQ(method.modes.size(), 4u); // up to 4500 Hz
+      ASSERT_EQ(method.modes.size(), 4u); // modes up to 4500 Hz
       EXPECT_EQ(method.n_lost, 0);
       EXPECT_EQ(method.n_in_cluster, 0);
       EXPECT_NEAR(method.largest_frequency.discretisation, 0.01 * h2, 1e-9);
@@ -110,7 +110,9 @@ TEST(Accuracy, SplitsErrorsAndMarksTheFront)
                   1e-9);
       EXPECT_NEAR(method.rms_frequency, method.largest_frequency.total, 1e-9);
     }
-  // CPU times 2 1 | 4 2 | 8 4: full order takes as long as a basis on the next finer mesh, which is more accurate
+  // CPU times 2 1
+  // 4 2
+  // 8 4: full order takes as long as a basis on the next finer mesh, which is more accurate
   std::vector<bool> front;
   for (const ComparedMethod &method : methods)
     front.push_back(method.on_front);

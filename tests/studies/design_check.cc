@@ -36,7 +36,7 @@ TEST(DesignChecks, VariablesThatChangeNothingAreRefused)
   const std::string load = "Operation/Load per side = 500, 1000";
   expect_refusal({changes_nothing, "Operation/Load per side", "no contact damping"}, load);
   EXPECT_EQ(refusal(load, {"Operation/Radial dissipation=consistent"}), "accepted");
-  // Some designs use it
+  // Accepted, because some designs use the load
   EXPECT_EQ(refusal(load + "; Operation/Radial dissipation = none, consistent"), "accepted");
 
   for (const char *variable :
@@ -54,7 +54,7 @@ TEST(DesignChecks, VariablesThatChangeNothingAreRefused)
   expect_refusal({changes_nothing, "Geometry/Pin layers", "Accuracy"}, "Geometry/Pin layers = 3, 4", {"Accuracy=1 %"});
   EXPECT_EQ(refusal("Geometry/Pin height = 0.03, 0.034", {"Accuracy=1 %"}), "accepted");
 
-  // One effective parameter is enough if several share a value
+  // If several parameters share a value, one effective parameter is sufficient
   EXPECT_EQ(refusal("Geometry/Pin height + Operation/Load per side = 0.03, 0.034"), "accepted");
 }
 
@@ -84,16 +84,16 @@ TEST(DesignChecks, ValuesAreHeldAgainstTheirBoundsFirst)
   expect_refusal({"must be >= 0 m, not -0.01", "Geometry/Pin height = -0.01"},
                  "Disc material/Density = 1, 2; Geometry/Pin height = 0.03, -0.01");
   expect_refusal({"integer", "Geometry/Disc layers = 1.5"}, "Geometry/Disc layers = 1 to 3 in 5");
-  // Together with parameters that do not vary
+  // A value that is invalid together with parameters that do not vary
   expect_refusal({"beyond the inner radius", "Geometry/Pin diameter = 0.2"}, "Geometry/Pin diameter = 0.05, 0.2");
-  // Samples of a range
+  // Samples of a range are also checked
   expect_refusal({"Poisson", "Pin material/Poisson ratio = 0."}, "Pin material/Poisson ratio = 0.2 to 0.8",
                  {"Designs/Plan=Latin hypercube"});
   expect_refusal({"Pin material/Poisson ratio must lie in -1 ... 0.5, not 0.8"}, "Pin material/Poisson ratio = 0.2 to 0.8",
                  {"Study=search"});
-  // Combinations that make no sense are reported per design
+  // Invalid combinations are reported for the affected designs
   EXPECT_EQ(refusal("Operation/Load per side = 0, 1000; Operation/Radial dissipation = none, consistent"), "accepted");
-  // The message names the line of a file
+  // The message names the line of the file
   expect_mentions(refusal_of_file("Geometry/Pin height\n0.03\n\n-1\n"), {"line 4", "not -1"});
   expect_mentions(refusal_of_file("Pin height\n0.03\n"), {"line 1", "`Geometry/Pin height`"});
 }

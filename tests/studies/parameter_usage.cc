@@ -59,7 +59,7 @@ namespace
     return {"Study=updating", "Updating/Measured modes=" + measured.string(), "Designs/Variables=Pin material/Density = 3000 to 3200"};
   }
 
-  /// A run, the study sections that it uses, and prefixes of further paths that it does not use.
+  /// A run, the study sections that it uses, and prefixes of other paths that it does not use.
   struct Usage
   {
     Paths              run, sections;
@@ -67,12 +67,12 @@ namespace
 
     std::set<std::string> expected() const
     {
-      Paths beginnings = {"System values", "Sweep/Parameter", "Sweep/Second parameter"}; // of a system file
+      Paths beginnings = {"System values", "Sweep/Parameter", "Sweep/Second parameter"}; // parameters of a system file
       for (const char *section :
            {"Accuracy study/", "Designs/", "Ingredients/", "Reduction/", "Robustness/", "Search/", "Sensitivity/", "Sweep/", "Updating/"})
         if (std::find(sections.begin(), sections.end(), section) == sections.end())
           beginnings.emplace_back(section);
-      if (!run.empty() && run.front().rfind("Study=", 0) == 0) // no stability study
+      if (!run.empty() && run.front().rfind("Study=", 0) == 0) // the run is not a stability study
         beginnings.emplace_back("Discretization/Coarser mesh");
       for (const Paths &some : unused)
         beginnings = joined(beginnings, some);
@@ -94,14 +94,14 @@ TEST(ParameterUsage, EveryStudyIsFoundByItsNameAndUsesItsDefaults)
   for (const Study *study : studies())
     {
       Paths run = {std::string("Study=") + study->name};
-      if (run.front() == "Study=geometry" || run.front() == "Study=search") // which have no default
+      if (run.front() == "Study=geometry" || run.front() == "Study=search") // these variables have no default
         run.emplace_back("Designs/Variables=Geometry/Pin height = 0.03 to 0.04 in 2");
       if (run.front() == "Study=robustness")
         run.emplace_back("Robustness/Distributions=Pin material/Density = uniform 90 % to 110 %");
       if (run.front() == "Study=updating")
         run = updating(measured);
       EXPECT_EQ(parameters_of(run).study, study) << study->name;
-      EXPECT_EQ(unused(run), std::set<std::string>()) << study->name; // by default
+      EXPECT_EQ(unused(run), std::set<std::string>()) << study->name; // parameters with default values are not reported
       EXPECT_NE(study->run, nullptr) << study->name;
       EXPECT_TRUE(names.insert(study->name).second) << study->name;
     }
@@ -157,7 +157,7 @@ TEST(ParameterUsage, OfEveryStudy)
      {"Accuracy study/"},
      {no_shapes, no_sliding, own_meshes, {"Complex modes/Maximum", "Accuracy study/Grown"}}},
 
-    // The study varies contact state, dissipation, solver and rotation itself, so that their parameters are used
+    // The study varies contact state, dissipation, solver and rotation, so that these parameters are used
     {{"Study=ingredients"}, {"Ingredients/"}, {{"Output/"}}},
 
     {{"Study=reduction"}, {"Reduction/"}, {no_shapes, no_sliding, undamped}},
@@ -199,7 +199,7 @@ TEST(ParameterUsage, OfEveryStudy)
     {joined(design, {"Designs/Plan=Sobol sequence", steady}),
      {"Designs/", "Sweep/"},
      {reduced, no_rate, no_sweep, one_mu, {"Designs/File", "Operation/Rotation speed"}}},
-    // A search has ranges instead of a plan
+    // A search uses ranges instead of a plan
     {{"Study=search", "Designs/Variables=Geometry/Pin height=0.03 to 0.04"},
      {"Designs/", "Search/", "Sweep/"},
      {reduced, no_sweep, no_sliding, undamped, one_mu, {"Designs/Plan", "Designs/Number", "Designs/File", "Search/Quantile"}}},
@@ -229,7 +229,7 @@ TEST(ParameterUsage, OfEveryStudy)
       conditional.insert(found.begin(), found.end());
     }
 
-  // Every parameter is covered: it is used by every run, or unused by some run of the table.
+  // The table covers every parameter: every run uses it, or some run of the table does not.
   const std::set<std::string> always       = {"Geometry", "Mounts", "Discretization", "Band", "Real modes", "Linear algebra", "Contact"};
   const std::set<std::string> of_materials = {"Young modulus", "Poisson ratio", "Density", "Volumes", "Orthotropic", "Axes"};
   for (const std::string &path : all_paths())
@@ -239,7 +239,7 @@ TEST(ParameterUsage, OfEveryStudy)
                                   always.count(path.substr(0, slash)) > 0 || of_materials.count(path.substr(slash + 1)) > 0;
       EXPECT_TRUE(is_always_used || conditional.count(path) > 0) << path << " has no usage rule";
     }
-  // Every path in a study rule must exist; a misspelt path in a general rule would leave a parameter without a rule above.
+  // Every path in a rule of a study must exist; a misspelt path in a general rule would leave a parameter uncovered above
   for (const Study *study : studies())
     {
       std::vector<std::string> beginnings(study->own_parameters.begin(), study->own_parameters.end());
@@ -265,7 +265,7 @@ TEST(ParameterUsage, OfGeometries)
       const File file(name, text);
       EXPECT_EQ(unused({thickness + "=0.04", diameter + "=0.04", radius + "=0.32", "Geometry/File=" + file.string()}), paths) << name;
     }
-  EXPECT_EQ(unused({thickness + "=0.04", diameter + "=0.04", radius + "=0.32"}), std::set<std::string>()); // of disc_pins.geo
+  EXPECT_EQ(unused({thickness + "=0.04", diameter + "=0.04", radius + "=0.32"}), std::set<std::string>()); // parameters of disc_pins.geo
 }
 
 TEST(ParameterUsage, NoFalseAlarmOnShippedFiles)

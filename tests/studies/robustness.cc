@@ -32,7 +32,7 @@ namespace
   }
 } // namespace
 
-// The function of Ishigami and Homma (1990), sin x + a sin² y + b z⁴ sin x
+// Test function of Ishigami and Homma (1990), sin x + a sin² y + b z⁴ sin x
 TEST(Robustness, SobolIndicesOfIshigami)
 {
   constexpr double  a = 7., b = 0.1;
@@ -75,7 +75,7 @@ TEST(Robustness, SamplesHaveTheirDistributions)
   EXPECT_LE(X.col(1).maxCoeff(), 6.5);
   EXPECT_GE(X.col(2).minCoeff(), 0.);
   const Eigen::VectorXd x = X.col(0).array() - X.col(0).mean(), y = X.col(1).array() - X.col(1).mean();
-  // A uniform and a normal variable with normal-score correlation 0.8 have 0.8 √(3/π), apart from truncation
+  // A uniform and a normal variable with normal-score correlation 0.8 have the correlation 0.8 √(3/π), except for the effect of truncation
   EXPECT_NEAR(x.dot(y) / (x.norm() * y.norm()), 0.8 * std::sqrt(3. / M_PI), 0.02);
   correlations(0, 2) = correlations(2, 0) = 0.9;
   EXPECT_THROW(independent_samples(distributions, correlations, 10, 0), ParameterError);
@@ -83,7 +83,7 @@ TEST(Robustness, SamplesHaveTheirDistributions)
 
 TEST(Robustness, ProbabilityWithItsInterval)
 {
-  const Estimate some = probability(20, 100); // tables of Clopper and Pearson
+  const Estimate some = probability(20, 100); // from the tables of Clopper and Pearson
   EXPECT_NEAR(some.lower, 0.1267, 5e-5);
   EXPECT_NEAR(some.upper, 0.2918, 5e-5);
   EXPECT_EQ(probability(0, 50).lower, 0.);

@@ -19,9 +19,9 @@ namespace
 {
   using Complex = std::complex<double>;
 
-  constexpr double band       = 3.6;                                ///< its end [rad/s]
-  constexpr int    chain_size = 15, n_coupled = 2 * chain_size - 2; ///< dofs of each chain, and of both in contact
-  constexpr double before = 0.2, after = 0.3;                       ///< friction coefficients between which flutter begins
+  constexpr double band       = 3.6;                                ///< end of the band [rad/s]
+  constexpr int    chain_size = 15, n_coupled = 2 * chain_size - 2; ///< dofs of each chain, and of the two chains in contact
+  constexpr double before = 0.2, after = 0.3;                       ///< flutter begins between these friction coefficients
 
   /// Two mass-spring chains in contact at two nodes, given by matrices without a mesh.
   struct Chains
@@ -48,7 +48,7 @@ namespace
           P_n(c, 2 * c) = P_t(c, 2 * c + 1) = 1.;
           P_n(c, chain_size + 2 * c) = P_t(c, chain_size + 2 * c + 1) = -1.;
         }
-      // Dofs 0 and 2 of the second chain follow those of the first
+      // Dofs 0 and 2 of the second chain follow dofs of the first
       for (int dof = 0, column = 0; dof < 2 * chain_size; ++dof)
         if (dof == chain_size || dof == chain_size + 2)
           T_c.row(dof) = T_c.row(dof - chain_size);
@@ -88,7 +88,7 @@ namespace
                             {}});
     }
 
-    /// λ of the band by LAPACK from the companion form of T_cᵀ (I − (μ/2) P_tᵀ P_n) {M, C, K} T_c, by ascending frequency.
+    /// λ in the band, by ascending frequency, from the companion form of T_cᵀ (I − (μ/2) P_tᵀ P_n) {M, C, K} T_c by LAPACK.
     std::vector<Complex> lambda(const double mu) const
     {
       const auto with_friction = [&](const DenseMatrix &X) -> DenseMatrix {
@@ -116,7 +116,7 @@ namespace
     DenseMatrix M, C, K, P_n, P_t, T_c;
   };
 
-  /// Results of the core for a system.
+  /// Results computed for a system without a mesh.
   struct Solved
   {
     explicit Solved(const double beta)
@@ -143,7 +143,7 @@ namespace
 
   constexpr double undamped_and_damped[] = {0., 5e-4};
 
-  /// Largest relative distance of λ from its nearest neighbour; both lists must have the same size.
+  /// Largest relative distance of an eigenvalue from its nearest neighbour in the other list; both lists must have the same size.
   double farthest(const std::vector<Complex> &found, const std::vector<Complex> &expected)
   {
     EXPECT_EQ(found.size(), expected.size());
@@ -253,7 +253,7 @@ TEST(OwnSystem, Reduction)
   for (const double beta : undamped_and_damped)
     {
       Solved solved(beta);
-      // Errors are 6e-4 with real modes alone and 4e-6 with their responses to friction
+      // Errors are 6e-4 with real modes only, and 4e-6 with their responses to friction
       ReducedModel real(solved.system);
       real.extend(MultiVector(*solved.frictionless.real.vectors));
       const ReducedModel responses = starting_model(solved.system, *solved.frictionless.inverse, *solved.frictionless.real.vectors, true);

@@ -14,7 +14,7 @@ using namespace Squeal::Testing;
 
 namespace
 {
-  /// Terms in λ: θ = 2 a b² of a symmetric matrix, −3 a of a skew one, and low-rank terms with and without weights.
+  /// Terms with power @p of λ: θ = 2 a b² with a symmetric matrix, −3 a with a skew matrix, and low-rank terms with and without weights.
   struct Terms
   {
     RowMap                               map = rows(4), short_map = rows(2);
@@ -31,7 +31,7 @@ namespace
                                                    low_rank_term("of low rank", 1, {}, left, right), low_rank_term("weighted", 1, {0.5, {}}, left, right, "d"),
                                                    sparse_term("of another power", 2, {}, S)};
 
-    /// The sum of the terms in λ.
+    /// Expected value of the sum of the terms.
     DenseMatrix expected() const
     {
       DenseMatrix weighted = to_dense(*R);
@@ -77,7 +77,7 @@ TEST(Terms, VanishWithTheirParametersOrWeights)
   t.values["d"] = {0., 0.};
   t.values["b"] = {0.};
   EXPECT_EQ(names(), "skew, of low rank, ");
-  t.values["d"] = {}; // zeros, too
+  t.values["d"] = {}; // an empty list means zeros
   t.values["a"] = {0.};
   EXPECT_EQ(names(), "of low rank, ");
 }

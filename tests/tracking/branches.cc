@@ -115,7 +115,7 @@ namespace
       EXPECT_EQ(count.n_modes, count.n_expected) << "at " << count.friction_coefficient;
   }
 
-  /// The chart of a family, checked for these thresholds: onset and restabilisation of a window, or onsets of one branch each.
+  /// The chart of a family, checked for these thresholds: onset and restabilisation of a window, or onsets of different branches.
   StabilityChart expect_thresholds(Family                     family,
                                    const std::vector<double> &grid,
                                    const ThresholdMechanism   mechanism,
@@ -139,7 +139,7 @@ namespace
     return chart;
   }
 
-  /// Expects two charts of a family to agree in thresholds, crossings and at the grid points of the first.
+  /// Expects that two charts of a family agree in thresholds, crossings and at the grid points of the first chart.
   void expect_same(const StabilityChart &coarse, const StabilityChart &fine, const double tolerance)
   {
     ASSERT_EQ(coarse.thresholds.size(), fine.thresholds.size());
@@ -159,7 +159,7 @@ namespace
         EXPECT_EQ(one.enters, other.enters);
       }
 
-    // Modes of a multiple λ at the first point have an arbitrary order, so that branches are compared as sets of curves
+    // The order of the modes of a multiple λ at the first point is arbitrary, so that branches are compared as sets of curves
     const auto curves = [&coarse](const StabilityChart &chart) {
       std::vector<Eigen::VectorXcd> result;
       for (std::size_t b = 0; b < chart.branches.size(); ++b)
@@ -183,7 +183,7 @@ namespace
       EXPECT_TRUE(std::any_of(second.begin(), second.end(), [&](const auto &other) { return max_norm(other - curve) < 1e-6; }));
   }
 
-  /// Unequal damping d1, d2 of the two degrees of freedom of flutter.h.
+  /// Flutter of flutter.h with unequal damping d1, d2 of the two degrees of freedom.
   struct DampedFlutter : Testing::Flutter
   {
     double d1 = 0., d2 = 0.;
@@ -205,7 +205,7 @@ namespace
     }
   };
 
-  /// Modes that do not interact, each with its λ(μ); computed values have an error [rad/s] of known size.
+  /// Modes that do not interact, each given by its λ(μ); computed values have an error [rad/s] of known size.
   Family given_modes(const std::vector<std::function<Complex(double)>> &lambda, const Complex error = 0.)
   {
     const auto entries = [lambda](const double mu, double (*const entry)(const Complex &)) {
@@ -229,18 +229,18 @@ namespace
     return result;
   }
 
-  /// λ at a frequency with ξ = slope (μ − begin).
+  /// λ(μ) with a constant frequency and ξ = slope (μ − begin).
   std::function<Complex(double)> growing(const double omega, const double slope, const double begin)
   {
     return [=](const double mu) { return Complex(omega * slope * (mu - begin), omega); };
   }
 
-  /// Onset of growth below 10 rad/s, and onset of growth beyond the weak level.
+  /// Onset of growth below 10 rad/s, and onset of more than weak growth.
   std::vector<std::optional<GrowthOnset>> onsets(const Family &modes, const StabilityChart &chart, const double before = 0.)
   {
     const std::vector<std::optional<GrowthOnset>> result = {first_onset(chart, 10., before),
                                                             onset_beyond(weak_divergence, chart, modes, precise(10., 1e-10), before)};
-    // The earliest onset of all branches is the overall onset
+    // The overall onset is the earliest onset of all branches
     std::vector<std::optional<GrowthOnset>> of_branches(2);
     for (int b = 0; b < static_cast<int>(chart.branches.size()); ++b)
       {
@@ -270,7 +270,7 @@ TEST(Branches, ThresholdsInClosedForm)
       ASSERT_EQ(chart.thresholds.size(), 1u);
       const Threshold &threshold = chart.thresholds.front();
       EXPECT_LT(std::abs(threshold.lambda - Complex(0., std::sqrt(0.5 * (flutter.k11 + k22)))), 1e-6);
-      // The lower branch continues as the growing one
+      // The lower branch is the one that grows
       EXPECT_LT(value(chart, threshold.branch, 0).imag(), value(chart, threshold.partner, 0).imag());
       EXPECT_GT(value(chart, threshold.branch, chart.points.size() - 1).real(), 0.);
     }
@@ -283,7 +283,7 @@ TEST(Branches, ThresholdsInClosedForm)
 
 TEST(Branches, WindowsOfInstabilityAreFound)
 {
-  // 4 + μ and 6 − μ meet at μ = 1; coupling c and −c makes them grow while |μ − 1| < c
+  // 4 + μ and 6 − μ are equal at μ = 1; with coupling c and −c, modes grow while |μ − 1| < c
   for (const double c : {1e-1, 1e-3, 1e-5})
     {
       const auto K = [c](const double mu) { return DenseMatrix{{4. + mu, c}, {-c, 6. - mu}}; };
@@ -303,11 +303,11 @@ TEST(Branches, WindowsOfInstabilityAreFound)
 
 TEST(Branches, GrowthAtOnce)
 {
-  // κ = 5 ± iμ from the start; a second pair, split by 0.1, follows later
+  // κ = 5 ± iμ grows from μ = 0; a second pair, split by 0.1, grows later
   const auto pairs = [](const double mu) { return DenseMatrix{{5., mu, 0., 0.}, {-mu, 5., 0., 0.}, {0., 0., 7., mu}, {0., 0., -mu, 7.1}}; };
   const auto chart = expect_thresholds({pairs}, uniform_grid(0., 1., 10), coalescence, {0., 0.05});
   EXPECT_EQ(chart.thresholds.at(0).friction_coefficient, 0.);
-  // C = μ diag(c (μ − 0.2), −1, 1) / 100: onset at 0.2, at once, and never
+  // C = μ diag(c (μ − 0.2), −1, 1) / 100: one mode grows above 0.2, one from μ = 0, one never
   const auto K = [](double) { return diagonal({1., 2., 3.}); };
   const auto C = [](const double mu) { return diagonal({-0.01 * mu * (mu - 0.2), -0.01 * mu, 0.01 * mu}); };
   for (const int n_steps : {3, 10})
@@ -322,12 +322,12 @@ TEST(Branches, GrowthAtOnce)
 TEST(Branches, CrossingsWithoutInteractionGoStraightThrough)
 {
   Family family{[](const double mu) { return DenseMatrix{{4. + mu, 0.2, 0.}, {0.2, 5. + mu, 0.}, {0., 0., 6. - mu}}; }};
-  // The last grid contains a crossing, where vectors are arbitrary
+  // The last grid contains a crossing, at which vectors are arbitrary
   const double crossing = (6. - (4.5 - std::sqrt(0.29))) / 2.;
   for (const auto &grid : {uniform_grid(0., 2., 4), uniform_grid(0., 2., 37), std::vector<double>{0., crossing, 2.}})
     {
       const StabilityChart chart = expect_thresholds(family, grid, coalescence, {});
-      EXPECT_EQ(chart.points.size(), grid.size()); // no refinement
+      EXPECT_EQ(chart.points.size(), grid.size()); // the chart is not refined
       for (int branch = 0; branch < 3; ++branch)
         EXPECT_NEAR(overlap(chart, branch), 1., 1e-10);
       EXPECT_EQ(chart.branches.at(2).modes.back(), 0);
@@ -336,7 +336,7 @@ TEST(Branches, CrossingsWithoutInteractionGoStraightThrough)
 
 TEST(Branches, VeeringsAreRefined)
 {
-  // Branches keep their order and exchange vectors within |μ − 1| of the order of the coupling
+  // Branches remain ordered and exchange vectors while |μ − 1| is of the order of the coupling
   for (const double coupling : {1e-1, 1e-4})
     {
       const auto K     = [=](const double mu) { return DenseMatrix{{4. + mu, coupling}, {coupling, 6. - mu}}; };
@@ -366,7 +366,7 @@ TEST(Branches, MultipleModesAreFollowedAcrossOthers)
       (*vectors)(Eigen::placeholders::all, multiple) =
         (*vectors)(Eigen::placeholders::all, multiple) * orthonormal_columns(random(generator, n, n));
   };
-  // One grid contains the crossing of the twelve modes with a thirteenth
+  // One of the grids contains the crossing of the twelve modes with a thirteenth
   for (const int n_steps : {3, 10, 33})
     {
       const StabilityChart chart = expect_thresholds(family, uniform_grid(0., 1., n_steps), coalescence, {});
@@ -387,10 +387,11 @@ TEST(Branches, MultipleModesAreFollowedAcrossOthers)
 
 TEST(Branches, BandCrossingsInClosedForm)
 {
-  // ω = √(8 + 2μ) leaves and √(10.2 − 2μ) enters the band ω < 3; the list ends 5 % above, where a fourth mode comes and goes
+  // ω = √(8 + 2μ) leaves the band ω < 3, and √(10.2 − 2μ) enters it; the list of modes ends 5 % above, where a fourth mode appears and
+  // disappears
   Family family{[](const double mu) { return diagonal({8. + 2. * mu, 10.2 - 2. * mu, 4., 9.9 + 4. * (mu - 0.5) * (mu - 0.5)}); }};
   family.last = 3.15;
-  // c² = 4 k at μ = 0.7 and again at 1.3, c = c_max − (μ − 1)²
+  // The mode is overdamped between μ = 0.7 and 1.3, where c² = 4 k, c = c_max − (μ − 1)²
   Family overdamped{[](double) { return diagonal({1., 9.}); }};
   overdamped.damping = [](const double mu) { return diagonal({2.09 - (mu - 1.) * (mu - 1.), 0.1}); };
   for (const bool real : {false, true})
@@ -413,7 +414,7 @@ TEST(Branches, BandCrossingsInClosedForm)
 
 TEST(Branches, UncertaintyCoversThePerturbation)
 {
-  // D = ψᵀ δK φ / (−ψᵀQ'φ): the first-order change of λ due to δK
+  // The first-order change of λ due to δK is D = ψᵀ δK φ / (−ψᵀQ'φ)
   for (const double size : {1e-6, 1e-3})
     for (const bool damped : {false, true})
       {
@@ -443,11 +444,11 @@ TEST(Branches, UncertaintyCoversThePerturbation)
 
 TEST(Branches, ManyModes)
 {
-  // diag(squares) + μ U Vᵀ of rank three in a basis that hides the structure
+  // K = diag(squares) + μ U Vᵀ with a correction of rank three, in a basis that hides this structure
   struct Spectrum
   {
     std::string         name;
-    std::vector<double> squares, weights, damping; ///< of the modes; weights in U and V
+    std::vector<double> squares, weights, damping; ///< of each mode; weights are its entries in U and V
     double              band, last;
   };
   std::mt19937                     generator(11);
@@ -459,7 +460,7 @@ TEST(Branches, ManyModes)
       spread.weights.push_back(0.5);
     }
   spread.squares[20] = spread.squares[19] = spread.squares[18];
-  // 12 pin modes within 1 %, a disc doublet among them, six equal modes above
+  // 12 pin modes within 1 %, a disc doublet among them, and six equal modes above
   for (int i = 0; i < 22; ++i)
     {
       pins.squares.push_back(i < 12 ? 25. * (1. + 0.02 * i / 12.) : i < 14 ? 25.2 : i < 20 ? 30. : 30. + i);
@@ -507,7 +508,7 @@ TEST(Branches, Refusals)
 
 TEST(GrowthOnset, LiesBetweenTheValuesOfTheChart)
 {
-  // At 0.6 the second mode grows faster, but the first one, which grows above 0.33, has reached the level earlier
+  // At 0.6, the second mode grows faster, but the first mode, which grows above 0.33, has reached the level earlier
   const Family         modes = given_modes({growing(5., 1e-3, 0.33), growing(7., 4e-3, 0.41)});
   const StabilityChart chart = modes.chart({0., 0.3, 0.6}, precise(10., 1e-10));
   const auto           found = onsets(modes, chart);
@@ -549,7 +550,7 @@ TEST(GrowthOnset, GrowthAtTheFirstValueBeganBefore)
 
 TEST(GrowthOnset, ModesThatEnterTheBandCountFromThereOn)
 {
-  // Grows above 0.05 and enters the band at 0.25; another mode grows only above the band
+  // The mode grows above 0.05 and enters the band at 0.25; another mode grows only above the band
   const auto   entering = [](const double mu) { return Complex(0.1 * (mu - 0.05), 12. - 8. * mu); };
   const Family modes    = given_modes({entering, growing(13., 1e-2, 0.01)});
   for (const auto &onset : onsets(modes, modes.chart({0., 0.2, 0.4, 0.6}, precise(10., 1e-10))))

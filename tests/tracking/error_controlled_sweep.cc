@@ -14,7 +14,7 @@ using namespace Squeal::Testing;
 
 namespace
 {
-  /// A model with everything a sweep needs.
+  /// A model with everything that a sweep needs.
   struct Chart
   {
     explicit Chart(const double c_b, const double c_t = 0., const std::vector<PolarPin> &pins = skewed_pins)
@@ -35,7 +35,7 @@ namespace
       return ChartModel(system, inverse, 0., *real.vectors, omega_max);
     }
 
-    /// Damping proportional to the friction coefficient.
+    /// Operating point with damping proportional to the friction coefficient.
     OperatingPoint at(const double friction) const
     {
       OperatingPoint point{friction, damping.values()};
@@ -169,11 +169,11 @@ TEST(ErrorControlledSweep, StopsAtWhatItProved)
   const auto result     = sweep(model, points, options);
   EXPECT_NE(result.why_stopped.find("the basis would exceed " + std::to_string(options.maximum_basis) + " vectors"), std::string::npos);
   EXPECT_LE(model.size(), options.maximum_basis);
-  ASSERT_TRUE(result.points.front().has_value()); // real modes without friction
+  ASSERT_TRUE(result.points.front().has_value()); // the reduced model contains the real modes without friction
   EXPECT_FALSE(result.points.back().has_value());
   EXPECT_LE(result.worst_error, options.tolerance);
 
-  // Stops because of rounding errors before the basis spans the whole space
+  // The sweep stops because of rounding errors before the basis spans the whole space
   options.tolerance     = 1e-16;
   options.maximum_basis = static_cast<int>(chart.s.coupled.map().n());
   ChartModel rounded    = chart.model();
@@ -201,7 +201,7 @@ TEST(PredictedZeros, FindTheSameThresholdsWithFewerPoints)
   expect_fewer(scene.chart(true), scene.chart(false));
   expect_fewer(damped.chart(true), damped.chart(false));
 
-  // No predicted zero without a threshold
+  // Without a threshold, no zero is predicted
   const ChartPoint first = scene.accurate.evaluate(scene.at(0.)), second = scene.accurate.evaluate(scene.at(0.001));
   EXPECT_FALSE(scene.predicted_zero({ModeFunction::frequency, omega_max, {&first, {0}}, {&second, {0}}, {}}).has_value());
 }
