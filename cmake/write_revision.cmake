@@ -5,7 +5,7 @@
 #   cmake -D SOURCE_DIRECTORY=... -D FILE=... -P write_revision.cmake
 
 set(revision "")
-# The sources may be inside an unrelated repository.
+# The sources may be located inside an unrelated repository.
 execute_process(COMMAND git -C "${SOURCE_DIRECTORY}" rev-parse --show-toplevel
                 OUTPUT_VARIABLE repository OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
 file(REAL_PATH "${SOURCE_DIRECTORY}" sources)

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// A disc brake: a disc with its hat, and two pads, each of lining and backplate, chamfered, with one slot. Pads and disc are meshed
-// individually, with quadratic tetrahedra: their faces need not match. An example of a custom solid; prm/brake.prm defines the sliding surfaces
-// and the materials. Units: m, degree.
+// A disc brake: a disc with its hat, and two chamfered pads with one slot, each of lining and backplate. Pads and disc
+// are meshed separately, with quadratic tetrahedra; their faces need not match. This is an example of a custom solid;
+// prm/brake.prm defines the sliding surfaces and the materials. Units: m, degree.
 
 SetFactory("OpenCASCADE");
 
@@ -28,7 +28,7 @@ DefineConstant[
 
 h = ring_thickness / 2;
 
-// Disc: the friction ring, and a hat on it that opens downwards
+// Disc: the friction ring, and on it a hat that opens downwards
 Cylinder(1) = {0, 0, -h, 0, 0, 2 * h, disc_radius};
 Cylinder(2) = {0, 0, -h, 0, 0, h + hat_height, hat_radius + hat_wall / 2};
 disc() = BooleanUnion{ Volume{1}; Delete; }{ Volume{2}; Delete; };
@@ -58,9 +58,9 @@ lining() = BooleanDifference{ Volume{sector_0()}; Delete; }{ Volume{v : v + 2}; 
 outer()  = BooleanFragments{ Volume{lining()}; Delete; }{ Volume{sector_1()}; Delete; };
 Rotate{ {0, 0, 1}, {0, 0, 0}, -angle / 2 }{ Volume{outer()}; }
 copy()  = Symmetry{0, 0, 1, 0}{ Duplicata{ Volume{outer()}; } };
-inner() = BooleanFragments{ Volume{copy(0)}; Delete; }{ Volume{copy(1)}; Delete; }; // what two copies share is one surface again
+inner() = BooleanFragments{ Volume{copy(0)}; Delete; }{ Volume{copy(1)}; Delete; }; // merge the surface shared by both copies
 
-// Parts and surfaces by bounding boxes
+// Identify parts and surfaces by bounding boxes
 e = 1e-5;
 top = h + lining_thickness;
 far = 2 * disc_radius;

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Plan of a disc with one brake pad on each face instead of pins: a sector of
-// an annulus, the same on both faces. An example of a custom plan; Squeal
-// extrudes the disc and both pads from it. Lines that name volumes or layers
-// are not needed: thickness and height come from section "Geometry" of the
-// parameter file, as do the radii of the disc and the element size. Opened in
-// Gmsh directly, the file shows the plan with the values below.
-// Units: m, degree.
+// Plan of a disc with one brake pad on each face instead of pins: a sector of an annulus, the same on both faces. This
+// is an example of a custom plan, from which Squeal extrudes the disc and both pads. The plan defines neither volumes
+// nor layers: thickness, height, the radii of the disc and the element size come from section "Geometry" of the
+// parameter file. If the file is opened in Gmsh, it shows the plan with the values below. Units: m, degree.
 
 DefineConstant[
   disc_inner_radius = 0.1505,
@@ -40,7 +37,7 @@ For ring In {0 : 1}
   loop~{ring} = newll; Curve Loop(loop~{ring}) = {c : c + 2};
 EndFor
 
-// Pad: its curves bound both surfaces, so that disc and pads get the same faces
+// Pad: its curves bound both surfaces, so that faces of disc and pads coincide
 a = pad_angle * Pi / 360;
 p = newp;
 Point(p)     = {pad_inner_radius * Cos(a), -pad_inner_radius * Sin(a), 0, size};
@@ -55,7 +52,7 @@ Circle(c + 3) = {p + 3, centre, p};
 pad_loop = newll; Curve Loop(pad_loop) = {c : c + 3};
 pad = news; Plane Surface(pad) = {pad_loop};
 
-// Rows of elements along and across the pad
+// Number of element rows along and across the pad
 radial     = Ceil((pad_outer_radius - pad_inner_radius) / size);
 tangential = Ceil(2 * a * (pad_inner_radius + pad_outer_radius) / 2 / size);
 Transfinite Curve{c, c + 2}     = radial + 1;

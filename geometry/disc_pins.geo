@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Plan of the built-in geometry: an annular disc and round pins on its two
-// faces. Squeal meshes this plan in two dimensions, fills the pins' circles
-// with a structured grid and extrudes disc and pins layer by layer; opened in
-// Gmsh directly, the file shows the plan with the values below. Squeal sets
-// them from section "Geometry" of its parameter file. Units: m, degree.
+// Plan of the built-in geometry: an annular disc and round pins on its two faces. Squeal meshes this plan in two
+// dimensions, fills the pins' circles with a structured grid and extrudes disc and pins layer by layer. It sets the
+// values below from section "Geometry" of its parameter file. If the file is opened in Gmsh, it shows the plan with
+// these values. Units: m, degree.
 
 DefineConstant[
   disc_inner_radius  = 0.1505,
@@ -22,9 +21,8 @@ If(!Exists(bottom_pin_radii))
   bottom_pin_angles() = {-18.4, 0, 18.4, -18.4, 0, 18.4};
 EndIf
 
-// Three blocks of k x k elements fill a pin: 3 k (k + 1) + 1 nodes, 6 k of them
-// on the circle. Every element is halved after meshing, hence k intervals for
-// each third of a circle and twice the required element size.
+// Three blocks of k x k elements fill a pin: 3 k (k + 1) + 1 nodes, 6 k of them on the circle. Because every element is
+// halved after meshing, each third of a circle has k intervals here, and elements are twice as large as requested.
 k    = Round((Sqrt(12 * nodes_per_pin_face - 3) - 3) / 6);
 size = 2 * element_size;
 
@@ -33,9 +31,8 @@ Mesh.Algorithm            = 6;
 Mesh.SubdivisionAlgorithm = 1;
 Mesh.MeshSizeMax          = size;
 
-// Pins. A top and a bottom pin that overlap share a hole in the plan, nearest
-// first. If the hole and the pin are at different positions, a physical point
-// gives that of the pin; the mesh of the disc is sheared between its two faces.
+// Pins. A top pin and the nearest bottom pin that overlaps it share a hole in the plan. If hole and pin have different
+// positions, a physical point marks the position of the pin, and the mesh of the disc is sheared between its two faces.
 n_top     = #top_pin_radii();
 n_pins    = n_top + #bottom_pin_radii();
 tolerance = 1e-6 * pin_diameter;
@@ -85,7 +82,7 @@ For ring In {0 : 1}
   loop~{ring} = newll; Curve Loop(loop~{ring}) = {c : c + 2};
 EndFor
 
-// Holes: where the pin is, or halfway between the two of a pair
+// Position of a hole: that of its pin, or the midpoint of the two pins of a pair
 For pin In {1 : n_pins}
   other = twin~{pin};
   hole_x~{pin} = x~{pin};
@@ -103,9 +100,8 @@ For pin In {1 : n_pins}
   EndIf
 EndFor
 
-// Holes that overlap, because a pin overlaps two of the other side, move apart,
-// and so do holes of pins on different sides without enough space for elements between them:
-// halving a circle of three intervals moves nodes by half its radius.
+// Move holes apart that overlap because a pin overlaps two pins of the other side, and holes of pins on different sides
+// that leave no space for elements between them: halving a circle of three intervals moves nodes by half its radius.
 closest = (k > 1) ? 1.05 : 1.25;
 least   = disc_inner_radius + 0.55 * pin_diameter;
 most    = disc_outer_radius - 0.55 * pin_diameter;
@@ -119,7 +115,7 @@ For pass In {1 : 50}
           dx = hole_x~{pin} - hole_x~{other};
           dy = hole_y~{pin} - hole_y~{other};
           distance = Hypot(dx, dy);
-          // A pin exactly opposite another is on the same side as any third
+          // A pin exactly opposite another pin counts as being on the same side as any third pin
           same_side = (pin <= n_top) == (other <= n_top) || opposite~{pin} || opposite~{other};
           If(distance < (same_side ? 1 : closest) * pin_diameter)
             crowded = 1;
@@ -148,7 +144,7 @@ If(crowded)
   Error("There is no room in the plan for the top and bottom pins, which overlap but are not opposite each other. Move the pins of one side, or draw a custom plan");
 EndIf
 
-// Circles of three arcs, made with the first pin of a pair
+// Circles of three arcs, created with the first pin of a pair
 holes() = {};
 For pin In {1 : n_pins}
   other = twin~{pin};
@@ -185,8 +181,8 @@ EndFor
 
 s = news; Plane Surface(s) = {loop_1, loop_0, holes()};
 
-// Around pins whose edges are much shorter than the elements of the disc these
-// grow by two fifths of the distance; the default of Gmsh would fill the space between pins with short ones.
+// If the edges of pins are much shorter than the elements of the disc, element sizes grow by two fifths of the distance
+// from the pin; Gmsh's default would fill the space between pins with small elements.
 edge = Pi * pin_diameter / (3 * k);
 If(edge < size / 4)
   outlines() = {};

@@ -5,9 +5,9 @@
 
     scripts/benchmark_linearisations.py DIRECTORY [--runs 3] [--core 0]
 
-DIRECTORY is the output of a run with Output/Write matrices = true and dissipation, such as prm/dissipation.prm. Projection onto the lowest
-234 real modes without friction gives a small dense problem lambda^2 M + lambda C + K, K not symmetric. Right and left eigenvectors of the band
-are computed
+DIRECTORY is the output of a run with Output/Write matrices = true and dissipation, such as prm/dissipation.prm.
+Projection onto the lowest 234 real modes without friction gives a small dense problem lambda^2 M + lambda C + K, with a
+nonsymmetric K. Right and left eigenvectors of the band are computed
 
     companion    by the QR algorithm (dgeev) on [[0, I], [-inv(M) K, -inv(M) C]], which ignores the structure
     symmetric    by the QZ algorithm (dggev) on lambda [[C, M], [M, 0]] + [[K, 0], [0, -M]], which preserves the symmetry of K, C and M
@@ -24,7 +24,7 @@ import time
 
 import benchmarking
 
-os.environ.update(benchmarking.environment())  # before NumPy loads OpenBLAS
+os.environ.update(benchmarking.environment())  # before NumPy loads OpenBLAS, which reads these variables
 
 import numpy as np
 import scipy.linalg
@@ -41,7 +41,7 @@ N_VECTORS, N_MODES = 234, 66
 
 
 def small_problem(directory):
-    """M, C and K in the lowest real modes of the frictionless system, and the end of the band [Hz]."""
+    """M, C and K projected onto the lowest real modes of the frictionless system, and the end of the band [Hz]."""
     matrices, results = exported_matrices.read_matrices(directory), Results(directory)
     bare = exported_matrices.couple(matrices, 0.0)
     full = exported_matrices.couple(matrices, results.number("Operation/Friction coefficient"))
@@ -71,7 +71,7 @@ def by_values(M, C, K, band):
     start = np.random.default_rng(1).standard_normal(len(M)).astype(complex)
     for value in values:
         factor = scipy.linalg.lu_factor(value**2 * M + value * C + K)
-        for kind in (0, 2):  # right, left
+        for kind in (0, 2):  # 0: right vectors, 2: left vectors
             vector = start
             for _ in range(2):
                 vector = scipy.linalg.lu_solve(factor, vector, trans=kind)

@@ -5,14 +5,14 @@
 
     scripts/benchmark_surrogate.py [--fresh 500] [--core 0]
 
-The study of prm/robustness.prm, without Sobol' indices, computes all modes of the samples to a tolerance of 1e-6, which
-are considered exact: the first samples are for training, the last ones for testing. OpenTURNS builds surrogates of
-Re lambda and Im lambda of every mode whose name is unique in all training samples: sparse polynomial chaos (least angle
-regression, hyperbolic truncation, degree 6) and Kriging (linear trend, Matern 5/2). Errors of lambda are those of test samples in which the name is unique, too. A sample squeals if a divergence rate
-exceeds 0.01 %.
+The study of prm/robustness.prm, without Sobol' indices, computes all modes of the samples to a tolerance of 1e-6. These
+modes are taken as exact; the first samples are used for training, the last ones for testing. OpenTURNS builds
+surrogates of Re lambda and Im lambda of every mode whose name is unique in all training samples: sparse polynomial
+chaos (least angle regression, hyperbolic truncation, degree 6) and Kriging (linear trend, Matern 5/2). Errors of lambda
+are evaluated for test samples in which the name is also unique. A sample squeals if a divergence rate exceeds 0.01 %.
 
-Times are CPU seconds on one core. That of a full-order solution is from a stability run with the Krylov solver: from the mode count to the
-complex modes, without assembly. Requires Debian's python3-openturns.
+Times are CPU seconds on one core. The time of a full-order solution is taken from a stability run with the Krylov
+solver, from the mode count to the complex modes, without assembly. Requires Debian's python3-openturns.
 """
 
 import os
@@ -22,7 +22,7 @@ import time
 
 import benchmarking
 
-os.environ.update(benchmarking.environment())  # before NumPy loads OpenBLAS
+os.environ.update(benchmarking.environment())  # before NumPy loads OpenBLAS, which reads these variables
 
 import numpy as np
 
@@ -32,11 +32,11 @@ from squeal.program import SOURCE
 from squeal.results import Results
 
 SIZES = (50, 200)  # numbers of full-order solutions for training
-LEAST_RATE = 1e-4  # divergence rate of a sample that squeals
+LEAST_RATE = 1e-4  # divergence rate above which a sample squeals
 
 
 def read_samples(results):
-    """Values of the uncertain numbers (n x d), and for each sample name -> list of eigenvalues."""
+    """Values of the uncertain numbers (n x d), and for each sample a dictionary name -> list of eigenvalues."""
     samples, modes = results.table("samples"), results.table("sample_modes")
     names = samples.columns[1:samples.columns.index("unstable modes [-]")]
     numbers = np.array([samples.numbers(name) for name in names]).T
@@ -59,7 +59,7 @@ def chaos(ot, inputs, outputs, distribution):
 
 
 def kriging(ot, inputs, outputs, _distribution):
-    """A Gaussian process of each output."""
+    """A Gaussian process for each output."""
     models = []
     for j in range(outputs.getDimension()):
         covariance = ot.MaternModel([1.0] * inputs.getDimension(), 2.5)
@@ -70,7 +70,7 @@ def kriging(ot, inputs, outputs, _distribution):
 
 
 def trained(ot, make, numbers, by_sample, n_train):
-    """Name -> eigenvalues of all samples from surrogates of every mode, and the CPU seconds of training."""
+    """Name -> eigenvalues of all samples, computed by surrogates of every mode, and the CPU seconds of training."""
     lower, upper = numbers.min(axis=0), numbers.max(axis=0)
     scaled = 2 * (numbers - lower) / (upper - lower) - 1
     distribution = ot.ComposedDistribution([ot.Uniform(-1, 1)] * numbers.shape[1])
@@ -82,7 +82,7 @@ def trained(ot, make, numbers, by_sample, n_train):
         middle = values.imag.mean()
         outputs = np.column_stack([values.real / scale[0], (values.imag - middle) / scale[1]])
         found = np.tile(outputs.mean(axis=0), (len(scaled), 1))
-        varied = np.flatnonzero(outputs.std(axis=0) > 0.)  # growth rates of neutral modes are all zero
+        varied = np.flatnonzero(outputs.std(axis=0) > 0.)  # growth rates of neutral modes are constant
         if varied.size:
             model = make(ot, ot.Sample(scaled[:n_train]), ot.Sample(outputs[:, varied]), distribution)
             found[:, varied] = np.array(model(ot.Sample(scaled)))
@@ -91,17 +91,17 @@ def trained(ot, make, numbers, by_sample, n_train):
 
 
 def squeals(modes):
-    """Whether the divergence rate of a mode, in lists by name, exceeds LEAST_RATE."""
+    """True if the divergence rate of any mode, in lists by name, exceeds LEAST_RATE."""
     return any(value.real / abs(value.imag) > LEAST_RATE for values in modes for value in values)
 
 
 def wrong_verdicts(exact, found):
-    """Percentage of the samples in which only one of the two models squeals."""
+    """Percentage of samples that squeal in only one of the two models."""
     return 100 * np.mean([squeals(modes.values()) != squeals(others) for modes, others in zip(exact, found)])
 
 
 def row_of(pairs):
-    """Median, 95 % and largest relative error of pairs of exact and approximate eigenvalues."""
+    """Median, 95 % quantile and maximum of the relative errors of pairs of exact and approximate eigenvalues."""
     exact, found = np.array(pairs).T
     errors = abs(found - exact) / abs(exact)
     return f"{np.median(errors):.1e} | {np.quantile(errors, 0.95):.1e} | {errors.max():.1e}"
@@ -138,7 +138,7 @@ def main():
     n_names = len({label for modes in by_sample for label in modes})
     print("| surrogate | full-order solutions | training [s] | modes of | relative error of lambda: median | 95 % | largest | wrong verdicts [%] |")
     print("|---|---|---|---|---|---|---|---|")
-    # By distance: names of mixed modes may differ between two bases
+    # Pair modes by distance: names of mixed modes may differ between two bases
     pairs = []
     for exact, found in list(zip(by_sample, reduced))[fresh]:
         exact, found = (np.array(sum(modes.values(), [])) for modes in (exact, found))

@@ -1,16 +1,18 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Compares the CPU time of a sweep over a parameter of a system with full-order solutions by SLEPc at each of its values, on one core.
+"""Compares the CPU time of a sweep over a parameter of a system with full-order solutions by SLEPc at each value, on
+one core.
 
     scripts/benchmark_system.py PRM [--set "Section/Name=value"]... [--runs 3] [--core 0]
 
-PRM is a parameter file with Study = sweep, System and one parameter in the section Sweep; the settings are passed to squeal. SLEPc uses
-TOAR about zero with the smallest number of eigenvalues, in steps of two, that covers the band at both ends and in the middle of the sweep.
+PRM is a parameter file with Study = sweep, System and one parameter in the section Sweep; the settings are passed to
+squeal. SLEPc uses TOAR about zero with the smallest number of eigenvalues, in steps of two, with which it covers the
+band at both ends and in the middle of the sweep.
 
-Times of squeal are those of the whole run from the files to branches and thresholds; times of SLEPc are those of the solutions from M, C
-and K in memory. Both run alternately. The modes of the sweep are compared with SLEPc's: those in the band whose Re lambda is at least -0.1
-times the circular frequency at its end. Requires Debian's python3-slepc4py (scripts/setup.sh peers).
+Times of squeal cover the whole run from the files to branches and thresholds; times of SLEPc cover the solutions from
+M, C and K in memory. The two programs run alternately. Modes in the band with Re lambda of at least -0.1 times the
+circular frequency at its end are compared. Requires Debian's python3-slepc4py (scripts/setup.sh peers).
 """
 
 import os
@@ -19,7 +21,7 @@ import tempfile
 
 import benchmarking
 
-os.environ.update(benchmarking.environment())  # before NumPy loads OpenBLAS
+os.environ.update(benchmarking.environment())  # before NumPy loads OpenBLAS, which reads these variables
 
 import numpy as np
 
@@ -41,7 +43,7 @@ def swept(results):
 
 
 def modes_by_value(results, values):
-    """The eigenvalues of the sweep at each of its values, without refinements between them."""
+    """The eigenvalues of the sweep at each of the values, without values added by refinement."""
     table = results.table("branches")
     at, planned = np.array(table.numbers(table.parameter)), ~np.array(table.flags("refinement [-]"), dtype=bool)
     eigenvalues = np.array(table.eigenvalues(), dtype=complex)

@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The tables of doc/benchmarks.md: charts, one friction coefficient and the default run, on one core and on two.
+"""Measures the tables of doc/benchmarks.md: charts, one friction coefficient and the default run, on one core and on
+two.
 
     scripts/benchmark_table.py [--runs 3] [--cores 0,1] [--rows chart,damped,one,default]
 
@@ -13,9 +14,10 @@ Each row is a run of squeal from the mesh to its tables and, in the same round, 
              SLEPc in every applicable formulation of scripts/slepc_modes.py
     default  prm/disc_pins.prm with all fields, without SLEPc
 
-Times on one core are CPU seconds; those of SLEPc are from the assembled matrices in memory to the modes, whose number is given. On two
-cores the same run is timed by wall clock with one and two threads; the ratio is the speed-up. Prints medians of all rounds with the
-smallest and largest values. All rows except the last require SLEPc (scripts/setup.sh peers).
+Times on one core are CPU seconds; times of SLEPc are from the assembled matrices in memory to the modes, whose number
+it is given. On two cores, the wall time of the same run is measured with one and with two threads; the ratio is the
+speed-up. Prints medians of all rounds with the smallest and largest values. All rows except the last require SLEPc
+(scripts/setup.sh peers).
 """
 
 import json
@@ -33,11 +35,11 @@ from squeal.results import Results
 PRM = benchmarking.SOURCE / "prm"
 NO_FIELDS = ["Output/Mode shapes=none"]
 DISSIPATION = "Operation/Radial dissipation=consistent"
-PARTS = (0.1, 0.3, 0.5, 0.7, 0.9)  # positions in the range of a sweep at which SLEPc solves
+PARTS = (0.1, 0.3, 0.5, 0.7, 0.9)  # positions in the range of a sweep at which SLEPc computes modes
 
 
 def gain_of_cores(rounds, cores, parameter_file, folder, settings):
-    """Adds the speed-up by a second core."""
+    """Measures the speed-up by a second core and adds it to the rounds."""
     if len(cores) < 2:
         return
     one, two = (benchmarking.run_squeal(chosen, parameter_file, folder / "by_the_clock", settings)["wall time [s]"]
@@ -48,7 +50,7 @@ def gain_of_cores(rounds, cores, parameter_file, folder, settings):
 
 
 def model_of(folder, damped, core):
-    """The results of the default model with its matrices, written once."""
+    """The results of the default model with its matrices, which are written once."""
     folder = folder / ("damped" if damped else "undamped")
     if not folder.exists():
         settings = [*NO_FIELDS, "Study=stability", "Output/Write matrices=true", *([DISSIPATION] if damped else [])]
@@ -57,7 +59,7 @@ def model_of(folder, damped, core):
 
 
 def mean_of_slepc(rounds, core, model, options):
-    """Mean CPU seconds of solutions by SLEPc, each with a list of options of scripts/slepc_modes.py."""
+    """Mean CPU seconds of solutions by SLEPc; each has its list of options of scripts/slepc_modes.py."""
     solutions = [solution_by_slepc(core, model, own) for own in options]
     mean = statistics.mean(solution["CPU time [s]"] for solution in solutions)
     rounds.add(f"SLEPc {solutions[0]['formulation']}, one friction coefficient, CPU [s]", mean)
@@ -65,7 +67,7 @@ def mean_of_slepc(rounds, core, model, options):
 
 
 def solution_by_slepc(core, model, options):
-    """The record of one solution."""
+    """The record of one solution by SLEPc."""
     n_modes = len(model.table("complex_modes"))
     with tempfile.NamedTemporaryFile(suffix=".json") as file:
         command = [benchmarking.PEER, model.folder, "--modes", n_modes, "--runs", 1, "--json", file.name, *options]
@@ -80,7 +82,7 @@ def solution_by_slepc(core, model, options):
 
 
 def chart(cores, folder, n_rounds, damped):
-    """A sweep and the same number of solutions by SLEPc."""
+    """Measures a sweep and the same number of solutions by SLEPc."""
     parameter_file = PRM / ("sweep_damped.prm" if damped else "sweep.prm")
     settings = ["Sweep/Count modes at=", *NO_FIELDS] if damped else NO_FIELDS
     rounds = Rounds(f"{parameter_file.name}{', without mode count' if damped else ''}")
@@ -101,7 +103,7 @@ def chart(cores, folder, n_rounds, damped):
 
 
 def one(cores, folder, n_rounds):
-    """One friction coefficient from the assembled matrices."""
+    """Measures one friction coefficient, from the assembled matrices."""
     for damped in (False, True):
         rounds = Rounds(f"one friction coefficient, {'consistent' if damped else 'no'} dissipation, from the assembled matrices")
         model = model_of(folder, damped, cores[:1])
@@ -117,7 +119,7 @@ def one(cores, folder, n_rounds):
 
 
 def default(cores, folder, n_rounds):
-    """The default run with its fields."""
+    """Measures the default run with its fields."""
     rounds = Rounds("disc_pins.prm with all fields")
     for _ in range(n_rounds):
         record = benchmarking.run_squeal(cores[:1], PRM / "disc_pins.prm", folder / "default")

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Functions shared by the benchmarks: the machine, runs of squeal and SLEPc on one core with the same BLAS kernels, medians."""
+"""Functions shared by the benchmarks: the machine, medians, and runs of squeal and SLEPc on one core with the same BLAS
+kernels."""
 
 import json
 import os
@@ -27,14 +28,14 @@ def cpu():
 
 
 def kernels():
-    """The OpenBLAS kernels for both programs: the user's choice, or the widest that the processor supports."""
+    """The OpenBLAS kernels for both programs: chosen by the user, or the widest that the processor supports."""
     _, flags = cpu()
     widest = "SkylakeX" if "avx512vl" in flags else "Haswell" if "avx2" in flags else None
     return os.environ.get("OPENBLAS_CORETYPE", widest)
 
 
 def environment(n_threads=1):
-    """Environment with numbers of threads, BLAS kernels, and settings of Open MPI for root in a container."""
+    """Environment variables: numbers of threads, BLAS kernels, and settings of Open MPI for root in a container."""
     settings = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": str(n_threads), "DEAL_II_NUM_THREADS": str(n_threads),
                 "OMPI_MCA_btl_vader_single_copy_mechanism": "none",
                 "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
@@ -42,13 +43,13 @@ def environment(n_threads=1):
 
 
 def describe_machine(core):
-    """One line on the machine and its load."""
+    """A line that describes the machine and its load."""
     return (f"{cpu()[0]}, core {core} of {os.cpu_count()}, OpenBLAS kernels {kernels() or 'chosen by OpenBLAS'}, "
             f"load average {os.getloadavg()[0]:.1f}")
 
 
 def parser_of(description):
-    """The command line of a benchmark: repetitions and core."""
+    """The command-line parser of a benchmark with options for repetitions and core."""
     parser = Parser(description)
     parser.add_argument("--runs", type=int, default=3, help="repetitions (default: %(default)s)")
     parser.add_argument("--core", type=int, default=0, help="the core to run on (default: %(default)s)")
@@ -56,7 +57,8 @@ def parser_of(description):
 
 
 def run_on_cores(cores, command):
-    """The output of a command on cores, with a thread for each. Raises Error with its messages if it fails."""
+    """The output of a command on the given cores, with one thread per core. Raises Error with its messages if it fails.
+    """
     words = ["taskset", "-c", ",".join(map(str, cores)), *map(str, command)]
     process = subprocess.run(words, env=environment(len(cores)), text=True, capture_output=True, check=False)
     if process.returncode != 0:
@@ -65,23 +67,23 @@ def run_on_cores(cores, command):
 
 
 def run_squeal(cores, parameter_file, output, settings=()):
-    """Runs squeal with settings "Section/Name=value" and returns its run record."""
+    """Runs squeal with settings "Section/Name=value"; returns the run record."""
     run_on_cores(cores, [find_program(), parameter_file, "--output", output, *words_of(settings)])
     return json.loads((pathlib.Path(output) / "run.json").read_text(encoding="utf-8"))
 
 
 def cpu_seconds(record, steps=None):
-    """CPU seconds of the named steps of a run record, or of all."""
+    """CPU seconds of the named steps of a run record, or of all steps."""
     return sum(step["CPU time [s]"] for step in record["steps"] if steps is None or step["name"] in steps)
 
 
 def spread(values, digits=1):
-    """Median with the smallest and largest value."""
+    """Text with the median, the smallest and the largest value."""
     return f"{statistics.median(values):.{digits}f} ({min(values):.{digits}f} to {max(values):.{digits}f})"
 
 
 class Rounds:
-    """Measured values of all rounds of a benchmark, by the name of the quantity."""
+    """Measured values of all rounds of a benchmark, by name of the quantity."""
 
     def __init__(self, title):
         self.title, self.values = title, {}

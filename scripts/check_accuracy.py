@@ -5,10 +5,11 @@
 
     scripts/check_accuracy.py RUN REFERENCE
 
-RUN and REFERENCE are results folders. Modes are paired by minimising the sum of the distances of λ, with a penalty for different kinds
-(the letters of the labels), and not by shape as in the program. Prints the largest errors of frequencies and divergence rates of all modes
-and of those that RUN reports as converged, the number of errors larger than estimated, and every mode reported as converged whose frequency
-error exceeds the accuracy, or whose divergence rate error in percentage points exceeds a tenth of it. The exit status is 1 if there is one.
+RUN and REFERENCE are results folders. Unlike in the program, modes are not paired by shape, but by minimising the sum
+of the distances of λ, with a penalty for different kinds (the letters of the labels). Prints the largest errors of
+frequencies and divergence rates of all modes and of those that RUN reports as converged, the number of errors larger
+than estimated, and every mode reported as converged whose frequency error exceeds the accuracy, or whose divergence
+rate error in percentage points exceeds a tenth of it. The exit status is 1 if there is such a mode.
 """
 
 import pathlib
@@ -21,13 +22,13 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "python"))
 import squeal
 from squeal.command_line import Parser, exit_on_error
 
-OTHER_KIND = 0.002  # penalty as a share of the frequency; the label of a mixed mode may change from mesh to mesh
+OTHER_KIND = 0.002  # penalty as a fraction of the frequency; the label of a mixed mode may differ between meshes
 ESTIMATED = ("estimated frequency error by the mesh", "estimated divergence rate error by the mesh")
-FOUND = ("frequency error", "divergence error")  # [%], relative, and in percentage points
+FOUND = ("frequency error", "divergence error")  # columns of errors: relative [%], and in percentage points
 
 
 def compare(run, reference):
-    """The modes of the results `run` as a data frame, with their errors relative to the results `reference`."""
+    """The modes of `run` as a data frame, with their errors relative to the modes of `reference`."""
     modes, exact = run.modes, reference.modes
     frequency = abs(np.divide.outer(modes["frequency"].values, exact["frequency"].values) - 1)
     divergence = abs(np.subtract.outer(modes["divergence rate"].values, exact["divergence rate"].values))

@@ -5,11 +5,12 @@
 
     scripts/check_eigenvalues.py DIRECTORY [--solver scipy|slepc|both] [--system FOLDER]
 
-DIRECTORY is the output of a run with Output/Write matrices = true, or of any run of the system in FOLDER (doc/python.md). The coupled
-quadratic problem is assembled from the exported matrices and solved by SciPy (ARPACK on the companion form) and, if installed, by SLEPc
-(MUMPS; Krylov-Schur on the linear problem in lambda^2, or two-level orthogonal Arnoldi with damping). The eigenvalues of the table are
-compared one to one with the nearest ones found. The exit status is 1 if a difference exceeds the tolerance, the numbers differ or the
-matrices lack their structure.
+DIRECTORY is the output of a run with Output/Write matrices = true, or of any run of the system in FOLDER
+(doc/python.md). The coupled quadratic problem is assembled from the exported matrices and solved by SciPy (ARPACK on
+the companion form) and, if installed, by SLEPc (MUMPS; Krylov-Schur on the linear problem in lambda^2, or two-level
+orthogonal Arnoldi with damping). The eigenvalues in the table are compared one to one with the nearest eigenvalues
+found. The exit status is 1 if a difference exceeds the tolerance, if the numbers of eigenvalues differ, or if the
+matrices do not have the required structure.
 
 If a body can move freely, the stiffness is singular and a real shift is chosen. If the table estimates the errors of its eigenvalues, as
 for the residual iteration, differences up to three times the largest estimate are accepted.
@@ -38,19 +39,19 @@ from squeal.system import System
 STRUCTURE_TOLERANCE = 1e-10
 # Largest relative difference of eigenvalues without estimated errors
 TOLERANCE = 1e-8
-# The largest error estimated by a run may be underestimated by this factor
+# Largest factor by which a run may underestimate its largest error
 ESTIMATE_SAFETY = 3.0
-# Condition number above which a stiffness counts as singular
+# Condition number above which a stiffness matrix counts as singular
 SINGULAR_CONDITION = 1e12
 
 
 def choose_shift(problem, band):
-    """A shift [1/s]: zero, or a twentieth of the end of the band if the stiffness is singular."""
+    """A real shift [1/s]: zero, or a twentieth of the end of the band if the stiffness is singular."""
     n, away = problem.size, 0.05 * 2 * math.pi * band
     try:
         factor = scipy.sparse.linalg.splu(problem.stiffness.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.1,
                                           options={"SymmetricMode": True})
-    except RuntimeError:  # exactly singular
+    except RuntimeError:  # exactly singular stiffness
         return away
     inverse = scipy.sparse.linalg.LinearOperator((n, n), matvec=factor.solve, rmatvec=lambda x: factor.solve(x, trans="T"), dtype=float)
     condition = scipy.sparse.linalg.norm(problem.stiffness, 1) * scipy.sparse.linalg.onenormest(inverse)
@@ -58,7 +59,7 @@ def choose_shift(problem, band):
 
 
 def solve_by_scipy(problem, band, n_modes, shift=0.0):
-    """All eigenvalues of the band by ARPACK on the companion form, which costs one factorisation of size n."""
+    """All eigenvalues in the band by ARPACK on the companion form; requires one factorisation of size n."""
     solver = quadratic.ShiftInvert(problem.mass, problem.damping, problem.stiffness, "exported matrices")
     factor = solver.factor(shift)
 
@@ -74,7 +75,7 @@ def solve_by_scipy(problem, band, n_modes, shift=0.0):
 
 
 def problem_of_system(arguments):
-    """The quadratic problem of a system of matrices, and True: System.read() checks its structure."""
+    """The quadratic problem of a system of matrices, and True, because System.read() has checked its structure."""
     system = System.read(arguments.system)
     p = {name: float(value) for name, _, value in (word.partition("=") for word in arguments.parameter)}
     print(f"{system.size} dofs, {len(system.terms)} terms, " + "".join(f"{name} = {value:g}, " for name, value in system.values(p).items()), end="")
@@ -82,7 +83,7 @@ def problem_of_system(arguments):
 
 
 def problem_of_run(arguments):
-    """The coupled quadratic problem of exported matrices, and whether their structure is correct."""
+    """The coupled quadratic problem of the exported matrices, and whether their structure is correct."""
     friction_coefficient = arguments.mu
     if friction_coefficient is None:
         friction_coefficient = Results(arguments.directory).number("Operation/Friction coefficient")
@@ -96,7 +97,7 @@ def problem_of_run(arguments):
 
 
 def compare(name, labels, eigenvalues, found, tolerance):
-    """Prints the differences from the eigenvalues found; returns whether these and the numbers of modes agree."""
+    """Prints the differences from the eigenvalues found; returns True if the eigenvalues and their number agree."""
     rows, columns, differences = quadratic.match(eigenvalues, found)
     matched = {row: pair for row, *pair in zip(rows, found[columns], differences)}
 

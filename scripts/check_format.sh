@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-# Checks the layout of the sources by .clang-format (clang-format 14, the version of Debian 12) and their
-# licence headers:
+# Checks the layout of the sources with .clang-format (clang-format 14, the version in Debian 12), and
+# the licence headers:
 #
 #   scripts/check_format.sh          lists the files with errors
 #   scripts/check_format.sh --fix    corrects the layout

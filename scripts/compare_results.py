@@ -1,14 +1,15 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Compares the tables of two results folders and prints the largest difference of each.
+"""Compares the tables in two result folders and prints the largest difference in each table.
 
     scripts/compare_results.py OLD NEW [--tolerance 1e-9] [--all]
 
-Every CSV file below OLD is compared with that of the same name below NEW, cell by cell: numbers by their difference relative to the largest
-number of their column in OLD, texts exactly. Columns that vary from run to run (times, memory, residuals, estimates at rounding level) are
-skipped unless --all is given. The exit status is 1 if a table or column is missing, a text differs or a number differs by more than the
-tolerance; additional columns in NEW are ignored.
+Every CSV file in OLD and its subfolders is compared, cell by cell, with the file of the same name in NEW: numbers by
+their difference relative to the largest number of the column in OLD, texts exactly. Columns that vary from run to run
+(times, memory, residuals, estimates at rounding level) are skipped unless --all is given. The exit status is 1 if a
+table or column is missing, a text differs or a number differs by more than the tolerance; additional columns in NEW are
+ignored.
 """
 
 import io
@@ -27,13 +28,13 @@ VARYING = re.compile(r"time|CPU|wall|memory|residual|eps_res|speed-up|orthonorma
 
 
 def read_texts(path):
-    """Cells of a table as texts; pandas numbers columns with the same name."""
+    """Cells of a table as texts; pandas appends a number to repeated column names."""
     lines = [line for line in path.read_text(encoding="utf-8").splitlines(keepends=True) if line.strip() and not line.startswith("#")]
     return pandas.read_csv(io.StringIO("".join(lines)), dtype=str, keep_default_na=False) if lines else pandas.DataFrame()
 
 
 def compare(old_file, new_file, arguments):
-    """The largest relative difference of two tables, and messages on what differs."""
+    """The largest relative difference between two tables, and messages about the differences."""
     old, new = read_texts(old_file), read_texts(new_file)
     if missing := [name for name in old.columns if name not in new.columns]:
         return 0.0, [f"columns are missing: {', '.join(missing)}"]

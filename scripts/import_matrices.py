@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Writes matrices of another program as a system that squeal and its Python module read.
+"""Converts matrices of another program to a system that squeal and its Python module can read.
 
     scripts/import_matrices.py CONFIG.yaml --output FOLDER
 
@@ -16,12 +16,13 @@ CONFIG (YAML or JSON) specifies the power of lambda and the coefficient of each 
       - {name: stiffness, power: 0, file: stiffness.npz, symmetry: symmetric, scale: 1000}
     groups: {disc: [[1, 300]], pads: [[301, 400]]}
 
-File names are relative to CONFIG. The format follows from the suffix or from `format`: .mat of MATLAB (version 7.3 with python3-h5py), .npy
-and .npz, Matrix Market and the text of Abaqus' *MATRIX GENERATE (.mtx: node, dof, node, dof, value or row, column, value), DMIG of Nastran
-(.bdf, .pch), OUTPUT4 (.op4, with pyNastran), Harwell-Boeing (.hb, .rua, .rsa). One triangle of a symmetric matrix suffices, as Abaqus and
-Nastran write it. Matrices with nodes and dofs are sorted by these; FOLDER/rows.csv lists the rows, and a group may be
-{nodes: [[5001, 6000]]}. Dofs that Abaqus fixes by 1e36 on the diagonal are omitted. `nodes: model.inp` (or .bdf) with `unit: mm` adds the
-nodes as points with the displacements of dofs 1 to 3. `coefficient` is an expression in the parameters with + - * / ^, sin, cos, tan, exp,
+File names are relative to CONFIG. The format follows from the suffix or from `format`: .mat of MATLAB (version 7.3 with
+python3-h5py), .npy and .npz, Matrix Market and the text of Abaqus' *MATRIX GENERATE (.mtx: node, dof, node, dof, value
+or row, column, value), DMIG of Nastran (.bdf, .pch), OUTPUT4 (.op4, with pyNastran), Harwell-Boeing (.hb, .rua, .rsa).
+One triangle of a symmetric matrix, as written by Abaqus and Nastran, is sufficient. Matrices with nodes and dofs are
+sorted by node and dof; FOLDER/rows.csv lists the rows, and a group may be {nodes: [[5001, 6000]]}. Dofs that Abaqus
+fixes by 1e36 on the diagonal are omitted. `nodes: model.inp` (or .bdf) with `unit: mm` adds the nodes as points with
+the displacements of dofs 1 to 3. `coefficient` is an expression in the parameters with + - * / ^, sin, cos, tan, exp,
 log, sqrt, abs and _pi. Requires python3-yaml.
 """
 

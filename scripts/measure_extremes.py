@@ -8,7 +8,8 @@
     scripts/measure_extremes.py --missing          # cases that are missing in the table of the page
     scripts/measure_extremes.py --write            # all cases, and updates the table of the page
 
-The exit status is 1 if a case is neither right nor refused as expected. The environment variable SQUEAL is the path of the program.
+The exit status is 1 if a case is neither right nor rejected as expected. The environment variable SQUEAL is the path of
+the program.
 """
 
 import collections
@@ -28,7 +29,7 @@ from squeal.command_line import Parser, exit_on_error
 
 PAGE = pathlib.Path(__file__).resolve().parents[1] / "doc" / "extremes.md"
 BEGIN, END = "<!-- cases -->", "<!-- end of cases -->"
-# Of judge.Row
+# Attributes of judge.Row
 COLUMNS = ("case", "value", "outcome", "modes", "residual", "count", "oracle", "deviation", "digits", "remark")
 HEAD = "| " + " | ".join(COLUMNS) + " |\n" + "|---" * len(COLUMNS) + "|"
 
@@ -38,14 +39,14 @@ def line(row):
 
 
 def known_lines():
-    """Lines of the table by group and value of their cases."""
+    """Lines of the table in the page, by group and value of their cases."""
     table = re.split(f"{BEGIN}|{END}", PAGE.read_text(encoding="utf-8"))[1]
     return {tuple(cell.strip() for cell in text.strip("| ").split(" | ")[:2]): text
             for text in table.strip().splitlines()[2:]}
 
 
 def write(rows):
-    """Replaces the rows of the measured cases, keeps the others, and drops those that are no cases any more."""
+    """Replaces the rows of the measured cases, keeps other rows, and removes rows of cases that no longer exist."""
     lines = {**known_lines(), **{(row.group, row.value): line(row) for row in rows}}
     before, _, after = re.split(f"{BEGIN}|{END}", PAGE.read_text(encoding="utf-8"))
     names = [(case.group, case.value) for case in CASES]
@@ -54,7 +55,7 @@ def write(rows):
 
 
 def judge_in_folder(case):
-    """The row of a case."""
+    """Runs a case in its own folder; returns its row."""
     with tempfile.TemporaryDirectory() as folder:
         return judge(case, pathlib.Path(folder))
 

@@ -1,12 +1,14 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Memory of the processes of a run, step by step: the largest resident size of each, and the largest sum at one time.
+"""Measures the memory of the processes of a run in each step: the largest resident size of each process, and the
+largest sum over all processes.
 
     scripts/measure_memory.py N PRM [ARGUMENT]...
 
-Runs `squeal PRM ARGUMENT...` on N processes of this machine (mpirun, possibly more than cores) and prints a table in megabytes. The sizes
-are sampled twenty times a second; the first line has the sizes at the start, mainly those of libraries.
+Runs `squeal PRM ARGUMENT...` on N processes of this machine (mpirun, possibly more than cores) and prints a table in
+megabytes. The sizes are sampled twenty times a second; the first line shows the sizes at the start, mainly memory of
+libraries.
 """
 
 import os
@@ -21,12 +23,12 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "python"))
 from squeal.command_line import Parser, exit_on_error
 from squeal.program import find_program
 
-INTERVAL = 0.05  # [s]
+INTERVAL = 0.05  # sampling interval [s]
 STEP = re.compile(r"^  (\S.*?)\s{2,}[\d.]+ s\b")
 
 
 def resident(pid):
-    """Resident size of a process [byte]; zero before it has started and once it has ended."""
+    """Resident size of a process [byte]; zero before it starts and after it ends."""
     try:
         pages = int(pathlib.Path(f"/proc/{pid}/statm").read_text(encoding="ascii").split()[1])
         return pages * os.sysconf("SC_PAGE_SIZE")
@@ -35,7 +37,7 @@ def resident(pid):
 
 
 def ranks(program, measurement):
-    """Rank -> PID of the processes that this measurement has started."""
+    """Rank -> PID of the processes started by this measurement."""
     result = {}
     for folder in pathlib.Path("/proc").glob("[0-9]*"):
         try:
@@ -48,7 +50,7 @@ def ranks(program, measurement):
 
 
 class Sampler(threading.Thread):
-    """Samples the sizes of the processes; `samples` are those since the end of the last step, a row for each time."""
+    """Samples the sizes of the processes. `samples` has a row for each time since the end of the last step."""
 
     def __init__(self, program, n):
         super().__init__(daemon=True)
@@ -66,7 +68,7 @@ class Sampler(threading.Thread):
             time.sleep(INTERVAL)
 
     def end_step(self):
-        """The largest size of each process in the step, and the largest sum."""
+        """The largest size of each process in the step, and the largest sum over the processes."""
         samples, self.samples = self.samples or [[0] * self.n], []
         return [max(sizes) for sizes in zip(*samples)], max(map(sum, samples))
 

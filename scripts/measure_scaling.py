@@ -1,13 +1,14 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Time and memory over the size of the mesh: the default model on successively finer meshes, one process with all its cores.
+"""Measures time and memory over the size of the mesh: the default model on successively finer meshes, in one process
+that uses all cores.
 
     scripts/measure_scaling.py [--sizes 32,78,138,281,670,1000] [--study stability|sweep]
 
-Sizes are thousands of coupled dofs, by their names in MESHES. Each is one run in a separate process, without fields. Prints for each run
-the wall time, the peak memory and the memory expected by `squeal --dry-run`, the steps, and the exponent of a power law through the last
-two sizes.
+Sizes are thousands of coupled dofs, the names of MESHES. Each size is one run in a separate process, without fields.
+Prints for each run the wall time, the peak memory and the memory expected by `squeal --dry-run`, the steps, and the
+exponent of a power law through the last two sizes.
 """
 
 import math
@@ -17,7 +18,7 @@ import benchmarking
 import squeal
 from squeal.command_line import Parser, exit_on_error
 
-# Element size [m], layers of the disc, nodes on a pin's face, layers of the pins
+# Element size [m], layers of the disc, nodes per pin face, layers of the pins
 MESHES = {"32": (0.0115, 3, 19, 4), "78": (0.008, 4, 37, 6), "138": (0.006, 4, 61, 6), "281": (0.0045, 5, 91, 8),
           "670": (0.0032, 7, 91, 10), "1000": (0.0029, 9, 91, 10)}
 STUDIES = {"stability": "disc_pins.prm", "sweep": "sweep.prm"}
@@ -34,7 +35,7 @@ def run(study, mesh):
 
 
 def columns(record):
-    """Name -> value of the printed quantities of a run."""
+    """Printed quantities of a run, name -> value."""
     result = {"coupled dofs": record["counts"]["coupled dofs"], "contact nodes": record["counts"]["contact nodes"],
               "entries of the factor [million]": record["quantities"]["entries of the Cholesky factor"] / 1e6,
               "whole run [s]": record["wall time [s]"],

@@ -14,8 +14,8 @@ comparison, and writes to DIR:
     dissipation.csv  divergence rates of all modes with each form of C_b
     figure6.svg      divergence rate over frequency without and with C_b; needs python3-matplotlib
 
-"With C_b" is consistent dissipation about steady sliding, the form closest to the paper. The second command only writes the labelled
-component and coupled modes of Table 1 as measured modes for Study = updating.
+"With C_b" means consistent dissipation about steady sliding, the form closest to the paper. The second command only
+writes the labelled component and coupled modes of Table 1 as measured modes for Study = updating.
 """
 
 import csv
@@ -32,16 +32,16 @@ NEGLIGIBLE = 0.01  # divergence rate [%] below which a mode counts as neutral
 FIXED = "Study", "Band/", "Operation/Radial dissipation", "Steady sliding/Contact state", "Output/"
 NO_SHAPES, PUBLISHED = "Output/Mode shapes=none", "Operation/Radial dissipation=published"
 WITHOUT, WITH = "no C_b", "steady sliding consistent"
-READINGS = {  # form of C_b -> arguments of its run
+READINGS = {  # form of C_b -> arguments of the run
     WITHOUT: ("default", "disc_pins.prm", NO_SHAPES), "equal load consistent": ("dissipation", "dissipation.prm", NO_SHAPES),
     "equal load published": ("dissipation_published", "dissipation.prm", NO_SHAPES, PUBLISHED), WITH: ("sliding", "sliding.prm", NO_SHAPES),
     "steady sliding published": ("sliding_published", "sliding.prm", NO_SHAPES, PUBLISHED)}
 
-# The paper's Table 1: label, component, coupled, complex without and with C_b; a cell is [HOW] FREQUENCY [DIVERGENCE RATE], in Hz and %.
-# HOW selects the mode of squeal: by default that with the label of the row; + and - the growing and the other mode of its shape (the paper
-# prints A0-4 - as growing with C_b); ~ the mode of nearest frequency, if its label is unclear; a slice selects pin modes of its shape
-# ordered by divergence rate, of which a row `highest` compares the largest frequency and rate, other rows the smallest. The half of the 24
-# F1 modes that bends radially is damped most. Their component frequency, printed as 3353 Hz, is read as 3553 Hz.
+# The paper's Table 1: label, component, coupled, complex without and with C_b. A cell is [HOW] FREQUENCY [DIVERGENCE RATE], in Hz and %.
+# HOW selects the mode of squeal. Default: the mode with the label of the row. + and -: the growing mode, and the other mode, of this shape
+# (the paper prints A0-4 - as growing with C_b). ~: the mode with the nearest frequency, if its label is unclear. A slice selects pin modes
+# of this shape ordered by divergence rate; a row `highest` compares their largest frequency and rate, other rows the smallest. The half of
+# the 24 F1 modes that bends radially has the most damping. The component frequency of F1, printed as 3353 Hz, is read as 3553 Hz.
 TABLE_1 = """\
 A0-1 -,251,295,295,296
 A0-1 +,251,~ 312,~ 312,~ 313
@@ -94,8 +94,8 @@ COLUMNS = ("component", "coupled", "without C_b", "with C_b")
 @dataclasses.dataclass
 class Mode:
     label: str
-    frequency: float  # [Hz]
-    rate: float = 0.0  # [%]
+    frequency: float  # frequency [Hz]
+    rate: float = 0.0  # divergence rate [%]
     unstable: bool = False
     wave: tuple = (None, None)  # shares of the waves with and against the rotation
 
@@ -112,26 +112,26 @@ class Mode:
 
 
 def modes_of(results, table):
-    """Modes of a table of a run by frequency; of component modes, those of the free disc and of sliding pins."""
+    """Modes in a table of a run by frequency; of component modes, only those of the free disc and of sliding pins."""
     return [Mode(row["label"], row["frequency [Hz]"], row.get("divergence rate [%]", 0.0), row.get("unstable [-]") == 1,
                  (row.get("wave with rotation [-]"), row.get("wave against rotation [-]"))) for row in results.rows(table)
             if (row.get("component"), row.get("contact")) in ((None, None), ("disc", "free"), ("pins", "sliding"))]
 
 
 def modes_to_compare(without, damped):
-    """Modes for each of COLUMNS."""
+    """Lists of modes to compare, one for each of COLUMNS."""
     return *(modes_of(without, f"{kind}_modes") for kind in ("component", "real", "complex")), modes_of(damped, "complex_modes")
 
 
 @dataclasses.dataclass
 class Printed:
-    """A cell of the paper."""
+    """A cell of Table 1 of the paper."""
     how: str
     frequency: float
     rate: float
 
     def places(self, n):
-        """Indices of the modes of the cell among n modes of a shape ordered by divergence rate."""
+        """Indices of the modes that the cell selects among n modes of a shape ordered by divergence rate."""
         return range(n)[slice(*(int(end) if end else None for end in self.how.split(":")))]
 
     def find(self, label, modes):
@@ -149,7 +149,7 @@ class Printed:
 
 
 def printed_rows():
-    """Labels with the printed cells of COLUMNS, None for empty ones."""
+    """Labels with the printed cells of COLUMNS; None for empty cells."""
     pattern = re.compile(r"(?:([~+-]|-?\d*:-?\d*) )?(\d+)(?: (-?[\d.]+))?")
     for line in TABLE_1.splitlines():
         label, *cells = line.split(",")
@@ -158,7 +158,7 @@ def printed_rows():
 
 
 def measured_modes():
-    """Rows of a file for Study = updating: component and coupled modes of Table 1 with a label."""
+    """Rows of a file for Study = updating: the labelled component and coupled modes of Table 1."""
     yield "state", "label", "member", "frequency [Hz]"
     for state, column in (("component", 0), ("coupled", 1)):
         for label, cells in printed_rows():
@@ -168,7 +168,8 @@ def measured_modes():
 
 
 def table_one(without, damped):
-    """Rows of Table 1 with the modes of a run without and one with C_b; None if the paper prints nothing or the run has no such mode."""
+    """Rows of Table 1 with the modes of a run without C_b and of a run with it; None if the paper prints no number or
+    the run has no such mode."""
     found = modes_to_compare(without, damped)
     for label, cells in printed_rows():
         row = {"label": label}
@@ -186,7 +187,8 @@ def table_one(without, damped):
 
 
 def agreement(rows, name):
-    """Root mean square of the differences of a column of Table 1 [%], their number, the largest [%] and its row."""
+    """Root mean square of the differences of a column of Table 1 [%], their number, the largest difference [%] and its
+    row."""
     differences = {row["label"]: row[f"{name} difference [%]"] for row in rows if row[f"{name} difference [%]"] is not None}
     rms = math.sqrt(sum(value**2 for value in differences.values()) / len(differences))
     largest = max(differences, key=lambda label: abs(differences[label]))
@@ -218,7 +220,8 @@ def by_shape(modes):
 
 
 def largest_shift(before, after, pattern):
-    """Largest change of a frequency [%] and its mode, for shapes of a pattern in both lists: a list of at most one pair."""
+    """Largest change of a frequency [%] and its mode, for shapes that match a pattern in both lists: a list with at
+    most one pair."""
     former = by_shape(before)
     shifts = [(abs(change(one.frequency, other.frequency)), one) for shape, modes in by_shape(after).items()
               if re.match(pattern, shape) and len(former.get(shape, [])) == len(modes) for one, other in zip(former[shape], modes)]
@@ -226,7 +229,8 @@ def largest_shift(before, after, pattern):
 
 
 def of_frequencies(component, coupled, undamped, damped, n_pins):
-    """Statements as tuples: section, words, number of the paper, of squeal, unit, (verdict, rule), modes."""
+    """Statements on frequencies as tuples: section, words, number of the paper, number of squeal, unit, (verdict,
+    rule), modes."""
     for name, paper in (("bending modes F1", 2), ("torsional modes T1", 1)):
         n = sum(mode.label == name.split()[-1] for mode in component) / n_pins
         yield "4.1", f"{name} per pin below 5 kHz", paper, n, "-", as_many(n, paper)
@@ -302,7 +306,7 @@ def of_dissipation(undamped, damped):
 
 
 def statements(without, damped):
-    """Statements of section 4 of the paper, except for modes that are missing in the runs."""
+    """Statements in section 4 of the paper, except those on modes that the runs do not contain."""
     modes = modes_to_compare(without, damped)
     found = (*of_frequencies(*modes, len(damped.rows("sliding_pins"))), *of_growth(modes[2]), *of_dissipation(*modes[2:]))
     return [{"section": section, "statement": words, "paper": paper, "here": here, "unit": unit, "verdict": verdict, "rule": rule,
@@ -310,7 +314,8 @@ def statements(without, damped):
 
 
 def printed_rate(label, shape, place, n):
-    """Label and divergence rate [%] printed with C_b for a mode: the mode at a position among n of its shape."""
+    """Label and divergence rate [%] that the paper prints with C_b for a mode, which is at position `place` among n
+    modes of its shape."""
     for row, cells in printed_rows():
         printed = cells[-1]
         if printed and printed.rate is not None and row.split()[0] == shape:
@@ -323,7 +328,8 @@ def printed_rate(label, shape, place, n):
 
 
 def readings(solutions):
-    """Divergence rates of all modes with each form of C_b: doublets by their sign, pin modes by divergence rate."""
+    """Divergence rates of all modes with each form of C_b; members of doublets are matched by sign, pin modes by order
+    of the divergence rate."""
     families = {reading: by_shape(modes_of(results, "complex_modes")) for reading, results in solutions.items()}
     for shape in dict.fromkeys(shape for family in families.values() for shape in family):
         n = max(len(family.get(shape, [])) for family in families.values())
@@ -344,7 +350,7 @@ def write(folder, name, rows):
 
 
 def show(title, rows, columns):
-    """Prints columns of rows, given as (heading, name, digits), digits None for text."""
+    """Prints columns of rows. A column is (heading, name, digits); digits is None for text."""
     texts = [[heading for heading, _, _ in columns]]
     for row in rows:
         texts.append(["" if row[name] is None else str(row[name]) if digits is None else f"{row[name]:.{digits}f}" for _, name, digits in columns])

@@ -8,11 +8,12 @@
     scripts/paraview_modes.py RESULTS [--mode MODE] --pictures FOLDER     a picture of each mode, or of the chosen ones
     scripts/paraview_modes.py RESULTS --mode MODE --film FILE.gif         the motion, including its growth
 
-With all modes, the time buttons step through them by frequency [Hz], warped by the real part. With one mode they play --periods of
-Re(phi e^(lambda t)), including growth; the largest displacement is drawn as --size times the radius of the disc. MODE is a row of
-complex_modes.csv, counted from 1, or a label, which selects its fastest growing mode. Colours show the amplitude; the title has mode,
-frequency, effective damping ratio and verdict. Views are iso, top, side, below; faces: the upper pins seen from the hidden disc, with the
-normal reactions on their contact faces; and energy: the same faces with their part in the divergence rate of a growing mode.
+With all modes, the time buttons step through the modes by frequency [Hz], each deformed by its real part. With one
+mode, they play --periods of Re(phi e^(lambda t)), including growth. The largest displacement is drawn as --size times
+the radius of the disc. MODE is a row of complex_modes.csv, counted from 1, or a label, which selects its fastest
+growing mode. Colours show the amplitude; the title shows mode, frequency, effective damping ratio and verdict. Views
+are iso, top, side, below; faces, the upper pins seen from below without the disc, with the normal reactions on their
+contact faces; and energy, the same faces with their contribution to the divergence rate of a growing mode.
 
 Requires Debian's paraview, python3-paraview, xvfb and xauth (scripts/setup.sh paraview). Without a display it restarts under xvfb-run.
 """
@@ -35,14 +36,14 @@ def rows_of(results):
 
 
 def title_of(row):
-    """"A0-4 +,  2353 Hz,  effective damping ratio -1.36 %,  unstable"."""
+    """Title of a mode: "A0-4 +,  2353 Hz,  effective damping ratio -1.36 %,  unstable"."""
     verdict = row.get("verdict") or ("unstable" if row["unstable [-]"] == "1" else "not unstable")
     ratio = float(row["effective damping ratio -2R/omega [%]"])
     return f"{row['label']},  {float(row['frequency [Hz]']):.1f} Hz,  effective damping ratio {ratio:.3g} %,  {verdict}"
 
 
 def files_of(results):
-    """Row of complex_modes.csv -> file of the mode shape."""
+    """Files of the mode shapes by row of complex_modes.csv."""
     found = shape_files(results)
     if not found:
         raise Error("there are no shapes of complex modes", results, "run again with Output/Mode shapes = all")
@@ -50,7 +51,7 @@ def files_of(results):
 
 
 def chosen(name, rows, files):
-    """Number of the row of a mode given by row or label."""
+    """Row number of a mode that is given by row or label."""
     if name.isdigit():
         number = int(name)
         if not 1 <= number <= len(rows):
@@ -91,7 +92,8 @@ def parsed():
 
 
 def write_pictures(simple, results, numbers, rows, files, titles, arguments):
-    """Pictures of the chosen modes, or of all with shapes; of growing modes only with the view `energy`."""
+    """Writes pictures of the chosen modes, or of all modes with shapes; with the view `energy`, of growing modes only.
+    """
     shows_energy = arguments.view == "energy"
     shown = [number for number in numbers or sorted(files) if not shows_energy or rows[number - 1]["unstable [-]"] == "1"]
     if shows_energy and (not shown or set(numbers) - set(shown)):
@@ -107,7 +109,7 @@ def write_pictures(simple, results, numbers, rows, files, titles, arguments):
 
 
 def write_session_and_film(simple, results, numbers, rows, files, titles, arguments):
-    """Session and film of the motion of one mode, or a session of all modes."""
+    """Writes a session and a film of the motion of one mode, or a session of all modes."""
     if numbers:
         number, = numbers
         scene, times = scene_of_one(simple, files[number], rows[number - 1], titles[number], arguments)

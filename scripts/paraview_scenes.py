@@ -2,7 +2,8 @@
 
 """ParaView pipelines, views and pictures of the modes of a run.
 
-This is a separate module because scripts of ParaView's filters run in the namespace of the main module and overwrite its names.
+This is a separate module because the scripts of ParaView's filters run in the namespace of the main module and would
+overwrite its names.
 """
 
 import math
@@ -12,16 +13,16 @@ import tempfile
 from squeal.errors import Error
 
 VIEWS = {"iso": ((0.62, -0.62, 0.62), (0, 0, 1)), "top": ((0, 0, 1), (0, 1, 0)), "side": ((1, -0.08, 0.12), (0, 0, 1)),
-         "below": ((0.62, -0.62, -0.62), (0, 0, 1)), "faces": ((0.25, -0.25, -0.94), (-1, 0, 0)), "energy": ((0.25, -0.25, -0.94), (-1, 0, 0))}  # towards the eye, and up
-WIDTH, ASPECT = 1600, 0.625  # of pictures [pixels], height over width
+         "below": ((0.62, -0.62, -0.62), (0, 0, 1)), "faces": ((0.25, -0.25, -0.94), (-1, 0, 0)), "energy": ((0.25, -0.25, -0.94), (-1, 0, 0))}  # towards the eye; upwards
+WIDTH, ASPECT = 1600, 0.625  # width of pictures [pixels], and ratio of height to width
 INK, GREY, EDGES = (0.13, 0.13, 0.15), (0.6, 0.6, 0.62), (0.35, 0.35, 0.38)
 CLOSER = 1.25  # zoom relative to the bounding sphere
-FRAMES = 24  # per period
-# Colours of scripts/pictures.py: YlGnBu and RdBu of ColorBrewer
+FRAMES = 24  # frames per period
+# Colour scales of scripts/pictures.py: YlGnBu and RdBu of ColorBrewer
 YELLOW_BLUE = ("ffffe5", "edf8b1", "c7e9b4", "7fcdbb", "41b6c4", "1d91c0", "225ea8", "253494", "081d58")
 RED_BLUE = ("0a3a70", "2166ac", "4393c3", "92c5de", "d1e5f0", "f7f7f7", "fddbc7", "f4a582", "d6604d", "b2182b", "78061f")
 
-# Scripts of ParaView's programmable filter for a moving mode, which a session contains
+# Scripts of ParaView's programmable filter that move a mode; they are stored in the session
 TIMES = """
 executive = self.GetExecutive()
 information = executive.GetOutputInformation(0)
@@ -47,7 +48,7 @@ information.Set(output.DATA_TIME_STEP(), time)
 
 
 class Scene:
-    """Pipelines and a view in ParaView; `simple` is its module."""
+    """Pipelines and a view in ParaView; `simple` is ParaView's module."""
 
     def __init__(self, simple, view, width):
         self.simple, self.view_name = simple, view
@@ -57,7 +58,7 @@ class Scene:
         self.view.UseColorPaletteForBackground = 0
         self.view.Background = (1, 1, 1)
         self.font = width / WIDTH  # size of texts relative to a picture of default width
-        # More light from the eye than from above, so that faces pointing down show their colours
+        # Light mainly from the eye, less from above, so that faces that point downwards show their colours
         self.view.KeyLightElevation, self.view.KeyLightAzimuth = 25, 15
         self.view.HeadLightKHRatio, self.view.FillLightKFRatio = 2, 2
         self.view.KeyLightWarmth = self.view.FillLightWarmth = self.view.HeadLightWarmth = self.view.BackLightWarmth = 0.5
@@ -71,12 +72,12 @@ class Scene:
         return reader
 
     def scale(self, reader, size):
-        """Factor of displacements with a largest value of about one."""
+        """Factor of the displacements, whose largest value is about one."""
         bounds = reader.GetDataInformation().GetBounds()
         return size * max(bounds[1] - bounds[0], bounds[3] - bounds[2]) / 2
 
     def show_bodies(self, source, vectors, factor):
-        """Shows warped disc and pins coloured by the amplitude, over their outline at rest."""
+        """Shows disc and pins deformed and coloured by the amplitude, over their outline at rest."""
         simple = self.simple
         self.show_edges(source, 50)
         warp = simple.WarpByVector(Input=source)
@@ -96,7 +97,7 @@ class Scene:
         shown.AmbientColor = shown.DiffuseColor = GREY
 
     def show_faces(self, bodies, faces, field, caption):
-        """Shows the contact faces of the upper pins coloured by a field, and the edges of these pins at rest."""
+        """Shows the contact faces of the upper pins, coloured by a field, and the edges of these pins at rest."""
         simple = self.simple
         faces.UpdatePipeline(max(faces.TimestepValues or [0]))
         if field not in faces.PointData.keys():
@@ -136,7 +137,7 @@ class Scene:
         legend.WindowLocation, legend.Orientation = "Lower Center", "Horizontal"
 
     def show_title(self, source, titles):
-        """Shows one of the titles, by the number of the time step."""
+        """Shows the title with the number of the time step."""
         annotation = self.simple.PythonAnnotation(Input=source)
         annotation.ArrayAssociation = "Point Data"
         annotation.Expression = repr(titles[0]) if len(titles) == 1 else f"{titles!r}[int(t_index)]"
@@ -161,7 +162,7 @@ class Scene:
 
 
 def scene_of_all(simple, results, titles, files, arguments):
-    """Scene of all modes by frequency, and row of complex_modes.csv -> time at which the mode is shown."""
+    """Scene with all modes by frequency, and the time at which each mode is shown, by row of complex_modes.csv."""
     scene = Scene(simple, arguments.view, arguments.width)
     reader = scene.open(results / "modes.pvd")
     if arguments.view == "faces":
@@ -176,7 +177,7 @@ def scene_of_all(simple, results, titles, files, arguments):
 
 
 def scene_of_energy(simple, file, title, arguments):
-    """Scene of the energy sources of a growing mode."""
+    """Scene that shows the energy sources of a growing mode."""
     scene = Scene(simple, arguments.view, arguments.width)
     reader = scene.open(file)
     scene.show_faces(reader, scene.open(file.with_name(file.stem + "_contact.vtu")), "energy_input",
@@ -187,7 +188,7 @@ def scene_of_energy(simple, file, title, arguments):
 
 
 def scene_of_one(simple, file, row, title, arguments):
-    """Scene of the motion of a mode, and its times."""
+    """Scene that shows the motion of a mode, and its times."""
     growth, omega = float(row["growth rate [1/s]"]), 2 * math.pi * float(row["frequency [Hz]"])
     period = 2 * math.pi / omega
     scene = Scene(simple, arguments.view, arguments.width)
@@ -205,7 +206,7 @@ def scene_of_one(simple, file, row, title, arguments):
 
 
 def write_film(scene, times, path):
-    """Writes a film with one picture for each time."""
+    """Writes a film with a frame for each time."""
     from PIL import Image
 
     with tempfile.TemporaryDirectory() as folder:

@@ -13,13 +13,13 @@ from matplotlib.figure import Figure
 
 SIZE = (1600, 1000)
 INK, GREY = "#212126", "#737378"
-POINT = 0.72  # [points] of a pixel
-# Suitable for all types of colour vision; pale colours mark zero, and that of the phase is cyclic
+POINT = 0.72  # size of a pixel [points]
+# Suitable for all types of colour vision. Pale colours mark zero; the colours of the phase are cyclic
 ONE_SIGN, TWO_SIGNS, PHASE = colormaps["YlGnBu"], colormaps["RdBu_r"], colormaps["twilight"]
 
 
 def nice_range(values):
-    """Round limits of the values: from zero, or symmetric if some are negative."""
+    """Round limits of the values: starting at zero, or symmetric if some values are negative."""
     largest = abs(values).max() or 1.0
     unit = 10.0 ** math.floor(math.log10(largest))
     top = next(step for step in (1, 1.2, 1.6, 2, 2.4, 3, 4, 5, 6, 8, 10) if step * unit >= 0.999 * largest) * unit
@@ -27,7 +27,8 @@ def nice_range(values):
 
 
 class Page:
-    """A picture of a size [pixels] with one colour scale; positions are fractions of it from the lower left corner."""
+    """A picture of a given size [pixels] with one colour scale; positions are fractions of the size from the lower left
+    corner."""
 
     def __init__(self, colours, limits, size=SIZE):
         self.size, self.scale = size, ScalarMappable(Normalize(*limits), colours)
@@ -35,7 +36,7 @@ class Page:
         FigureCanvasAgg(self.figure)
 
     def axes(self, left, bottom, right, top):
-        """Axes without frame between these positions."""
+        """Axes without a frame between these positions."""
         axes = self.figure.add_axes((left, bottom, right - left, top - bottom))
         axes.set_axis_off()
         return axes
@@ -57,5 +58,5 @@ class Page:
         self.text(caption, 0.03, 84 / self.size[1], 21, INK)
 
     def save(self, path, width=SIZE[0]):
-        """Writes the page, `width` pixels wide."""
+        """Writes the page with a width of `width` pixels."""
         self.figure.savefig(path, dpi=100 * width / self.size[0])

@@ -5,8 +5,9 @@
 
     scripts/plot_results.py RESULTS [--format svg|png|pdf] [--output DIR]
 
-The tables determine the plots. They are written to RESULTS/plots and listed in RESULTS/run.json, so that a repeated run removes them with
-its tables. Plots in --output DIR are not listed. Requires Debian's python3-matplotlib (scripts/setup.sh).
+The plots depend on the tables in RESULTS. They are written to RESULTS/plots and listed in RESULTS/run.json, so that a
+repeated run removes them together with its tables. Plots in --output DIR are not listed. Requires Debian's
+python3-matplotlib (scripts/setup.sh).
 """
 
 import pathlib

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Draws a field on the contact faces of the pins of one side, over the outline of the disc.
+"""Draws a field on the contact faces of the pins on one side, over the outline of the disc.
 
     scripts/render_contact.py RESULTS/sliding_state_contact.vtu [-o PICTURE] [--field FIELD] [--view VIEW]
 
@@ -24,9 +24,9 @@ from squeal.parameter_file import read_parameters
 from squeal.surface import edges_of, outer_faces, sharp_edges
 from squeal.vtu_file import VtuFile
 
-PALE = "#f0f0f1"  # of the disc
-VIEWS = {"above": 1, "below": -1}  # side of the disc from which its pins are seen
-# Caption, factor, and unit -> value in SI of each field, smallest first
+PALE = "#f0f0f1"  # colour of the disc
+VIEWS = {"above": 1, "below": -1}  # side of the disc whose pins are shown: sign of z
+# For each field: caption, factor, and units with their SI values, smallest first
 QUANTITIES = {
     "pressure": ("contact pressure", 1, {"Pa": 1, "kPa": 1e3, "MPa": 1e6}),
     "normal_reaction": ("normal force of a node", -1, {"N": 1, "kN": 1e3}),
@@ -38,7 +38,7 @@ QUANTITIES = {
 
 
 def in_units(field, values):
-    """Values in a unit suitable for the largest, caption and unit."""
+    """Values in a unit that suits the largest value, with caption and unit."""
     values = values if values.ndim == 1 else np.linalg.norm(values, axis=1)
     caption, factor, units = QUANTITIES.get(field, (field.replace("_", " "), 1, {"": 1}))
     unit = max((unit for unit in units if abs(values).max() >= 2 * units[unit]), key=units.get, default=next(iter(units)))
@@ -46,7 +46,7 @@ def in_units(field, values):
 
 
 def rotation_of(path):
-    """Sense of rotation about the z axis of the run that wrote the file: 1 or -1."""
+    """Sense of rotation about the z axis, 1 or -1, in the run that wrote the file."""
     for folder in path.resolve().parents[:2]:
         if (folder / "parameters.prm").is_file():
             return -1 if read_parameters(folder / "parameters.prm").get("Operation/Rotation") == "negative" else 1
@@ -67,7 +67,7 @@ def draw(path, picture, field, view):
     shown, mesh = np.unique(faces), VtuFile(bodies)
     disc, disc_points = outer_faces(mesh, [0]), mesh.points
 
-    # If the pins lie on one side of the axis, up is outwards and the picture shows the width of the disc there
+    # If all pins are on one side of the axis, draw this side upwards, with the width of the disc there
     distances, centre = np.linalg.norm(points[shown, :2], axis=1), points[shown, :2].mean(axis=0)
     up, around = np.array([0.0, 1.0]), disc_points[np.unique(disc), :2]
     if np.linalg.norm(centre) > 0.3 * distances.max():
@@ -83,7 +83,7 @@ def draw(path, picture, field, view):
     axes.add_collection(PolyCollection(disc_places[disc], facecolor=PALE, edgecolor=PALE, linewidth=0.5))
     triangles = np.vstack([faces[:, :3], faces[faces[:, 2] != faces[:, 3]][:, [0, 2, 3]]])
     low, high = page.scale.get_clim()
-    beyond = 1e-6 * (high - low)  # includes values at the limits
+    beyond = 1e-6 * (high - low)  # margin that includes values at the limits
     axes.tricontourf(*places.T, triangles, values, levels=np.linspace(low - beyond, high + beyond, 129), norm=page.scale.norm, cmap=page.scale.cmap)
     sides, count = edges_of(faces)
     for ends, look in ((disc_places[sharp_edges(disc_points, disc)], {"colors": GREY, "linewidths": 1}),
@@ -93,7 +93,7 @@ def draw(path, picture, field, view):
     axes.plot(*places[shown[is_open]].T, linestyle="", marker="o", markersize=8, markerfacecolor="none", markeredgecolor=INK)
 
     radius = distances.max() + 0.06 * extent
-    angles = 0.175 * extent / radius * side * rotation_of(path) * np.array([1, -1])  # of tail and tip, measured from the outward direction
+    angles = 0.175 * extent / radius * side * rotation_of(path) * np.array([1, -1])  # of tail and tip, from outwards
     tail, tip = radius * np.column_stack([np.sin(angles), np.cos(angles)])
     axes.annotate("", tip, tail, arrowprops={
         "arrowstyle": "-|>,head_length=0.8,head_width=0.3", "mutation_scale": 40, "linewidth": 5, "color": INK, "shrinkA": 0, "shrinkB": 0,

@@ -5,9 +5,9 @@
 
     scripts/render_mode.py MODE... [-o PICTURE] [--field FIELD] [--view VIEW] [--bodies all|moving]
 
-MODE are files `modes/NAME.vtu` of complex, real or component modes. Several modes are drawn side by side with one colour scale. The bodies
-are displaced by the real part of the mode. Without a display the script restarts under xvfb-run. Requires Debian's python3-vtk9, xvfb and
-xauth (scripts/setup.sh pictures).
+Each MODE is a file `modes/NAME.vtu` of a complex, real or component mode. Several modes are drawn side by side with one
+colour scale. The bodies are deformed by the real part of the mode. Without a display the script restarts under
+xvfb-run. Requires Debian's python3-vtk9, xvfb and xauth (scripts/setup.sh pictures).
 """
 
 import dataclasses
@@ -30,15 +30,15 @@ with exit_on_error():
     from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
 
 INK, GREY = (0.13, 0.13, 0.15), (0.45, 0.45, 0.48)
-LARGEST_DISPLACEMENT = 0.08  # of the size of the bodies
-SHORTEST_EDGE, LARGEST_SHEAR = 0.35, 1.0  # of the length of an element edge at rest
-VIEW_ANGLE = 24  # degree
-MANY_EDGES, FAINT, CLEAR = 2000, 0.16, 0.5  # number of element edges, and their opacity above and below it
-MARGIN = 1.03  # around the bodies
-POINT_RADIUS = 0.35  # of the distance to the nearest point
-LEAST_MOTION = 0.01  # of the largest amplitude, below which a body is at rest
+LARGEST_DISPLACEMENT = 0.08  # fraction of the size of the bodies
+SHORTEST_EDGE, LARGEST_SHEAR = 0.35, 1.0  # relative to the length of an element edge at rest
+VIEW_ANGLE = 24  # [degree]
+MANY_EDGES, FAINT, CLEAR = 2000, 0.16, 0.5  # number of element edges, and opacity for more and for fewer edges
+MARGIN = 1.03  # margin around the bodies
+POINT_RADIUS = 0.35  # fraction of the distance to the nearest point
+LEAST_MOTION = 0.01  # fraction of the largest amplitude below which a body is at rest
 OVERSAMPLING = 2
-PANEL, HEAD, FOOT = (800, 500), 84, 130  # panel of one of several modes, height of its title, and of the part below all panels [pixels]
+PANEL, HEAD, FOOT = (800, 500), 84, 130  # one of several panels; heights of title and bottom area [pixels]
 
 VIEWS = {  # direction from the bodies to the eye, and upward direction
     "iso": ((0.62, -0.52, 0.62), (0, 0, 1)),
@@ -50,7 +50,7 @@ FROM_BELOW = ((0.62, -0.52, -0.62), (0, 0, 1))
 
 @dataclasses.dataclass
 class Colours:
-    """Values to draw with their caption and colour map; limits, if they do not follow from the values."""
+    """Values to draw with their caption and colour map, and limits if they do not follow from the values."""
 
     values: np.ndarray
     caption: str
@@ -59,7 +59,8 @@ class Colours:
 
 
 def colours_of(mesh, mode, field):
-    """Colours of a field. Displacements are divided by the largest amplitude, since the size of a mode is arbitrary."""
+    """Colours of a field. Displacements are divided by the largest amplitude, because the scale of a mode is arbitrary.
+    """
     if field not in ("displacement", "displacement_real", "displacement_imag", "amplitude", "phase"):
         values = mesh.field(field)
         values = values if values.ndim == 1 else np.linalg.norm(values, axis=1)
@@ -68,7 +69,7 @@ def colours_of(mesh, mode, field):
     largest = amplitude.max() or 1.0
     if field == "amplitude":
         return Colours(amplitude / largest, "amplitude, share of the largest", ONE_SIGN, (0, 1))
-    # The dominant component with its sign or phase shows the shape
+    # The dominant component, with its sign or phase, shows the shape
     azimuth = np.arctan2(*mesh.points[:, [1, 0]].T)
     components = {"axial": mode[:, 2],
                   "radial": mode[:, 0] * np.cos(azimuth) + mode[:, 1] * np.sin(azimuth),
@@ -82,7 +83,7 @@ def colours_of(mesh, mode, field):
 
 
 def common_limits(colours):
-    """Colour limits of several modes: symmetric if one of them has two signs."""
+    """Colour limits for several modes; symmetric if one of them has two signs."""
     if colours[0].limits:
         return colours[0].limits
     values = np.concatenate([one.values for one in colours])
@@ -90,7 +91,7 @@ def common_limits(colours):
 
 
 def polygons_of(points, corners=None):
-    """VTK lines or faces from points and indices of corners; points only, without corners."""
+    """VTK lines or faces from points and indices of corners; without corners, points only."""
     vertices, result = vtk.vtkPoints(), vtk.vtkPolyData()
     vertices.SetData(numpy_to_vtk(np.ascontiguousarray(points), deep=True))
     result.SetPoints(vertices)
@@ -106,7 +107,7 @@ def set_scalars(data, values):
 
 
 def actor_of(mapper, colour, **properties):
-    """An actor in a colour, or coloured by a table; properties have VTK's names."""
+    """An actor with one colour, or coloured by a table; `properties` have VTK's names."""
     actor = vtk.vtkActor()
     actor.SetMapper(mapper)
     if isinstance(colour, vtk.vtkLookupTable):
@@ -129,7 +130,7 @@ def line_actor(points, ends, colour, width, opacity):
 
 
 def colour_table(scale):
-    """VTK's lookup table for a colour scale of matplotlib."""
+    """VTK's lookup table for a matplotlib colour scale."""
     table = vtk.vtkLookupTable()
     table.SetNumberOfTableValues(256)
     table.SetRange(*scale.get_clim())
@@ -139,7 +140,7 @@ def colour_table(scale):
 
 
 def sphere_actor(data, radius, colour):
-    """Spheres at points."""
+    """Actor of spheres at points."""
     sphere, mapper = vtk.vtkSphereSource(), vtk.vtkGlyph3DMapper()
     sphere.SetRadius(radius)
     sphere.SetThetaResolution(12)
@@ -168,7 +169,8 @@ class Mode:
         self.colours = colours_of(mesh, shape, field)
 
     def automatic_scale(self):
-        """Magnification up to displacements of 8 % of the size of the bodies, less if elements would be inverted."""
+        """Magnification that gives displacements of 8 % of the size of the bodies, or less if elements would be
+        inverted."""
         largest = np.linalg.norm(self.displacement[self.used], axis=1).max()
         if largest == 0:
             return 1.0
@@ -185,7 +187,7 @@ class Mode:
         return scale
 
     def drawn(self):
-        """The largest displacement as drawn [mm]."""
+        """The largest displacement in the picture [mm]."""
         return 1000 * self.scale * np.linalg.norm(self.displacement[self.used], axis=1).max()
 
     def actors(self, table):
@@ -201,7 +203,7 @@ class Mode:
         normals.SplittingOn()
         mapper = vtk.vtkPolyDataMapper()
         mapper.SetInputConnection(normals.GetOutputPort())
-        # A phase jumps from 180 to -180 degrees, where its colours are continuous
+        # Do not interpolate a phase, which jumps from 180 to -180 degrees: its colours are continuous there
         mapper.SetInterpolateScalarsBeforeMapping(self.colours.map is not PHASE)
         mapper.SetResolveCoincidentTopologyToPolygonOffset()
         return [actor_of(mapper, table, Ambient=0.42, Diffuse=0.62, Specular=0.08, SpecularPower=20),
@@ -209,7 +211,7 @@ class Mode:
                 line_actor(deformed, sharp, INK, 1.3, 0.9), line_actor(self.points, sharp, GREY, 1.0, 0.55)]
 
     def point_actors(self, table):
-        """Coloured spheres at the deformed points, small grey ones at the undeformed points."""
+        """Coloured spheres at the displaced points, and small grey spheres at the points at rest."""
         distances, _ = cKDTree(self.points[self.used]).query(self.points[self.used], k=2)
         spacing = np.median(distances[np.isfinite(distances).all(axis=1), 1]) if len(self.used) > 1 else 0.0
         spacing = spacing or 0.02 * (np.ptp(self.points[self.used], axis=0).max() or 1.0)
@@ -219,15 +221,15 @@ class Mode:
                 sphere_actor(polygons_of(self.points[self.used]), 0.4 * POINT_RADIUS * spacing, GREY)]
 
     def draw(self, page, place, view):
-        """Draws the mode at a position of a page: left, bottom, right and top."""
+        """Draws the mode on a page within `place`: left, bottom, right and top."""
         used, axes = self.used, page.axes(*place)
-        around = np.vstack([self.points[used], (self.points + self.scale * self.displacement)[used]])  # at rest and deformed
+        around = np.vstack([self.points[used], (self.points + self.scale * self.displacement)[used]])  # at rest and displaced
         size = [round(page.size[i] * (place[i + 2] - place[i])) for i in (0, 1)]
         axes.imshow(rendered(self.actors(colour_table(page.scale)), around, size, *view), interpolation="antialiased", aspect="auto")
 
 
 def moving_bodies(mesh, shape):
-    """Components of the bodies that participate in the mode."""
+    """Components of the bodies that move in the mode."""
     amplitude, largest = np.linalg.norm(shape, axis=1), {}
     for cell, body in zip(mesh.cells, mesh.cell_fields["component"]):
         largest[body] = max(largest.get(body, 0.0), amplitude[cell].max())
@@ -235,7 +237,7 @@ def moving_bodies(mesh, shape):
 
 
 def rendered(actors, points, size, direction, up):
-    """Pixels of the actors, seen from a direction such that `points` fill the picture."""
+    """Pixels of the actors, seen from a direction so that `points` fill the picture."""
     renderer, window = vtk.vtkRenderer(), vtk.vtkRenderWindow()
     renderer.SetBackground(1, 1, 1)
     for actor in actors:
@@ -251,7 +253,7 @@ def rendered(actors, points, size, direction, up):
     upward = np.cross(backward, right)
     tangent = math.tan(math.radians(VIEW_ANGLE) / 2)
 
-    # Choose the distance so that all points fit, then centre the picture, which changes the distance: iterate
+    # Iterate: choose the distance at which all points fit, then centre the picture, which changes the distance
     centre = (points.min(axis=0) + points.max(axis=0)) / 2
     for _ in range(4):
         x, y, z = ((points - centre) @ axis for axis in (right, upward, backward))
@@ -268,11 +270,11 @@ def rendered(actors, points, size, direction, up):
 
     lights = vtk.vtkLightKit()
     lights.SetKeyLightIntensity(0.68)
-    lights.SetKeyLightAngle(25, 15)  # elevation, azimuth from the eye
+    lights.SetKeyLightAngle(25, 15)  # elevation and azimuth from the eye
     lights.SetKeyToHeadRatio(1.6)
     lights.SetKeyToFillRatio(2.5)
     for set_warmth in (lights.SetKeyLightWarmth, lights.SetFillLightWarmth, lights.SetHeadLightWarmth, lights.SetBackLightWarmth):
-        set_warmth(0.5)  # neutral, so that colours are not shifted
+        set_warmth(0.5)  # neutral light, so that colours are not shifted
     lights.AddLightsToRenderer(renderer)
 
     window.Render()
@@ -303,7 +305,7 @@ def draw_one(mode, picture, view, width):
 
 
 def draw_several(modes, picture, view, width):
-    """Draws modes in two columns into the file `picture`, with the captions of their colours below the titles."""
+    """Draws modes in two columns into the file `picture`; the captions of their colours are below the titles."""
     columns, rows = 2, (len(modes) + 1) // 2
     size, limits = (columns * PANEL[0], rows * PANEL[1] + FOOT), common_limits([mode.colours for mode in modes])
     page = Page(modes[0].colours.map, limits, size)

@@ -1,13 +1,14 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Turns a folder of results into one HTML file that needs no network.
+"""Converts a result folder to a single HTML file that does not load anything from the network.
 
     scripts/report.py RESULTS [-o FILE.html]
 
-It contains the verdict, charts, animated growing modes, their energy sources, sortable tables, checks, and how to repeat the run. The
-default file RESULTS/report.html is listed in RESULTS/run.json, so that a repeated run removes it; that of -o is not. Requires Debian's
-python3-plotly, libjs-three, libjs-jquery, libjs-jquery-datatables and python3-scipy (scripts/setup.sh).
+It contains the verdict, charts, animated growing modes, their energy sources, sortable tables, checks, and how to
+repeat the run. The default file RESULTS/report.html is listed in RESULTS/run.json, so that a repeated run removes it; a
+file given by -o is not listed. Requires Debian's python3-plotly, libjs-three, libjs-jquery, libjs-jquery-datatables and
+python3-scipy (scripts/setup.sh).
 """
 
 import pathlib

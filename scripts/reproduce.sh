@@ -9,9 +9,9 @@
 #   --list        prints pages and sentences without running anything
 #   --only WORDS  only the sentences that contain WORDS
 #
-# Results go to results/reproduce/; existing runs of the same command that are not older than the program are not repeated.
-# The exit status is 1 if a number differs from the page in a printed digit. All pages take hours on one core. Times are not
-# reproduced: doc/benchmarks.md names the commands for them.
+# Results are written to results/reproduce/. A run is not repeated if results of the same command exist and are not older
+# than the program. The exit status is 1 if a number differs from the page in a printed digit. All pages take hours on one
+# core. Times are not reproduced; doc/benchmarks.md lists the commands that measure them.
 
 set -euo pipefail
 # shellcheck source=scripts/setup.sh

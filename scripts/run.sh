@@ -1,13 +1,12 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-# Installs what is missing, builds, and runs squeal on parameter files:
+# Installs missing packages, builds, and runs squeal on parameter files:
 #
 #   scripts/run.sh [PRM]... [-- OPTION...]
 #
-# Without PRM, runs prm/disc_pins.prm. Results of x.prm go to results/x, plots of them to results/x/plots, and a report for the browser
-# to results/x/report.html. Options after
-# -- are passed to squeal:
+# Without PRM, runs prm/disc_pins.prm. Results of x.prm are written to results/x, their plots to results/x/plots, and a report for the
+# browser to results/x/report.html. Options after -- are passed to squeal:
 #
 #   scripts/run.sh prm/disc_pins.prm -- --set "Operation/Friction coefficient=0.3"
 
@@ -35,10 +34,10 @@ done
 options=("$@")
 ((${#parameter_files[@]} > 0)) || parameter_files=("$squeal_root/prm/disc_pins.prm")
 
-# Identifies the results of a run; empty if there are none.
+# Identifies the results in a folder; empty if there are none.
 state_of() { stat --format '%i %y' "$1/run.json" 2>/dev/null || true; }
 
-# A missing plot or report does not make the run fail.
+# Draws plots and writes the report; errors do not make the run fail.
 draw_plots()
 {
   local python
@@ -57,6 +56,6 @@ for parameter_file in "${parameter_files[@]}"; do
   name=$(basename "$parameter_file" .prm)
   former=$(state_of "results/$name")
   build/release/squeal "${parameter_file#"$squeal_root/"}" --output "results/$name" "${options[@]}"
-  # Options such as --dry-run write no results
+  # With options such as --dry-run, no results are written
   [[ $(state_of "results/$name") == "$former" ]] || draw_plots "results/$name"
 done

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-# Prepares the checkout: installs missing Debian packages, configures and builds. run.sh and test.sh
-# source this file; called directly, it only builds the program:
+# Prepares the checkout: installs missing Debian packages, configures and builds. run.sh and test.sh source this
+# file; called directly, it only builds the program:
 #
 #   scripts/setup.sh              packages for building, running and most tests
 #   scripts/setup.sh browser      also the browser in which scripts/test.sh tests the pages of scripts/report.py
@@ -12,14 +12,14 @@
 #   scripts/setup.sh peers        also SLEPc for scripts/check_eigenvalues.py
 #   scripts/setup.sh package      also packages for cpack
 #
-# If nothing is missing, nothing is downloaded and no privilege is needed.
+# If no package is missing, nothing is downloaded and no root privileges are needed.
 
 set -euo pipefail
 
 squeal_root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 
 # libdeal.ii-dev depends on MPI, Trilinos, p4est, METIS, ARPACK and the other libraries with which deal.II
-# was built; the libraries that CMakeLists.txt links directly are listed nevertheless.
+# was built. The libraries that CMakeLists.txt links directly are listed as well.
 packages=(g++ cmake ninja-build git
           libdeal.ii-dev libsuitesparse-dev libmumps-dev libparpack2-dev libgmsh-dev
           libopenblas-dev liblapacke-dev libeigen3-dev libboost-serialization-dev nlohmann-json3-dev libmuparser-dev libnlopt-cxx-dev libceres-dev libopenturns-dev zlib1g-dev libseccomp-dev
@@ -35,7 +35,7 @@ packages_package=(dpkg-dev file)
 
 complain() { printf '%s\n' "$*" >&2; }
 
-# Prints the given packages that are not installed.
+# Prints those of the given packages that are not installed.
 missing_packages()
 {
   local installed package
@@ -81,7 +81,7 @@ install_packages()
   rm -f "$log"
 }
 
-# Prints the package of the linker that deal.II requires (mold on Debian 13), or nothing.
+# Prints the package of the linker that deal.II requires (mold on Debian 13); prints nothing if it requires none.
 linker_package()
 {
   local linker
@@ -91,7 +91,8 @@ linker_package()
   esac
 }
 
-# deal.II uses the BLAS selected by the alternatives of the system; the reference BLAS is about ten times slower.
+# deal.II uses the BLAS that the system's alternatives select; the reference BLAS is about ten times slower than
+# OpenBLAS.
 check_blas()
 {
   local blas
@@ -120,7 +121,7 @@ build_jobs()
   echo "$jobs"
 }
 
-# build PRESET [TARGET]...: configures if necessary and builds the named targets, or everything; after an error, the output
+# build PRESET [TARGET]...: configures if necessary and builds the named targets, or everything. After an error, the output
 # is shown and kept in build/PRESET/build.log.
 build()
 {
@@ -130,7 +131,7 @@ build()
   local directory=$squeal_root/build/$preset
   local log=$directory/build.log fresh=()
   mkdir -p "$directory"
-  # A build directory in a copy of the checkout would build the original sources.
+  # In a copy of the checkout, an existing build directory would build the original sources.
   if [[ -f $directory/CMakeCache.txt ]] &&
      ! grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$squeal_root" "$directory/CMakeCache.txt"; then
     fresh=(--fresh)
@@ -149,7 +150,7 @@ build()
   fi
 }
 
-# OpenBLAS falls back to SSE3 kernels on processors newer than itself: select kernels by the flags of the processor.
+# OpenBLAS uses SSE3 kernels on processors that it does not know: select kernels by the flags of the processor.
 set_blas_kernels()
 {
   local flags
@@ -162,15 +163,15 @@ set_blas_kernels()
   esac
 }
 
-# Sets the environment of the programs: one BLAS thread per process (threads that share cores with
-# other processes slow down factorisations many times), and Open MPI for containers, for root, and for
-# more processes than cores, where waiting processes must yield the core.
+# Sets the environment of the programs: one BLAS thread per process, because threads that share cores
+# with other processes slow down factorisations many times; and settings of Open MPI for containers,
+# for root, and for more processes than cores, where waiting processes must yield the core.
 set_environment()
 {
   set_blas_kernels
   export OPENBLAS_NUM_THREADS=${OPENBLAS_NUM_THREADS:-1}
   export OMPI_MCA_rmaps_base_oversubscribe=1
-  export PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe # of Open MPI 5
+  export PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe # for Open MPI 5
   export OMPI_MCA_mpi_yield_when_idle=${OMPI_MCA_mpi_yield_when_idle:-1}
   export OMPI_MCA_btl_vader_single_copy_mechanism=none
   if (($(id -u) == 0)); then
@@ -179,7 +180,7 @@ set_environment()
   fi
 }
 
-# setup PRESET [TARGET]...: installs, configures and builds; without TARGET, also the tests.
+# setup PRESET [TARGET]...: installs packages, configures and builds; without TARGET, it also builds the tests.
 setup()
 {
   install_packages "${packages[@]}"

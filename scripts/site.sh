@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-# Builds the documentation as a site in build/site and checks its links and anchors; a warning is an error:
+# Builds the documentation as a site in build/site and checks its links and anchors; warnings count as errors:
 #
 #   scripts/site.sh           builds and checks
 #   scripts/site.sh --serve   shows it at http://localhost:8000 until Ctrl-C; pages reload when they are edited
@@ -25,7 +25,7 @@ if [[ ${1:-} == --serve ]]; then
 fi
 mkdocs build --quiet --clean
 
-# Files to which pages outside the site refer
+# Check that files outside the site to which pages refer exist
 n_missing=0
 for page in README.md CONTRIBUTING.md SECURITY.md CHANGELOG.md; do
   while read -r link; do
@@ -36,7 +36,8 @@ for page in README.md CONTRIBUTING.md SECURITY.md CHANGELOG.md; do
   done < <(grep -oP '\]\(\K[^)#:]+(?=[)#])' "$page")
 done
 
-# Links and anchors of the site; run as root, linkchecker switches to the user nobody, who may have no access to the checkout
+# Check links and anchors of the site. If linkchecker is run as root, it switches to the user nobody, who may not have
+# access to the checkout
 readable=$(mktemp -d)
 trap 'rm -rf "$readable"' EXIT
 cp -r build/site/. "$readable"

@@ -15,7 +15,7 @@ IS_COMMAND = re.compile(r"scripts/|build/|--set|^\s*set |squeal", re.MULTILINE)
 
 
 def rendered(text):
-    """A text with its subscripts and superscripts as HTML."""
+    """The text with its subscripts and superscripts as HTML."""
     text = SUPERSCRIPT.sub(lambda match: f"<sup>{next(group for group in match.groups() if group)}</sup>", text)
     return SUBSCRIPT.sub(r"\1<sub>\2</sub>", text)
 

@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Complex modes by SLEPc: Krylov methods with shift-invert and an LU factorisation by MUMPS, in several formulations.
+"""Computes complex modes with SLEPc: Krylov methods with shift-invert and an LU factorisation by MUMPS, in several
+formulations.
 
     scripts/slepc_modes.py DIRECTORY [--formulation linear|toar|q-arnoldi|linearised] [--modes 66] [--runs 3]
 
@@ -41,7 +42,7 @@ FORMULATIONS = ("linear", "toar", "q-arnoldi", "linearised")
 
 
 def available():
-    """Whether SLEPc is installed."""
+    """True if SLEPc is installed."""
     return importlib.util.find_spec("petsc4py") is not None and importlib.util.find_spec("slepc4py") is not None
 
 
@@ -50,24 +51,24 @@ def missing():
 
 
 def is_undamped(problem):
-    """Whether the damping vanishes, so that the problem is linear in lambda^2."""
+    """True if there is no damping, so that the problem is linear in lambda^2."""
     return problem.damping.nnz == 0 or abs(problem.damping).max() == 0
 
 
 def applicable(problem):
-    """The formulations for the problem; linear only without damping."""
+    """The formulations that apply to the problem; `linear` only without damping."""
     return FORMULATIONS if is_undamped(problem) else FORMULATIONS[1:]
 
 
 def default_basis(formulation, n_eigenvalues):
-    """Size of the Krylov basis with which a formulation was fastest (doc/benchmarks.md)."""
+    """Size of the Krylov basis for which a formulation was fastest (doc/benchmarks.md)."""
     return {"linear": 19 * n_eigenvalues // 10, "toar": 2 * n_eigenvalues}.get(formulation, 3 * n_eigenvalues // 2) + 1
 
 
 class Solution:
-    """One solution: the eigenvalues lambda nearest a real shift, their vectors, and the times it took.
+    """One solution: the eigenvalues lambda nearest to a real shift, their vectors, and the times of the solution.
 
-    n_eigenvalues counts lambda^2 for `linear`, otherwise lambda, of which every mode has two.
+    n_eigenvalues is the number of lambda^2 for `linear`; otherwise the number of lambda, two for each mode.
     """
 
     def __init__(self, problem, n_eigenvalues, formulation=None, shift=0.0, tolerance=1e-12, basis=None, seed=1):
@@ -105,7 +106,8 @@ class Solution:
             operator.destroy()
 
     def solver(self, operators):
-        """The solver with shift-invert by MUMPS; the linear problem is K x = nu M x with nu = -lambda^2, shifted by -shift^2."""
+        """The solver with shift-invert by MUMPS; the linear problem is K x = nu M x with nu = -lambda^2, shifted by
+        -shift^2."""
         from petsc4py import PETSc
         from slepc4py import SLEPc
 
@@ -132,7 +134,8 @@ class Solution:
         return solver
 
     def covers(self, band):
-        """Whether the eigenvalues reach beyond the band, so that those within are complete except for multiple ones."""
+        """True if eigenvalues beyond the band were found, so that the band is complete except for multiple eigenvalues.
+        """
         end = 2 * math.pi * band
         if self.formulation == "linear":
             return abs(self.found + self.shift**2).max(initial=0.0) > end**2 + self.shift**2
@@ -148,12 +151,13 @@ def petsc_matrix(matrix):
 
 
 def n_wanted(formulation, n_modes):
-    """Number of eigenvalues to request so that some lie beyond the band."""
+    """Number of eigenvalues to request so that some of them lie beyond the band."""
     return n_modes + 4 if formulation == "linear" else 2 * n_modes + 4
 
 
 def solve_band(problem, band, n_modes, shift=0.0):
-    """All eigenvalues of the band and their vectors; increases the number until the largest eigenvalue lies beyond it."""
+    """All eigenvalues in the band and their vectors; the number is increased until the largest eigenvalue lies beyond
+    the band."""
     from petsc4py import PETSc
 
     formulation = applicable(problem)[0]
@@ -165,7 +169,7 @@ def solve_band(problem, band, n_modes, shift=0.0):
             try:
                 solution = Solution(problem, min(n_eigenvalues, size), formulation, shift, seed=seed)
             except PETSc.Error:
-                return None  # LAPACK occasionally fails for clusters in SLEPc's reordering
+                return None  # LAPACK occasionally fails when SLEPc reorders clusters
             if solution.eigenvalues.size == 0:
                 return None
             if solution.covers(band) or n_eigenvalues >= size:

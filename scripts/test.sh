@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-# Installs what is missing, builds, and runs the tests; other arguments are passed to ctest:
+# Installs missing packages, builds, and runs the tests; other arguments are passed to ctest:
 #
 #   scripts/test.sh
 #   scripts/test.sh -R contact
@@ -21,5 +21,5 @@ install_packages "${packages[@]}" "${packages_browser[@]}" "${packages_import[@]
 setup release
 
 cd "$squeal_root"
-export OMP_NUM_THREADS=${OMP_NUM_THREADS:-1} # tests run side by side
+export OMP_NUM_THREADS=${OMP_NUM_THREADS:-1} # ctest runs several tests concurrently
 ctest --preset release --no-tests=error "${selection[@]}" "$@"

@@ -6,7 +6,8 @@
 #   scripts/test_kernels.sh
 #   scripts/test_kernels.sh -R sliding
 #
-# Arguments are passed to ctest. Kernels that the processor does not support and those of scripts/test.sh are skipped with a message.
+# Arguments are passed to ctest. Kernels that the processor does not support, and the kernels used by scripts/test.sh, are skipped
+# with a message.
 
 set -euo pipefail
 # shellcheck source=scripts/setup.sh
@@ -22,7 +23,7 @@ cd "$squeal_root"
 own=$(/usr/bin/python3 -c 'import ctypes; name = ctypes.CDLL("libopenblas.so.0").openblas_get_corename; name.restype = ctypes.c_char_p; print(name().decode())')
 failed=()
 for kernels in Prescott Haswell SkylakeX; do
-  if [[ $kernels == "$own" || $kernels$own == SkylakeXCooperlake ]]; then # which differ in bfloat16 only
+  if [[ $kernels == "$own" || $kernels$own == SkylakeXCooperlake ]]; then # the two sets differ only in bfloat16
     echo "Kernels $kernels skipped: already used by scripts/test.sh"
     continue
   fi

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-# Runs the two commands of the README on a bare Debian in a chroot, which reveals missing dependencies. Requires
-# root and debootstrap.
+# Runs the two commands of the README on a minimal Debian in a chroot, to reveal missing dependencies. Requires root
+# and debootstrap.
 #
 #   scripts/try_debian.sh [RELEASE] [--kernels NAME]... [--run-only | --package DEB] [--keep] [--in DIR]
 #
@@ -13,11 +13,11 @@
 #   --keep           keeps the chroot for inspection or a quick retry
 #   --in DIR         folder of the chroot (default: a temporary folder)
 #
-# Tests a fresh clone of the last commit of this checkout. Packages come from the mirror of this machine. The
-# times printed at the end are those of the commands, including the installation of packages.
+# Tests a fresh clone of the last commit of this checkout. Packages are downloaded from the mirror that this machine
+# uses. The times printed at the end include the installation of packages.
 
 set -euo pipefail
-# Mounts are visible to this script only and disappear when it ends.
+# Mounts are visible only to this script and disappear when it ends.
 if [[ -z ${squeal_private_mounts:-} ]] && (($(id -u) == 0)); then
   squeal_private_mounts=yes exec unshare --mount "${BASH_SOURCE[0]}" "$@"
 fi
@@ -76,7 +76,7 @@ mount --rbind /sys "$root/sys" && mount --make-rslave "$root/sys"
 rm -rf "$root/root/squeal"
 git clone --quiet "$squeal_root" "$root/root/squeal"
 
-# A clean environment, without the variables of this shell
+# Use a clean environment, without the variables of this shell
 inside() { chroot "$root" /usr/bin/env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin LANG=C.UTF-8 "$@"; }
 times=()
 try()

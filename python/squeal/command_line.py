@@ -41,7 +41,8 @@ def exit_on_error():
 
 
 def make_of_results(what, parser, make):
-    """Creates `what`, such as plots, from the results folder RESULTS of the command line, and prints the files written.
+    """Creates `what` (for example, plots) from the result folder RESULTS of the command line, and prints the files that
+    it writes.
 
     make(results, arguments) returns a file or a list of files, and notes to print.
     """
@@ -58,7 +59,7 @@ def make_of_results(what, parser, make):
 
 
 def ensure_display(packages, command=(sys.executable,), screen="1280x1024x24"):
-    """Restarts the script under Xvfb if there is no display, for libraries that render through X."""
+    """Restarts the script under Xvfb if there is no display, for libraries that require an X server to render."""
     if os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"):
         return
     if os.environ.get("SQUEAL_RENDER_UNDER_XVFB") or not shutil.which("xvfb-run") or not shutil.which("xauth"):

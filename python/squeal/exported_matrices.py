@@ -6,7 +6,7 @@ DIRECTORY/matrices contains, in Matrix Market format,
 
     M, K            n x n    mass and stiffness of disc and pins before coupling, without clamped dofs
     C               n x n    material damping
-    G               n x n    gyroscopic matrix of the disc, skew-symmetric; no file if it is zero
+    G n x n gyroscopic matrix of the disc, skew-symmetric; no file if zero
     C_b             n x n    contact damping, radial and along the sliding direction
     P_n, P_t, P_b   n_c x n  relative displacement disc minus pin: normal, along the sliding direction times the friction factor f of the
                              pair of surfaces (rows f t), radial
@@ -108,7 +108,7 @@ def couple(matrices, friction_coefficient):
 
 
 def structure_errors(matrices):
-    """Quantities that must vanish, relative to the matrices that they are computed from: description -> value."""
+    """Quantities that must be zero: description -> value relative to the matrices from which it is computed."""
 
     def largest(matrix):
         return abs(matrix).max() if matrix.nnz else 0.0
@@ -126,6 +126,6 @@ def structure_errors(matrices):
 
 
 def in_band(eigenvalues, band):
-    """Mask of the eigenvalues with a frequency in (0, band] [Hz], without real ones and rigid-body modes."""
+    """Mask of the eigenvalues with a frequency in (0, band] [Hz]; excludes real eigenvalues and rigid-body modes."""
     frequencies = eigenvalues.imag / (2 * math.pi)
     return (frequencies > 1e-5 * band) & (frequencies <= band)

@@ -22,12 +22,12 @@ CONSTANTS = {"_pi": math.pi}
 TOKEN = re.compile(r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(?P<name>[A-Za-z_]\w*)|(?P<operator>[-+*/^()]))", re.ASCII)
 NAME = re.compile(r"[A-Za-z_]\w*", re.ASCII)
 CHANGE = "write + - * / ^, sin, cos, tan, exp, log, sqrt, abs, _pi, numbers and names of parameters"
-# Bisections per parameter after which a divisor that may vanish counts as zero
+# Maximum number of bisections per parameter; a divisor that may still vanish then counts as zero
 HALVINGS = 40
 
 
 class Expression:
-    """A parsed expression: its `text`, and the sorted `names` of its parameters."""
+    """A parsed expression: its `text`, and the sorted `names` of the parameters that occur in it."""
 
     def __init__(self, text, names, where):
         """Raises Error if the text cannot be parsed or contains a parameter that is not in `names`."""
@@ -42,7 +42,7 @@ class Expression:
                         f"declare it under `parameters`, or name one of: {', '.join(names) or '(none)'}")
 
     def __call__(self, values):
-        """The value for a dictionary of parameter values. Raises Error if it is not a finite number."""
+        """The value for a dictionary of parameter values. Raises Error unless it is a finite number."""
         try:
             result = evaluate(self._tree, values)
         except ZeroDivisionError:
@@ -58,7 +58,7 @@ class Expression:
     def check_range(self, ranges):
         """Raises Error if a divisor vanishes within the ranges of the parameters, name -> (lower, upper)."""
         for node in filter(is_division, ast.walk(self._tree)):
-            # The divisor of a power is its base, where the exponent is negative
+            # The base of a power acts as a divisor where the exponent is negative
             is_power = isinstance(node.op, ast.Pow)
             if is_power and not interval_of(node.right, ranges).a < 0:
                 continue
@@ -82,7 +82,7 @@ def python_text(text):
 
 
 def names_in(node):
-    """Names of the parameters in a tree. Raises ValueError if it contains anything but the allowed operations."""
+    """Names of the parameters in a syntax tree. Raises ValueError if it contains operations that are not allowed."""
     if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id[2:] in FUNCTIONS and len(node.args) == 1:
         return names_in(node.args[0])
     if isinstance(node, ast.Name):
@@ -97,7 +97,7 @@ def names_in(node):
 
 
 def evaluate(node, values, functions=FUNCTIONS, operators=OPERATORS, number=float):
-    """The value of a tree for floats or intervals; `number` converts the constants."""
+    """The value of a syntax tree for floats or intervals; `number` converts the constants."""
     own = functools.partial(evaluate, values=values, functions=functions, operators=operators, number=number)
     if isinstance(node, ast.Constant):
         return number(node.value)
@@ -119,13 +119,13 @@ EVERYTHING = iv.mpf([-math.inf, math.inf])
 
 
 def guarded(operation):
-    """An operation on intervals whose result is everything if it is undefined somewhere in its operands."""
+    """An operation on intervals. If it is undefined for some values of its operands, the result is EVERYTHING."""
     def result(*operands):
         try:
             found = operation(*operands)
         except (mpmath.libmp.ComplexResult, NotImplementedError, OverflowError, ValueError, ZeroDivisionError):
             return EVERYTHING
-        return found if isinstance(found, type(EVERYTHING)) else EVERYTHING  # not if it is complex
+        return found if isinstance(found, type(EVERYTHING)) else EVERYTHING  # a complex result is undefined
 
     return result
 
@@ -135,13 +135,14 @@ INTERVAL_OPERATORS = {kind: guarded(operation) for kind, operation in OPERATORS.
 
 
 def interval_of(node, ranges):
-    """An interval that contains all values of a tree for parameters within ranges, name -> (lower, upper)."""
+    """An interval that contains all values of a syntax tree for parameters within `ranges`, name -> (lower, upper)."""
     values = {name: iv.mpf(ranges[name]) for name in names_in(node)}
     return evaluate(node, values, INTERVAL_FUNCTIONS, INTERVAL_OPERATORS, iv.mpf)
 
 
 def find_zero(node, ranges):
-    """Parameters near a zero of a tree, None if it has none; bisects the ranges until every interval excludes zero."""
+    """Parameter values near a zero of a syntax tree; None if it has none. Bisects the ranges until every interval
+    excludes zero."""
     boxes = [(0, {name: ranges[name] for name in names_in(node)})]
     while boxes:
         halvings, box = boxes.pop()

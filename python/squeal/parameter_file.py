@@ -9,7 +9,7 @@ BLANKS = " \t\r\n\v\f"
 
 
 def read_value(text):
-    """The value after `=`: the text in double quotes, or the text before a comment."""
+    """The value after `=`: the text in double quotes, or the text before the comment."""
     text = text.strip(BLANKS)
     if quoted := re.match(r'"((?:[^"\\]|\\.)*)"', text):
         return re.sub(r"\\(.)", lambda escaped: "\n" if escaped[1] == "n" else escaped[1], quoted[1])
@@ -17,7 +17,8 @@ def read_value(text):
 
 
 def read_parameters(path):
-    """Values of a parameter file as a dictionary "Section/Name" -> text. File names need not be UTF-8."""
+    """Values of a parameter file as a dictionary "Section/Name" -> text. File names may contain bytes that are not
+    UTF-8."""
     values, sections = {}, []
     for line in pathlib.Path(path).read_text(encoding="utf-8", errors="surrogateescape").split("\n"):
         line = line.strip(BLANKS)

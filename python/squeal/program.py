@@ -13,12 +13,13 @@ from squeal.results import Results
 
 PACKAGE = pathlib.Path(__file__).resolve().parent
 SOURCE = PACKAGE.parents[1]
-# Executables of an installation and of a checkout
+# Executables in an installation and in a checkout
 PLACES = (PACKAGE.parents[3] / "bin" / "squeal", SOURCE / "build" / "release" / "squeal")
 
 
 def find_program():
-    """The executable: from the environment variable SQUEAL, the installation, the checkout or PATH. Raises Error if there is none."""
+    """Path of the executable: from the environment variable SQUEAL, the installation, the checkout or PATH. Raises
+    Error if it is not found."""
     if given := os.environ.get("SQUEAL"):
         if not pathlib.Path(given).is_file():
             raise Error(f"there is no program {given}", "environment variable SQUEAL", "name the executable")
@@ -46,7 +47,8 @@ def words_of(settings):
 def run(prm, overrides=None, output=None, n_processes=1):
     """Runs a parameter file with overrides "Section/Name" -> value and returns the Results.
 
-    They are written to the folder `output`, by default results/NAME for NAME.prm. Raises Error with the message of the program.
+    Results are written to the folder `output`, by default results/NAME for NAME.prm. Raises Error with the message of
+    the program.
     """
     output = pathlib.Path(output) if output else pathlib.Path("results") / pathlib.Path(prm).stem
     launcher = ["mpirun", "-np", str(n_processes)] if n_processes > 1 else []
@@ -58,7 +60,7 @@ def run(prm, overrides=None, output=None, n_processes=1):
 
 
 def error_of(process, prm):
-    """The error of a run that failed."""
+    """The exception for a run that failed."""
     if match := re.search(r"^error: (.*?)\n  where: *(.*?)\n  change: *(.*?)(?:\n\S|\Z)", process.stderr, re.DOTALL | re.MULTILINE):
         return Error(*(part.strip() for part in match.groups()))
     last = process.stderr.strip().splitlines()[-10:]

@@ -17,15 +17,15 @@ import scipy.sparse.linalg
 
 from squeal.errors import Error
 
-# Largest size for which all eigenvalues are computed by the dense QZ algorithm
+# Largest size of problems whose eigenvalues are all computed by the dense QZ algorithm
 DENSE_SIZE = 200
 # Initial number of eigenvalues per shift, and the number above which the region is divided
 FIRST_NUMBER, LARGEST_NUMBER = 24, 160
-# Relative distance of eigenvalues that may be copies of the same one
+# Relative distance up to which eigenvalues may be copies of the same one
 EQUAL = 1e-8
-# Smallest new component of a unit vector that counts as linearly independent of others
+# Smallest new component of a unit vector for which it counts as linearly independent of the others
 INDEPENDENT = 1e-3
-# The pencil counts as singular if relative changes of the entries of Q(s) up to this, at an arbitrary s, make Q(s) singular
+# The pencil counts as singular if relative changes of entries up to this value make Q(s) singular at an arbitrary s
 SINGULAR = 1e-13
 
 
@@ -56,7 +56,8 @@ def errors(M, C, K, eigenvalues, vectors):
 
 
 def match(values, others):
-    """One-to-one pairs of two lists of eigenvalues with the least total distance: indices in both, and relative differences."""
+    """One-to-one assignment of two lists of eigenvalues with the smallest total distance: indices in both lists, and
+    relative differences."""
     values, others = np.asarray(values, dtype=complex), np.asarray(others, dtype=complex)
     distances = abs(values[:, None] - others[None, :])
     pairs = scipy.optimize.linear_sum_assignment(distances)
@@ -65,7 +66,7 @@ def match(values, others):
 
 
 def scaling(M, C, K):
-    """γ and δ of Fan, Lin and Van Dooren: γ² δ M, γ δ C and δ K have norms about one."""
+    """Scaling factors γ and δ of Fan, Lin and Van Dooren: γ² δ M, γ δ C and δ K have norms of about one."""
     norms = [scipy.sparse.linalg.norm(matrix) for matrix in (M, C, K)]
     if norms[2] == 0:
         gamma = norms[1] / norms[0] or 1.0
@@ -91,7 +92,7 @@ def solve_dense(M, C, K, where):
         raise singular(where)
     finite = ~is_infinite
     eigenvalues = pairs[0][finite] / pairs[1][finite]
-    # The larger one of x and λ x has the smaller relative error
+    # The larger of x and λ x has the smaller relative error
     parts = np.where(abs(eigenvalues) <= 1, vectors[:n, finite], vectors[n:, finite])
     return gamma * eigenvalues, parts
 
@@ -101,7 +102,7 @@ def singular(where):
 
 
 class ShiftInvert:
-    """Shift-invert ARPACK on the companion form: the eigenvalues nearest a shift σ are those of largest 1 / (λ - σ)."""
+    """Shift-invert ARPACK on the companion form: the eigenvalues λ nearest a shift σ have the largest |1 / (λ - σ)|."""
 
     def __init__(self, M, C, K, where):
         self.M, self.C, self.K, self.where = M, C, K, where
@@ -110,7 +111,8 @@ class ShiftInvert:
     def check(self):
         """Raises Error if Q(σ) is singular to working precision at an arbitrary σ.
 
-        By Oettli and Prager, relative changes of its entries by max |Q x| / (|Q| |x|) make it singular; x is from inverse iteration.
+        By Oettli and Prager, relative changes of the entries by max |Q x| / (|Q| |x|) make Q(σ) singular; x is computed
+        by inverse iteration.
         """
         sigma, lu = self.factor(self.gamma * (0.6 + 0.7j))
         Q = self.K + sigma * self.C + sigma**2 * self.M
@@ -122,19 +124,20 @@ class ShiftInvert:
             raise singular(self.where)
 
     def factor(self, sigma):
-        """σ and the LU factorisation of Q(σ); σ is moved slightly if Q(σ) is singular."""
+        """σ and the LU factorisation of Q(σ); if Q(σ) is singular, σ is changed slightly."""
         for step in range(4):
             moved = sigma + step * 1e-4 * (1 + 1j if np.iscomplex(sigma) else 1) * (abs(sigma) + 1e-2 * self.gamma)
             matrix = (self.K + moved * self.C + moved**2 * self.M).tocsc()
             try:
                 return moved, scipy.sparse.linalg.splu(matrix, permc_spec="COLAMD" if matrix.shape[0] < 50 else "MMD_AT_PLUS_A",
                                                        diag_pivot_thresh=0.1, options={"SymmetricMode": True})
-            except RuntimeError:  # exactly singular
+            except RuntimeError:  # Q(σ) is exactly singular
                 continue
         raise singular(self.where)
 
     def nearest(self, sigma, number, seed, factor=None):
-        """At least `number` eigenvalues with their vectors, and the radius about the shift within which there are no others."""
+        """At least `number` eigenvalues with their vectors, and the radius about the shift within which all eigenvalues
+        have been found."""
         n, scale = self.M.shape[0], self.gamma
         if number >= n:
             return *solve_dense(self.M, self.C, self.K, self.where), math.inf
@@ -161,13 +164,13 @@ class ShiftInvert:
 
 
 def inside(eigenvalues, region, margin=0.0):
-    """Mask of the eigenvalues in a rectangle: an array with rows (lower, upper) of real and imaginary parts [1/s]."""
+    """Mask of the eigenvalues in a rectangle: an array with rows (lower, upper) for real and imaginary parts [1/s]."""
     parts = np.array([eigenvalues.real, eigenvalues.imag])
     return ((parts >= region[:, :1] - margin) & (parts <= region[:, 1:] + margin)).all(axis=0)
 
 
 def solve_region(solver, region, seed):
-    """Eigenvalues and vectors in a rectangle, which is halved if one shift requires too many eigenvalues."""
+    """Eigenvalues and vectors in a rectangle, which is halved if a single shift requires too many eigenvalues."""
     widths, centre = np.ptp(region, axis=1), complex(*region.mean(axis=1))
     factor, number = solver.factor(centre if centre.imag else centre.real), FIRST_NUMBER
     while True:
@@ -176,7 +179,7 @@ def solve_region(solver, region, seed):
         if radius > reach:
             found = inside(eigenvalues, region, EQUAL * solver.gamma)
             return eigenvalues[found], vectors[:, found]
-        # Extrapolate to the number that reaches the corners
+        # Extrapolate to the number of eigenvalues that reaches the corners
         number = max(2 * number, math.ceil(1.2 * number * (reach / radius)))
         if number > LARGEST_NUMBER:
             halves, axis = np.array([region, region]), np.argmax(widths)
@@ -187,10 +190,10 @@ def solve_region(solver, region, seed):
 
 
 def merge(eigenvalues, vectors, tolerance=EQUAL):
-    """Indices that keep each mode once among pairs found in several runs.
+    """Indices of pairs, found in several runs, such that each mode occurs once.
 
-    Pairs with the same eigenvalue are copies of one mode, or members of a multiple eigenvalue; a member is kept if its vector is linearly
-    independent of those kept before.
+    Pairs with the same eigenvalue are copies of one mode, or members of a multiple eigenvalue; a pair is kept if its
+    vector is linearly independent of the vectors already kept.
     """
     kept, left = [], list(np.argsort(eigenvalues.imag, kind="stable"))
     unit = vectors / np.linalg.norm(vectors, axis=0)
@@ -201,7 +204,7 @@ def merge(eigenvalues, vectors, tolerance=EQUAL):
                 break
             cluster.append(candidate)
         left = left[len(cluster):]
-        # Eigenvalues of equal frequency may differ in growth rate, such as -R and R
+        # Eigenvalues with the same frequency may differ in growth rate, for example -R and R
         while cluster:
             equal = [i for i in cluster if abs(eigenvalues[i] - eigenvalues[cluster[0]]) <= 10 * tolerance * abs(eigenvalues[i])]
             cluster = [i for i in cluster if i not in equal]
@@ -214,8 +217,9 @@ def merge(eigenvalues, vectors, tolerance=EQUAL):
 def collect(solve, n_agreeing=2, n_runs=8):
     """Eigenvalues and vectors from runs with different starting vectors.
 
-    A Krylov method with a single starting vector may miss members of multiple eigenvalues. Runs are therefore repeated and merged until
-    `n_agreeing` runs in a row, including the first, find nothing new. solve(seed) returns eigenvalues and vectors, None on failure.
+    A Krylov method with a single starting vector may miss members of multiple eigenvalues. Runs are therefore repeated
+    and merged until `n_agreeing` runs in a row, including the first, find nothing new. solve(seed) returns eigenvalues
+    and vectors, or None if it fails.
     """
     pairs, agreeing = None, 0
     for seed in range(1, n_runs + 1):
@@ -236,10 +240,12 @@ def collect(solve, n_agreeing=2, n_runs=8):
 
 
 def solve(M, C, K, number=None, largest=None, region=None, shift=None, where="system"):
-    """Eigenpairs of a quadratic pencil of real sparse matrices by increasing Im λ: those selected, or all of a small system.
+    """Selected eigenpairs of a quadratic pencil of real sparse matrices, or all eigenpairs of a small system, by
+    increasing Im λ.
 
-    region: ((lower, upper) real part, (lower, upper) imaginary part) [1/s]; largest: those with |λ| up to it; number: that many nearest
-    to `shift` (default 0). Raises Error if M = 0, if the pencil is singular or if nothing is selected in a large system.
+    region: ((lower, upper) real part, (lower, upper) imaginary part) [1/s]; largest: maximum |λ|; number: number of
+    eigenvalues nearest to `shift` (default 0). Raises Error if M = 0, if the pencil is singular or if nothing is
+    selected in a large system.
     """
     n = M.shape[0]
     if M.nnz == 0 or not abs(M.data).max(initial=0.0):

@@ -13,7 +13,7 @@ import re
 from squeal.errors import Error
 from squeal.parameter_file import read_parameters
 
-FILES = "files [byte]"  # in run.json
+FILES = "files [byte]"  # key of the list of files in run.json
 MU = "mu [-]"
 
 
@@ -23,15 +23,15 @@ def axis_title(column):
 
 
 def symbol(column):
-    """Symbol of the parameter of a column, as in `μ = 0.4`."""
+    """Symbol of the parameter in a column, as in `μ = 0.4`."""
     return "μ" if column == MU else column.split(" [")[0]
 
 
 class Table:
-    """The rows of a CSV table, by the names of its columns. Lines that begin with # are comments."""
+    """The rows of a CSV table by column name. Lines that begin with # are comments."""
 
     def __init__(self, path):
-        """Raises Error if it cannot be read."""
+        """Raises Error if the table cannot be read."""
         self.path = path
         try:
             with open(path, newline="", encoding="utf-8") as file:
@@ -49,7 +49,7 @@ class Table:
 
     @property
     def parameter(self):
-        """The first column: in tables of a sweep the parameter that varies, such as `mu [-]`."""
+        """Name of the first column; in tables of a sweep this is the varied parameter, such as `mu [-]`."""
         return self.columns[0]
 
     def texts(self, column):
@@ -59,7 +59,7 @@ class Table:
         return [row[column] for row in self.rows]
 
     def numbers(self, column):
-        """Numbers of a column, NaN for an empty cell. Raises Error if a cell holds something else."""
+        """Numbers in a column, NaN for an empty cell. Raises Error if a cell contains anything else."""
         result = []
         for line, text in enumerate(self.texts(column), start=2):
             try:
@@ -70,11 +70,11 @@ class Table:
         return result
 
     def flags(self, column):
-        """Whether the number in each cell of a column is not zero."""
+        """True for each cell of a column whose number is not zero."""
         return [number != 0 for number in self.numbers(column)]
 
     def groups(self, *columns):
-        """Rows with the same values in some columns, in the order of the table."""
+        """Groups of rows that have the same values in some columns, in the order of the table."""
         found = {}
         for row in self.rows:
             found.setdefault(tuple(row[column] for column in columns), []).append(row)
@@ -85,8 +85,8 @@ class Table:
         return [complex(rate, 2 * math.pi * frequency) for rate, frequency in zip(self.numbers("growth rate [1/s]"), self.numbers("frequency [Hz]"))]
 
     def frame(self):
-        """A pandas data frame. Units move from the column names to `attrs["units"]`, except where they distinguish columns. Numeric columns
-        are converted to numbers, empty cells to NaN."""
+        """The table as a pandas data frame. Units move from the column names to `attrs["units"]`, except where they
+        distinguish columns. Numeric columns are converted to numbers, empty cells to NaN."""
         import pandas
 
         parts = [re.fullmatch(r"(.*?)(?: \[([^\]]*)\])?", column).groups() for column in self.columns]
@@ -106,13 +106,13 @@ class Table:
 
 
 def shape_files(folder):
-    """Row of complex_modes.csv, from 1 -> file of the shape of this mode."""
+    """Files of the mode shapes by row of complex_modes.csv, counted from 1."""
     return {int(match[1]): path for path in sorted((pathlib.Path(folder) / "modes").glob("complex_*.vtu"))
             if (match := re.match(r"complex_(\d+)_", path.name)) and not path.stem.endswith("_contact")}
 
 
 class Results:
-    """The results folder of a run. Raises Error if it is not one."""
+    """The result folder of a run. Raises Error if the folder does not contain results."""
 
     def __init__(self, folder):
         self.folder = pathlib.Path(folder)
@@ -154,12 +154,12 @@ class Results:
     designs = functools.cached_property(lambda self: self.frame("designs"))
 
     def field_names(self):
-        """Files of fields, relative to the folder without their ending, such as `modes/complex_001_A0-4`."""
+        """Names of field files relative to the folder, without suffix, such as `modes/complex_001_A0-4`."""
         return sorted(str(path.relative_to(self.folder).with_suffix("")) for path in self.folder.rglob("*.vtu")
                       if ".unfinished" not in path.parts)
 
     def fields(self, name):
-        """A file of fields as a Mesh of meshio: points, cells, and arrays in point_data and cell_data."""
+        """A field file as a meshio Mesh: points, cells, and arrays in point_data and cell_data."""
         from squeal.vtu_file import VtuFile
 
         path = self.folder / f"{name}.vtu"
@@ -168,7 +168,7 @@ class Results:
         return VtuFile(path).as_meshio()
 
     def system(self):
-        """The system of matrices that the run has written. Raises Error if there is none."""
+        """The system of matrices written by the run. Raises Error if there is none."""
         from squeal.system import FILE, System
 
         path = self.folder / "system" / FILE
@@ -177,13 +177,13 @@ class Results:
         return System.read(path)
 
     def parameter(self, name):
-        """The text of a parameter "Section/Name"."""
+        """The value of a parameter "Section/Name" as text."""
         if name not in self.parameters:
             raise Error(f"the parameter {name} is missing", f"file {self.folder / 'parameters.prm'}", "run squeal again")
         return self.parameters[name]
 
     def number(self, name):
-        """The number of a parameter, the first of several separated by commas."""
+        """The value of a parameter as a number; the first number if there are several, separated by commas."""
         text = self.parameter(name)
         try:
             return float(text.split(",")[0])
@@ -207,7 +207,8 @@ class Results:
         return place, self.save({place: page.page(content.content(self)).encode()}, is_listed=not output)
 
     def save(self, files, is_listed):
-        """Writes files (path -> bytes), lists them in run.json if `is_listed`, and returns notes on files that were renamed."""
+        """Writes files (path -> bytes) and lists them in run.json if `is_listed`; returns notes on files that were
+        renamed."""
         try:
             for path in files:
                 path.parent.mkdir(parents=True, exist_ok=True)
@@ -236,7 +237,7 @@ def replace(path, content):
 
 
 def make_way(path):
-    """Renames a file of the user whose name is needed; returns a note."""
+    """Renames a file of the user if its name is needed; returns a note."""
     kept = path.with_name(path.name + ".kept")
     number = 1
     while kept.exists():

@@ -9,13 +9,13 @@ from squeal.vtu_file import SHAPES
 
 # Faces of VTK cells; triangles repeat their last corner
 FACES = {kind: [(*face, face[-1])[:4] for face in faces_of(shape)] for kind, shape in SHAPES.items() if shape != "vertex"}
-SAME_PLACE = 1e-5  # of the size of the bodies, for points written by several processes
+SAME_PLACE = 1e-5  # fraction of the size of the bodies within which points written by several processes coincide
 
 
 def outer_faces(mesh, bodies=None):
     """Faces that belong to one cell only (m x 4, triangles repeat their last corner), of all bodies or of the given components.
 
-    Coincident points of one body are merged, those of two bodies in contact are not.
+    Coincident points of the same body are merged; points of two bodies in contact are not.
     """
     points, of_cells = mesh.points, mesh.cell_fields.get("component", [0] * len(mesh.cells))
     chosen = [cell for cell, body in enumerate(of_cells) if bodies is None or body in bodies]
@@ -35,14 +35,14 @@ def outer_faces(mesh, bodies=None):
 
 
 def sides_of(faces):
-    """Ends (n x 2, ascending) of the sides of faces, and the index of the face of each."""
+    """Ends (n x 2, ascending) of the sides of faces, and the index of the face to which each side belongs."""
     ends = np.sort(np.stack([faces, np.roll(faces, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
-    is_side = ends[:, 0] < ends[:, 1]  # a repeated corner has no side
+    is_side = ends[:, 0] < ends[:, 1]  # a repeated corner forms no side
     return ends[is_side], np.repeat(np.arange(len(faces)), 4)[is_side]
 
 
 def edges_of(faces):
-    """Ends (n x 2) of the edges of faces, and the number of faces that share each."""
+    """Ends (n x 2) of the edges of faces, and the number of faces that share each edge."""
     return np.unique(sides_of(faces)[0], axis=0, return_counts=True)
 
 
@@ -52,6 +52,6 @@ def sharp_edges(points, faces, angle=50):
     normals = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
     normals /= np.linalg.norm(normals, axis=1)[:, None]
     ends, owners = sides_of(faces)
-    order = np.lexsort(ends.T)  # brings the two faces of an edge together
+    order = np.lexsort(ends.T)  # makes the two faces of an edge adjacent in the list
     one, other = owners[order].reshape(-1, 2).T
     return ends[order][::2][abs(np.sum(normals[one] * normals[other], axis=1)) < np.cos(np.radians(angle))]

@@ -23,7 +23,7 @@ from squeal.results import Table
 FORMAT, VERSION, FILE = "squeal system", 1, "system.json"
 SYMMETRIES = {"none": 0, "symmetric": 1, "skew": -1}
 KINDS = ("body", "mount", "rotation", "friction", "circulatory", "contact damping", "modal damping")
-# Largest entry of A - A^T, or of A + A^T, relative to that of A
+# Largest entry of A - A^T, or of A + A^T, relative to the largest entry of A
 SYMMETRY_TOLERANCE = 1e-12
 # Largest number of dofs for which M(p), C(p) and K(p) return dense matrices
 LARGEST_DENSE = 5000
@@ -31,7 +31,7 @@ LARGEST_DENSE = 5000
 
 @dataclasses.dataclass
 class Parameter:
-    """The value of a parameter, and its range, unit and meaning if known."""
+    """The value of a parameter, and its range, unit and description if they are given."""
 
     value: float
     lower: float = None
@@ -66,22 +66,24 @@ class Term:
 
     @property
     def product(self):
-        """A as a sparse matrix."""
+        """The matrix A of the term as a sparse matrix."""
         return self.matrix if self.matrix is not None else sparse.csr_matrix(self.left @ sparse.diags(self.weights) @ self.right.T)
 
 
 class System:
-    """Parameters by name, terms, groups of dofs (name -> inclusive ranges from 1), and the `reduction` of a reduced model with its basis.
+    """A system of matrices: parameters by name, terms, groups of dofs (name -> inclusive ranges from 1), and the
+    `reduction` of a reduced model with its basis.
 
-    Mode shapes are drawn at points with `positions` [m] (n_points x 3), whose displacements are `displacements` (3 n_points x n, sparse;
-    rows x, y and z for one point after the other) times a vector; if `displacements` is None, dofs 3 i - 2 to 3 i are those of point i.
+    Mode shapes are drawn at points with `positions` [m] (n_points x 3), whose displacements are `displacements` (3
+    n_points x n, sparse; rows x, y and z of each point in turn) times a vector; if `displacements` is None, dofs 3 i -
+    2 to 3 i belong to point i.
 
     Arguments `p` are dictionaries of parameter values that override those of the file.
     """
 
     def __init__(self, parameters, terms, groups=None, positions=None, displacements=None, reduction=None, description="",
                  measured_modes=None, where=FILE):
-        """Raises Error if the data are inconsistent; `where` is the file that it names."""
+        """Raises Error if the data are inconsistent; the message names the file `where`."""
         self.parameters = {name: parameter if isinstance(parameter, Parameter) else Parameter(parameter) for name, parameter in parameters.items()}
         self.terms, self.groups, self.reduction = list(terms), dict(groups or {}), reduction
         self.positions, self.displacements = positions, displacements
@@ -131,7 +133,7 @@ class System:
                 raise Error(f"the value {parameter.value:g} is outside the range {lower:g} to {upper:g}", where, "change the value or the range")
 
     def range(self, name):
-        """Limits of a parameter; a missing limit is its value."""
+        """Limits of a parameter; a limit that is not given equals the value."""
         parameter = self.parameters[name]
         return (parameter.value if parameter.lower is None else parameter.lower, parameter.value if parameter.upper is None else parameter.upper)
 
@@ -174,7 +176,7 @@ class System:
 
     @classmethod
     def read(cls, path):
-        """The system of a folder, or of its system.json. Raises Error if a file is missing or wrong."""
+        """Reads a system from a folder or from its system.json. Raises Error if a file is missing or invalid."""
         path = pathlib.Path(path)
         path = path / FILE if path.is_dir() else path
         data = read_json(path)
@@ -210,7 +212,7 @@ class System:
                    description=data.get("description", ""), measured_modes=measured, where=path, **points)
 
     def write(self, folder):
-        """Writes the system to a folder, which is created if it does not exist."""
+        """Writes the system to a folder, which is created if necessary."""
         folder = pathlib.Path(folder)
         folder.mkdir(parents=True, exist_ok=True)
         names, entries = set(), []
@@ -245,7 +247,8 @@ class System:
         (folder / FILE).write_text(json.dumps(data, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
 
     def values(self, p=None):
-        """Values of all parameters as a dictionary. Raises Error for unknown names and for values outside the range, if there is one."""
+        """Values of all parameters as a dictionary. Raises Error for unknown names and for values outside a given
+        range."""
         values = {name: parameter.value for name, parameter in self.parameters.items()}
         for name, value in (p or {}).items():
             if name not in values:
@@ -267,13 +270,13 @@ class System:
         return found[0]
 
     def coefficient(self, term, p=None):
-        """θ(p) of a Term or of the term with this name."""
+        """θ(p) of a Term, or of the term with this name."""
         term = self.term(term) if isinstance(term, str) else term
         index = next(index for index, other in enumerate(self.terms) if other is term)
         return self._expressions[index](self.values(p))
 
     def matrices(self, p=None):
-        """M, C and K as sparse matrices: Q(λ; p) = λ² M + λ C + K."""
+        """M, C and K as sparse matrices, with Q(λ; p) = λ² M + λ C + K."""
         values = self.values(p)
         sums = [sparse.csr_matrix((self.size, self.size)) for _ in range(3)]
         for term, expression in zip(self.terms, self._expressions):
@@ -290,7 +293,8 @@ class System:
         return quadratic.linearise(*self.matrices(p))
 
     def solve(self, p=None, number=None, largest=None, region=None, shift=None):
-        """Eigenvalues and right vectors with their errors, as `quadratic.Eigenpairs`; the arguments select them as in `quadratic.solve`."""
+        """Eigenvalues and right vectors with their errors as `quadratic.Eigenpairs`; the arguments select them as in
+        `quadratic.solve`."""
         return quadratic.solve(*self.matrices(p), number=number, largest=largest, region=region, shift=shift, where=self.where)
 
     def _dense(self, position, p):
@@ -311,7 +315,8 @@ class System:
         return self._dense(2, p)
 
     def to_pymor(self, B=None, Cp=None):
-        """A SecondOrderModel of pyMOR with the parameters of the system; inputs B (n x m) and outputs Cp (l x n), the identity by default."""
+        """A SecondOrderModel of pyMOR with the parameters of the system; inputs B (n x m) and outputs Cp (l x n) are
+        identities by default."""
         try:
             from pymor.models.iosys import SecondOrderModel
             from pymor.operators.constructions import LincombOperator
@@ -343,13 +348,13 @@ def is_number(value):
 
 
 def is_range(ends, size):
-    """Whether the value is a range [first, last] of dofs from 1 to `size`."""
+    """True if the value is a range [first, last] of dofs between 1 and `size`."""
     is_pair = isinstance(ends, (list, tuple)) and len(ends) == 2 and all(isinstance(end, numbers.Integral) for end in ends)
     return is_pair and 1 <= ends[0] <= ends[1] <= size
 
 
 def symmetry_defect(matrix, sign):
-    """Largest entry of A - sign A^T relative to that of A."""
+    """Largest entry of A - sign A^T, relative to the largest entry of A."""
     difference = abs(matrix - sign * matrix.T)
     return float(difference.max() / abs(matrix).max()) if difference.nnz else 0.0
 
@@ -366,7 +371,7 @@ def check_keys(entry, known, where):
 
 
 def read_entry(kind, entry, where, needed):
-    """A Parameter or a Term from a JSON object."""
+    """A Parameter or a Term read from a JSON object."""
     check_keys(as_kind(entry, dict, where), [field.name for field in dataclasses.fields(kind)], where)
     if missing := [key for key in needed if key not in entry]:
         raise Error(f"the entry `{missing[0]}` is missing", where, "add it")
@@ -380,7 +385,7 @@ def inside(folder, name, where):
 
 
 def read_matrix(folder, name, where):
-    """A Matrix Market file of real numbers."""
+    """A matrix read from a Matrix Market file of real numbers."""
     path = inside(folder, name, where)
     try:
         matrix = scipy.io.mmread(path)
@@ -424,7 +429,7 @@ def write_array(path, array):
 
 
 def unique(name, names):
-    """The name, with a number if it is already in `names`, to which it is added."""
+    """The name, with a number appended if it is already in `names`; adds the result to `names`."""
     found, number = name, 1
     while found.lower() in names:
         number += 1

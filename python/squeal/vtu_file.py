@@ -10,14 +10,15 @@ import numpy as np
 
 from squeal.errors import Error
 
-# Names of VTK cell types
+# Names of VTK's cell types by number
 SHAPES = {1: "vertex", 5: "triangle", 9: "quad", 10: "tetra", 12: "hexahedron", 13: "wedge", 14: "pyramid"}
-TYPES = {"Float32": ("<f4", float), "Int32": ("<i4", int), "UInt8": ("u1", int)}  # in the file and in memory
+TYPES = {"Float32": ("<f4", float), "Int32": ("<i4", int), "UInt8": ("u1", int)}  # types in the file and in memory
 
 
 class VtuFile:
-    """Points (n x 3) and point fields (n x 3 or n) as arrays; cells as a list of arrays of their points, with fields and VTK
-    types (see SHAPES); the title, or None. Coincident points of several pieces are repeated."""
+    """Content of a .vtu file: points (n x 3) and point fields (n x 3 or n) as arrays; cells as a list of arrays of
+    their points, with fields and VTK types (see SHAPES); the title, or None. Points that coincide in several pieces are
+    repeated."""
 
     def __init__(self, path):
         self.path = path
@@ -45,7 +46,7 @@ class VtuFile:
         assert all((0 <= cell).all() and (cell < len(self.points)).all() for cell in self.cells), path
 
     def values(self, data):
-        """An array: the sizes, then a single block compressed by zlib."""
+        """Values of an array that is stored as sizes followed by a single block compressed by zlib."""
         offset, (in_file, in_memory) = int(data.get("offset")), TYPES[data.get("type")]
         n_blocks, size, _, length = struct.unpack_from("<4Q", self.data, offset)
         plain = zlib.decompress(self.data[offset + 32:offset + 32 + length])
@@ -54,13 +55,13 @@ class VtuFile:
         return values.reshape(-1, 3) if data.get("NumberOfComponents") == "3" else values
 
     def field(self, name):
-        """A point field. Raises Error if there is none."""
+        """A point field. Raises Error if the file does not contain it."""
         if name not in self.fields:
             raise Error(f"the file has no point field {name}", self.path, f"name one of: {', '.join(self.fields)}")
         return self.fields[name]
 
     def as_meshio(self):
-        """A Mesh of meshio."""
+        """The content as a meshio Mesh."""
         import meshio
 
         of_blocks = {SHAPES[kind]: np.flatnonzero(self.cell_types == kind) for kind in np.unique(self.cell_types)}

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Parameters far from those of a brake: models, an independent solution of each, and the assessment of the results.
+"""Models with extreme parameters: settings, an independent solution of each model, and the assessment of the results.
 
     cases.py     the models as data
     oracle.py    all eigenvalues of the exported matrices by SciPy, refined in extended precision

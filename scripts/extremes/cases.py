@@ -4,7 +4,7 @@
 
 import dataclasses
 
-# A pin on each side of a disc with one layer of elements: 780 dofs, 32 modes, one of them unstable
+# One pin on each side of a disc with one layer of elements: 780 dofs, 32 modes, one of them unstable
 BASE = """
 subsection Geometry
   set Disc inner radius = 0.2
@@ -38,10 +38,10 @@ class Case:
     value: str
     settings: tuple
     expected: str = RIGHT
-    argument_count: bool = True  # whether the complex modes are also counted by the argument principle
-    quick: bool = False  # whether ctest runs it
-    scale: float = 1.0  # ratio of the lengths to those of `unit`
-    unit: tuple = ()  # settings of the same model in metres, whose dimensionless results must be the same
+    argument_count: bool = True  # True if the complex modes are also counted by the argument principle
+    quick: bool = False  # True if ctest runs this case
+    scale: float = 1.0  # ratio of the lengths to the lengths of `unit`
+    unit: tuple = ()  # settings of the same model in metres; dimensionless results must be the same
 
     @property
     def name(self):
@@ -79,7 +79,7 @@ def mount(radial, tangential, axial):
 
 
 def pins(radii, angles, sides=("Top", "Bottom")):
-    """Settings of pins; other sides have none."""
+    """Settings for pins on the given sides; other sides have no pins."""
     return tuple(f"Geometry/{side} pin {what}={', '.join(map(str, values)) if side in sides else ''}"
                  for side in ("Top", "Bottom") for what, values in (("radii", radii), ("angles", angles)))
 
@@ -103,7 +103,7 @@ add("Poisson's ratio of the pins, trilinear", "0.5", "Pin material/Poisson ratio
 
 for exponent in range(-6, 7):
     ratio = 10.0**exponent
-    # A mesh resolves slow waves up to a lower frequency only
+    # The mesh resolves slow waves only up to a lower frequency
     end = 5000 * min(1, (ratio / 1e-2) ** 0.5)
     add("Young's modulus pin to disc", f"1e{exponent}", f"Pin material/Young modulus={ratio * DISC_MODULUS!r}", band(end),
         quick=exponent == -6, argument_count=exponent in (-6, 6))
@@ -152,7 +152,7 @@ for load in (0, 1e-6, 1e9):
 add("end of the band [Hz]", "1", band(1.0), expected="no mode of the coupled system lies in the band", quick=True)
 add("end of the band [Hz]", "400: no mode", band(400.0), expected="no mode of the coupled system lies in the band")
 add("end of the band [Hz]", "440: one mode", band(440.0))
-# Frequencies of real and complex modes of the model, with the digits of the tables
+# Frequencies of real and complex modes of the model, with the digits printed in the tables
 for which, frequency in (("a real mode", 468.738364319), ("a complex mode", 563.560037244), ("a complex mode of a doublet", 901.629050712)):
     add("end of the band on a mode [Hz]", f"{frequency!r}: {which}", band(frequency), quick=which == "a real mode")
 add("end of the band [Hz]", "12000", band(12000.0))
@@ -186,7 +186,7 @@ for diameter in (1e-3, 1e-4, 1e-5, 1e-6, 1e-8):
     add("pins of diameter [m]", f"{diameter:g}", f"Geometry/Pin diameter={diameter!r}", f"Geometry/Pin height={diameter!r}")
 for tolerance in (0.1, 0.0):
     add("pairing tolerance [m]", f"{tolerance:g}", f"Geometry/Pairing tolerance={tolerance!r}", expected="Pairing tolerance")
-# The chord 2 r sin(angle / 2) is the diameter 0.052 m at 11.6128 degrees
+# At 11.6128 degrees, the chord 2 r sin(angle / 2) equals the pin diameter of 0.052 m
 for angle, gap in ((11.7, "4e-4"), (11.615, "1e-5")):
     add("gap of two pins [m]", gap, *pins([0.257] * 2, [0, angle]))
 add("gap of two pins [m]", "overlap", *pins([0.257] * 2, [0, 11.5]), expected="pins")

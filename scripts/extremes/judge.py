@@ -17,15 +17,15 @@ from squeal import exported_matrices, parameter_file, quadratic
 from squeal.program import find_program, words_of
 from squeal.results import Table
 
-# Largest relative difference of an eigenvalue from the oracle's
+# Largest relative difference of an eigenvalue from that of the oracle
 TOLERANCE = 1e-6
-# Largest residual of a mode in a run without a warning of lost digits
+# Largest residual of a mode, if the run does not warn of lost digits
 LARGEST_RESIDUAL = 1e-8
-# Tables have 12 digits
+# Relative rounding error of tables, which have 12 digits
 PRINTED = 1e-11
-# Eigenvalues this close to the end of the band or to its radius may or may not be listed
+# Relative distance from the end of the band, or from the radius, within which eigenvalues may or may not be listed
 EDGE = 1e-7
-# |lambda| / end of the band up to which the program treats lambda as zero
+# |lambda| / end of the band below which the program treats lambda as zero
 ZERO = 1e-4
 # Largest difference of dimensionless results from those of the model in metres
 SAME_IN_ALL_UNITS = 1e-8
@@ -35,7 +35,7 @@ CPU_LIMIT, TIME_LIMIT = 300, 1500
 
 @dataclasses.dataclass
 class Row:
-    """The outcome of a case."""
+    """The outcome of a case as a row of the table."""
 
     group: str
     value: str
@@ -54,11 +54,11 @@ class Row:
 
 
 class Wrong(Exception):
-    """Wrong behaviour of the program."""
+    """Raised if the program behaves incorrectly."""
 
 
 def call(*arguments, folder):
-    """The finished process. Raises Wrong if it does not end, crashes or exits with a status other than 0 or 1."""
+    """The finished process. Raises Wrong if it does not end, crashes, or exits with a status other than 0 or 1."""
     try:
         process = subprocess.run([find_program(), *arguments], cwd=folder, text=True, capture_output=True, timeout=TIME_LIMIT, check=False,
                                  stdin=subprocess.DEVNULL, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (CPU_LIMIT, CPU_LIMIT)))
@@ -71,7 +71,7 @@ def call(*arguments, folder):
 
 
 def check_numbers(folder):
-    """Raises Wrong if a cell of a table is infinite or not a number."""
+    """Raises Wrong if a cell of a table is infinite or NaN."""
     for path in folder.glob("*.csv"):
         for row in Table(path).rows:
             for column, cell in row.items():
@@ -80,7 +80,7 @@ def check_numbers(folder):
 
 
 def judge(case, folder):
-    """The row of a case, which is run below the folder."""
+    """Runs a case in a subfolder of the folder; returns its row."""
     row = Row(case.group, case.value)
     (folder / "scene.prm").write_text(BASE, encoding="utf-8")
     try:
@@ -177,8 +177,9 @@ def compare_units(case, folder, row):
 
 
 def difference(rows, others, scale):
-    """Largest difference of two tables of modes, the second with lengths times `scale`: of frequencies and growth rates relative to the
-    frequency, of dimensionless numbers absolute; infinite if texts or numbers of rows differ."""
+    """Largest difference between two tables of modes, the second for a model with lengths times `scale`. Frequencies
+    and growth rates are compared relative to the frequency, dimensionless numbers absolutely; infinite if texts or
+    numbers of rows differ."""
     largest = 0.0 if len(rows) == len(others) else math.inf
     for row, other in zip(rows, others):
         for column, cell in row.items():
@@ -195,7 +196,7 @@ def difference(rows, others, scale):
 
 
 def compare(what, actual, expected, band, radius):
-    """Largest relative difference. Raises Wrong if the numbers differ."""
+    """Largest relative difference of eigenvalues. Raises Wrong if their numbers differ."""
     def certain(values):
         return [value for value in values
                 if abs(value) > ZERO * band and abs(abs(value) - radius) > EDGE * radius and abs(value.imag - band) > EDGE * band]
@@ -211,8 +212,8 @@ def compare(what, actual, expected, band, radius):
 
 
 def argument_count(case, folder, modes, band):
-    """Counts complex modes by the argument principle in a sweep with one friction coefficient: those with |Re lambda| up to 0.1 and
-    Im lambda from 0.001 times the end of the band."""
+    """Counts complex modes by the argument principle in a sweep with one friction coefficient. Counts modes with |Re
+    lambda| up to 0.1 and Im lambda of at least 0.001 times the end of the band."""
     parameters = parameter_file.read_parameters(folder / "run" / "parameters.prm")
     mu = parameters["Operation/Friction coefficient"]
     settings = [*case.settings, "Study=sweep", f"Sweep/First friction coefficient={mu}", f"Sweep/Last friction coefficient={mu}",

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""All eigenvalues of a band from the exported matrices, independent of the program.
+"""Computes all eigenvalues in a band from the exported matrices, independently of the program.
 
 Three steps:
 
@@ -31,11 +31,11 @@ LARGEST_DENSE = 1600
 # Relative distance up to which eigenvalues are refined together
 CLUSTER = 1e-6
 N_ITERATIONS = 4
-# Relative distance of eigenvalues by ARPACK that are copies of one if their vectors are linearly dependent
+# Relative distance up to which eigenvalues found by ARPACK are copies if their vectors are linearly dependent
 COPIES = 1e-5
-# |lambda| / end of the band up to which eigenvalues count as zero and are not refined
+# |lambda| / end of the band below which eigenvalues count as zero and are not refined
 ZERO = 0.9e-4
-# Relative change at which refinement stops
+# Relative change below which refinement stops
 CONVERGED = 1e-10
 
 
@@ -44,9 +44,9 @@ class Solution:
     """Eigenvalues with Im lambda >= 0 and |lambda| below a radius."""
 
     values: np.ndarray
-    error: float  # relative, largest change in the last refinement
+    error: float  # largest relative change in the last refinement
     method: str
-    first_error: float  # of the approximations before refinement
+    first_error: float  # relative error of the approximations before refinement
 
 
 class Oracle:
@@ -63,7 +63,7 @@ class Oracle:
         self.shift = 0.1 * 2 * np.pi * band
 
     def solve(self, radius):
-        """All eigenvalues up to a radius [1/s]."""
+        """All eigenvalues with |lambda| up to a radius [1/s]."""
         values, method = self.approximate()
         values = values[(values.imag >= 0) & (abs(values) <= 1.001 * radius)]
         changes = [np.inf]
@@ -80,7 +80,7 @@ class Oracle:
         if n > LARGEST_DENSE:
             shift = check_eigenvalues.choose_shift(self.problem, self.band)
             found, vectors = check_eigenvalues.solve_by_scipy(self.problem, 1.05 * self.band, 40, shift)
-            # Copies of modes far below the band, whose vectors are the least accurate
+            # Copies are modes far below the band, whose vectors are the least accurate
             return found[quadratic.merge(found, vectors, COPIES)], "ARPACK"
         mass, damping, stiffness = (matrix.toarray() for matrix in (self.problem.mass, self.problem.damping, self.problem.stiffness))
         s = self.shift
@@ -104,7 +104,7 @@ class Oracle:
     # ---------------------------------------------------------------- refinement
 
     def refine(self, values):
-        """Refines clusters of values together; values that count as zero are unchanged."""
+        """Refines each cluster of values; values that count as zero are not changed."""
         values = values[np.lexsort((values.real, values.imag))]
         is_near = abs(values[:, None] - values) <= CLUSTER * abs(values)
         n_clusters, cluster_of = scipy.sparse.csgraph.connected_components(is_near, directed=False)
@@ -139,7 +139,7 @@ class Oracle:
         return [centre + delta for delta in self.corrections(centre, right, left)]
 
     def corrections(self, centre, right, left):
-        """The delta nearest zero of W^H Q(centre + delta) V y = 0, one for each column."""
+        """The values delta nearest to zero with W^H Q(centre + delta) V y = 0, one for each column of V."""
         m = right.shape[1]
         c = np.clongdouble(centre)
         right, left = right.astype(np.clongdouble), left.astype(np.clongdouble)
@@ -147,7 +147,8 @@ class Oracle:
                                     for matrix in (self.extended.mass, self.extended.damping, self.extended.stiffness))
         constant = (stiffness + c * damping + c * c * mass).astype(complex)
         linear = (damping + 2 * c * mass).astype(complex)
-        # Delta = -L^-1 (A + M Delta^2); the fixed-point iteration converges, since Delta is small compared with the centre
+        # Delta = -L^-1 (A + M Delta^2): the fixed-point iteration converges, because Delta is small compared with the
+        # centre
         first, second = -scipy.linalg.solve(linear, constant), -scipy.linalg.solve(linear, mass.astype(complex))
         delta = np.zeros((m, m), dtype=complex)
         for _ in range(3):
@@ -156,13 +157,13 @@ class Oracle:
 
 
 def orthonormal(vectors, scale):
-    """Columns that span the same space, orthonormal after division by the scale."""
+    """Columns that span the same space and are orthonormal after division by the scale."""
     q, _ = np.linalg.qr(vectors / scale[:, None])
     return q * scale[:, None]
 
 
 def upper_root(squares):
-    """Roots with Im >= 0; both roots of a positive square, since both are real eigenvalues."""
+    """Roots with Im >= 0; for a positive square both roots, because both are real eigenvalues."""
     roots = np.sqrt(squares.astype(complex))
     roots = np.where(roots.imag < 0, -roots, roots)
     is_real = abs(roots.imag) <= 1e-9 * abs(roots)

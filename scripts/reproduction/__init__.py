@@ -2,8 +2,9 @@
 
 """Reproduces the numbers quoted in the documentation: the runs for each statement, and the quantities to extract from them.
 
-Each page has a module with its name in pages/. An entry is a function with the decorator entry(page, statement) that takes the runs
-(runs.Runs) and yields a Number for each number of the statement or of a table of the page, which table() reads.
+Each page has a module of the same name in pages/. An entry is a function with the decorator entry(page, statement). It
+takes the runs (runs.Runs) and yields a Number for each number in the statement, or in a table of the page, which
+table() reads.
 """
 
 import pathlib

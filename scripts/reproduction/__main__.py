@@ -16,7 +16,7 @@ from squeal.errors import Error
 
 
 def reproduce(runs, page, chosen):
-    """Prints the numbers of the statements; returns how many differ."""
+    """Prints the numbers of the statements; returns the number of differences."""
     n_differing = 0
     for sentence, numbers_of in chosen:
         print(f"\n{page}: {sentence}", flush=True)

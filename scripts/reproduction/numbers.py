@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Numbers as printed in the documentation, compared with those found."""
+"""Numbers as printed in the documentation, compared with computed numbers."""
 
 import dataclasses
 import itertools
@@ -13,7 +13,8 @@ ENTRIES = {}
 
 @dataclasses.dataclass
 class Number:
-    """A number as printed in a page, such as "0.680", "6.2e-7" or "24", and the number found; `bound`: the page gives an upper bound."""
+    """A number as printed in a page, such as "0.680", "6.2e-7" or "24", and the computed number; `bound`: the page
+    gives an upper bound."""
 
     what: str
     quoted: str
@@ -21,13 +22,13 @@ class Number:
     bound: bool = False
 
     def printed(self):
-        """The number found with as many digits as in the page."""
+        """The computed number with as many digits as in the page."""
         mantissa, _, exponent = self.quoted.lower().partition("e")
         digits = len(mantissa.partition(".")[2])
         return f"{self.found:.{digits}e}" if exponent else f"{self.found:.{digits}f}"
 
     def agrees(self):
-        """Whether the page agrees in its printed digits."""
+        """True if the printed digits in the page agree."""
         if self.bound:
             return self.found <= float(self.quoted)
         return float(self.printed()) == float(self.quoted)
@@ -38,7 +39,7 @@ class Number:
 
 
 def entry(page, sentence):
-    """Registers a function that yields the numbers of a statement of a page."""
+    """Decorator that registers a function; it yields the numbers of a statement of a page."""
     def register(function):
         ENTRIES.setdefault(page, []).append((sentence, function))
         return function
@@ -46,7 +47,7 @@ def entry(page, sentence):
 
 
 def of_mode(name, mode, frequency=None, rate=None):
-    """Frequency and divergence rate of a mode; None if the page does not quote one of them."""
+    """Numbers for frequency and divergence rate of a mode; None if the page does not quote one of them."""
     for unit, quoted, column in (("Hz", frequency, "frequency [Hz]"), ("%", rate, "divergence rate [%]")):
         if quoted is not None:
             yield Number(f"{name} [{unit}]", quoted, mode[column])
@@ -58,7 +59,8 @@ def several(prefix, names, quoted, found):
 
 
 def table(page, head):
-    """Rows of cells of the table of doc/PAGE.md whose header contains `head`, without bold type, code and plus signs."""
+    """Rows of cells of the table in doc/PAGE.md whose header contains `head`, without bold type, code and plus signs.
+    """
     text = re.sub(r"[*`]|\+(?=\d)", "", (SOURCE / "doc" / f"{page}.md").read_text(encoding="utf-8")).replace("−", "-")
     lines = itertools.dropwhile(lambda line: not (line.startswith("|") and head in line), text.splitlines())
     rows = itertools.takewhile(lambda line: line.startswith("|"), itertools.islice(lines, 2, None))

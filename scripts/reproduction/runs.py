@@ -14,7 +14,7 @@ class Results(squeal.results.Results):
         return [{column: value_of(cell) for column, cell in row.items()} for row in self.table(name).rows]
 
     def complex_modes(self, label=None):
-        """Complex modes, all or those whose label begins with `label`."""
+        """All complex modes, or those whose label begins with `label`."""
         return [mode for mode in self.rows("complex_modes") if label is None or mode["label"].startswith(label)]
 
     def eigenvalues(self):
@@ -26,7 +26,7 @@ class Results(squeal.results.Results):
         return max(self.complex_modes(label), key=lambda mode: mode["divergence rate [%]"])
 
     def sliding_pin(self, label):
-        """The lowest frequency [Hz] of the modes of this label of separate sliding pins."""
+        """The lowest frequency [Hz] of the modes with this label of individual sliding pins."""
         return min(mode["frequency [Hz]"] for mode in self.rows("component_modes")
                    if mode["component"] == "pins" and mode["contact"] == "sliding" and mode["label"].startswith(label))
 
@@ -35,13 +35,13 @@ class Results(squeal.results.Results):
 
 
 class Runs:
-    """Runs below a folder, which are computed unless they exist and are up to date."""
+    """Runs in a folder; a run is computed unless its results exist and are up to date."""
 
     def __init__(self, folder):
         self.folder = folder
 
     def __call__(self, name, parameter_file, *settings):
-        """Results of prm/PARAMETER_FILE with settings "Section/Name=value", in the folder NAME."""
+        """Results of prm/PARAMETER_FILE with settings "Section/Name=value", in the subfolder NAME."""
         folder, command = self.folder / name, "\n".join([parameter_file, *settings, ""])
         marker = folder / "command.txt"
         if not (marker.is_file() and marker.read_text(encoding="utf-8") == command and marker.stat().st_mtime > find_program().stat().st_mtime):

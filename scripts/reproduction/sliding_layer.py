@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Waves of an elastic layer that slides with friction on a rigid plane: the continuum reference for meshes.
+"""Waves in an elastic layer that slides with friction on a rigid plane: the continuum solution with which meshes are
+compared.
 
 The layer 0 <= y <= H is fixed at y = H. At y = 0 it slides without lift-off: u_y = 0, sigma_xy = mu sigma_yy. Displacements
 u(y) exp(i k x + lambda t) give an ordinary differential equation in y, which Chebyshev collocation solves to about ten digits.
@@ -16,13 +17,14 @@ import numpy as np
 import scipy.linalg
 import scipy.optimize
 
-# Eigenvalues converge to 1e-6 for waves longer than a quarter of the thickness
+# For waves longer than a quarter of the thickness, eigenvalues converge to 1e-6
 N_POLYNOMIALS = 80
 
 
 @dataclasses.dataclass
 class Layer:
-    """Thickness H [m], Young's modulus [Pa], Poisson's ratio and density [kg/m^3]; plane stress, as in a narrow ring."""
+    """A layer with thickness H [m], Young's modulus [Pa], Poisson's ratio and density [kg/m^3] in plane stress, as in a
+    narrow ring."""
 
     thickness: float
     modulus: float
@@ -39,11 +41,12 @@ class Layer:
 
     @property
     def speed_ratio(self):
-        """(c_s / c_p)^2."""
+        """The ratio (c_s / c_p)^2 of wave speeds."""
         return self.shear_modulus / (self.lame + 2 * self.shear_modulus)
 
     def eigenvalues(self, wave_number, friction_coefficient, n=N_POLYNOMIALS):
-        """All lambda [1/s] with Re lambda >= 0 of waves along the contact with k [1/m]; the highest ones are not converged."""
+        """All lambda [1/s] with Re lambda >= 0 of waves along the contact with wave number k [1/m]; the largest ones
+        are not converged."""
         shear, lame = self.shear_modulus, self.lame
         points = np.arange(n + 1)
         x = np.cos(math.pi * points / n)
@@ -51,7 +54,7 @@ class Layer:
         differences = x[:, None] - x[None, :]
         D = np.outer(weights, 1 / weights) / (differences + np.eye(n + 1))
         D -= np.diag(D.sum(axis=1))
-        D *= 2 / self.thickness  # y = H (1 + x) / 2: the first point is fixed, the last one slides
+        D *= 2 / self.thickness  # y = H (1 + x) / 2: the first point is fixed, the last point slides
         one, ik, m = np.eye(n + 1), 1j * wave_number, n + 1
         A = np.zeros((2 * m, 2 * m), dtype=complex)
         A[:m, :m] = (lame + 2 * shear) * ik**2 * one + shear * D @ D
@@ -74,7 +77,7 @@ class Layer:
                    for values in (self.eigenvalues(k, friction_coefficient) for k in wave_numbers))
 
     def half_space(self, friction_coefficient):
-        """Im c / Re c, the divergence rate, of the growing wave of the half-space; 0 if there is none."""
+        """Im c / Re c, the divergence rate, of the growing wave in the half-space; 0 if no wave grows."""
         def defect(parts):
             w = complex(*parts) ** 2
             q_s, q_p = np.sqrt(1 - w), np.sqrt(1 - w * self.speed_ratio)

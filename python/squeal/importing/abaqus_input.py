@@ -20,7 +20,8 @@ def split(line):
 
 
 def axes_of(options, rows):
-    """Vectors along axis 1 and in the plane of axes 1 and 2; () for cylindrical axes about z, None for unsupported axes."""
+    """Vectors along axis 1 and in the plane of axes 1 and 2; () for cylindrical axes about z; None for unsupported
+    axes."""
     points, angles = [float(word or 0) for word in rows[0]], [float(word or 0) for row in rows[1:] for word in row[1:]]
     a, b, c = ((points + [0.0] * 9)[i:i + 3] for i in (0, 3, 6))
     if options.get("DEFINITION", "COORDINATES") == "COORDINATES" and not any(angles):
@@ -32,10 +33,12 @@ def axes_of(options, rows):
 
 
 class AbaqusInput:
-    """points: label -> coordinates; elements: label -> (shape, node labels); element_sets, node_sets: name -> labels; surfaces: name ->
-    [(element label, face index)]; materials: element label -> (constants, rho, axes) in the units of the file, None if incomplete;
-    constants: E, nu, or nine engineering constants; axes: as returned by axes_of(); dropped: descriptions of what was not imported. Names
-    are in capitals, since Abaqus ignores case."""
+    """The content of an Abaqus input file.
+
+    points: label -> coordinates; elements: label -> (shape, node labels); element_sets, node_sets: name -> labels;
+    surfaces: name -> [(element label, face index)]; materials: element label -> (constants, rho, axes) in the units of
+    the file, None if incomplete, with constants E, nu or nine engineering constants, and axes as returned by axes_of();
+    dropped: descriptions of everything that was not imported. Names are in capitals, because Abaqus ignores case."""
 
     def __init__(self, path):
         self.points, self.elements, self.element_sets, self.node_sets = {}, {}, {}, {}
@@ -61,7 +64,8 @@ class AbaqusInput:
         return Error(what, where or self._path, change)
 
     def _lines(self, path, above=()):
-        """(where, line) of a file and its includes, without comments; joins keyword lines that end in a comma with the next line."""
+        """(where, line) of a file and its includes, without comments; a keyword line that ends with a comma is joined
+        with the next line."""
         if path in above or not path.is_file():
             what = "includes itself" if path in above else "is missing"
             raise self._error(f"the included file {path} {what}", "correct the INPUT parameter, or put the file there")
@@ -121,7 +125,7 @@ class AbaqusInput:
                     raise ValueError("a range is descending")
             else:
                 members = [self._member(word) for row in rows for word in row if word]
-            # A node set may be defined by an element set
+            # An element set may define a node set
             members += [(options["ELSET"],)] if keyword == "NSET" and "ELSET" in options else []
             self._add(self.node_sets if keyword == "NSET" else self.element_sets, options[keyword], members)
         elif keyword == "SURFACE" and options.get("TYPE", "ELEMENT") in ("ELEMENT", "NODE") and not {"COMBINE", "CROP"} & options.keys():

@@ -25,7 +25,8 @@ def read_json(path):
 
 
 def read_yaml(path, what):
-    """The content of a YAML or JSON file; duplicate keys, of which yaml would keep the last, are rejected."""
+    """The content of a YAML or JSON file; duplicate keys are rejected, because yaml would silently keep the last one.
+    """
     import yaml
 
     class Loader(yaml.SafeLoader):

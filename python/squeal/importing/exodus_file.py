@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Reads nodes, element blocks, side sets and node sets of an Exodus II file; meshio reads neither block names nor side sets."""
+"""Reads nodes, element blocks, side sets and node sets of an Exodus II file. meshio does not read block names or side
+sets."""
 
 import re
 
@@ -19,8 +20,8 @@ def face_number(shape, side):
 
 
 class ExodusFile:
-    """Attributes as in AbaqusInput; elements are numbered in the order of the file. Unnamed sets are called block_3, sideset_3 or nodeset_3
-    after their ID."""
+    """The content of an Exodus file, with the attributes of AbaqusInput; elements are numbered in the order of the
+    file. Unnamed sets are called block_3, sideset_3 or nodeset_3 after their ID."""
 
     def __init__(self, path):
         self.elements, self.element_sets, self.surfaces, self.materials, self.dropped = {}, {}, {}, {}, []
@@ -52,7 +53,7 @@ class ExodusFile:
             self.surfaces[name] = [(element, face_number(self.elements[element][0], side)) for element, side in solids]
 
     def _sets(self, kind, what, variable):
-        """(name, variable of the members) of the nonempty sets."""
+        """Pairs of name and variable that contains the members, for the nonempty sets."""
         names = [b"".join(row).decode("utf-8", "replace").strip("\0 ") for row in self._variables.get(f"{kind}_names", [])]
         for number, identity in enumerate(self._variables.get(f"{kind}_prop1", []), 1):
             if f"{variable}{number}" in self._variables:

@@ -13,14 +13,14 @@ from squeal.errors import Error
 from squeal.importing import nastran_input
 from squeal.importing.mesh_shapes import read_text
 
-# Diagonal stiffness by which Abaqus fixes a dof
+# Stiffness on the diagonal with which Abaqus fixes a dof
 HELD = 1e36
 
 
 @dataclasses.dataclass
 class Entries:
-    """Entries of a matrix: rows and columns from 0 with the `shape`, or labels (node, dof) if `shape` is None; is_half: the file has one
-    triangle of the symmetric matrix, None if unknown."""
+    """Entries of a matrix, by row and column (from 0, with the `shape`) or by labels (node, dof) if `shape` is None.
+    is_half: True if the file contains one triangle of the symmetric matrix; None if this is unknown."""
 
     rows: np.ndarray
     columns: np.ndarray
@@ -37,7 +37,7 @@ class Entries:
 
 
 def choose(found, variable, path):
-    """The matrix called `variable`, or the only one if that is None."""
+    """The matrix called `variable`, or the only matrix if `variable` is None."""
     if variable is None and len(found) == 1:
         return next(iter(found.values()))
     if variable not in found:
@@ -55,7 +55,7 @@ def read_matlab(path, variable):
 
 
 def read_hdf5(path, variable):
-    """A matrix of a .mat file of version 7.3, which stores dense matrices by columns and sparse ones as a group."""
+    """A matrix of a .mat file of version 7.3, which stores a dense matrix by columns and a sparse one as a group."""
     try:
         import h5py
     except ImportError as error:
@@ -79,13 +79,14 @@ def read_numpy(path, variable):
 
 
 def read_text_matrix(path, variable):
-    """A Matrix Market file or the text of Abaqus' *MATRIX OUTPUT."""
+    """A matrix from a Matrix Market file or from the text of Abaqus' *MATRIX OUTPUT."""
     text = read_text(path)
     return Entries.of(scipy.io.mmread(path), path) if text.startswith("%%MatrixMarket") else read_abaqus(path, text)
 
 
 def read_abaqus(path, text):
-    """Lines `node, dof, node, dof, value` or `row, column, value`; the first form has one triangle of a symmetric matrix."""
+    """A matrix from lines `node, dof, node, dof, value` or `row, column, value`; the first form contains one triangle
+    of a symmetric matrix."""
     places = [number for number, line in enumerate(text.split("\n"), 1) if line.strip() and not line.lstrip().startswith(("*", "%", "#"))]
     lines = text.replace(",", " ").replace("D", "E").split("\n")
     width = len(lines[places[0] - 1].split()) if places else 0
@@ -98,14 +99,14 @@ def read_abaqus(path, text):
     numbers, values = table[:, :-1].astype(int), table[:, -1]
     if width == 5:
         return Entries(numbers[:, :2], numbers[:, 2:], values)
-    if (numbers <= 0).any():  # internal nodes
+    if (numbers <= 0).any():  # internal nodes have no positive number
         labels = [np.column_stack([column, np.zeros(len(column), dtype=int)]) for column in numbers.T]
         return Entries(*labels, values)
     return Entries(numbers[:, 0] - 1, numbers[:, 1] - 1, values, (numbers.max(), numbers.max()))
 
 
 def is_entry(words, width):
-    """Whether the words are `width` - 1 integers and a number."""
+    """True if the words are `width` - 1 integers and a number."""
     try:
         return len(words) == width and bool([*map(int, words[:-1]), float(words[-1])])
     except ValueError:
@@ -113,7 +114,7 @@ def is_entry(words, width):
 
 
 def read_dmig(path, variable):
-    """A real square matrix from DMIG cards; form 6 is symmetric, with one triangle in the file."""
+    """A real square matrix from DMIG cards; form 6 is symmetric, and the file contains one triangle."""
     headers, found = {}, {}
     for line, (card, name, *fields) in nastran_input.cards(path):
         if card != "DMIG":
@@ -155,7 +156,7 @@ ENDINGS = {".mat": "matlab", ".npy": "numpy", ".npz": "numpy", ".mtx": "text", "
 
 
 def read(path, variable=None, form=None):
-    """Entries of a matrix in the format `form`, by default that of the file's suffix. Raises Error."""
+    """Entries of a matrix in the format `form`, by default the format of the file's suffix. Raises Error."""
     if not path.is_file():
         raise Error("the file is missing", path, "check its name")
     form = form or ENDINGS.get(path.suffix.lower())
@@ -165,16 +166,18 @@ def read(path, variable=None, form=None):
         return READERS[form](path, variable)
     except (Error, OSError):
         raise
-    except Exception as problem:  # readers raise arbitrary exceptions for broken files
+    except Exception as problem:  # readers raise various exceptions for invalid files
         raise Error(f"the file cannot be read: {' '.join(str(problem).split()) or type(problem).__name__}", path,
                     f"export it again, or give its `format`, one of: {', '.join(READERS)}") from problem
 
 
 class Numbering:
-    """Numbers the labels (node, dof) of all matrices by node and dof, internal (negative) nodes last; `labels` is None without any."""
+    """Numbering of the labels (node, dof) of all matrices by node and dof, with internal (negative) nodes last;
+    `labels` is None if there are none."""
 
     def __init__(self, matrices):
-        """matrices: pairs (source, Entries), whose labels become rows, -1 for fixed dofs. Raises Error if only some have labels."""
+        """matrices: pairs (source, Entries); their labels become row indices, -1 for fixed dofs. Raises Error if only
+        some matrices have labels."""
         self.labels, self.held = None, []
         with_labels = [where for where, entries in matrices if entries.shape is None]
         if with_labels and len(with_labels) < len(matrices):
@@ -199,12 +202,12 @@ class Numbering:
             entries.rows, entries.columns = new[own], new[other]
 
     def matrix(self, entries, symmetry, where):
-        """The sparse matrix with both triangles. Raises Error if one is missing and no symmetry is given."""
+        """The sparse matrix with both triangles. Raises Error if a triangle is missing and no symmetry is given."""
         rows, columns, values = entries.rows, entries.columns, entries.values
         if self.labels is not None:
             kept = (rows >= 0) & (columns >= 0)
             rows, columns, values = rows[kept], columns[kept], values[kept]
-        # In the form row, column, value, trailing rows without entries are unknown
+        # The form row, column, value does not show the number of rows if trailing rows have no entries
         shape = (self.size, self.size) if self.labels is not None or entries.is_half is None else entries.shape
         matrix = sparse.csr_matrix((values, (rows, columns)), shape)
         other = sparse.csr_matrix((np.ones(len(rows)), (columns, rows)), shape)

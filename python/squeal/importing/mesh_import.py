@@ -15,11 +15,11 @@ from squeal.importing.configuration import read_yaml
 from squeal.importing.foreign_mesh import UNITS, read, with_meshio
 from squeal.importing.mesh_shapes import faces_of, middle_nodes
 
-STRESS_AND_DENSITY = {"m": (1.0, 1.0), "mm": (1e6, 1e12)}  # factors to Pa and kg/m^3 from N, m, kg, s and N, mm, t, s
-FACES = {3: "triangle", 4: "quad", 6: "triangle6", 8: "quad8"}  # by the number of nodes
+STRESS_AND_DENSITY = {"m": (1.0, 1.0), "mm": (1e6, 1e12)}  # factors to SI from N, m, kg, s and N, mm, t, s
+FACES = {3: "triangle", 4: "quad", 6: "triangle6", 8: "quad8"}  # shape of a face by its number of nodes
 SURFACES = ("disc_contact", "pin_contact", "pin_clamp", "pin_side", "disc_bore", "disc_rim")
-PLAUSIBLE = (0.05, 1.5)  # extent of a brake [m]
-PLAUSIBLE_DENSITY = (100, 30000)  # [kg/m^3]
+PLAUSIBLE = (0.05, 1.5)  # plausible extent of a brake [m]
+PLAUSIBLE_DENSITY = (100, 30000)  # plausible density [kg/m^3]
 
 
 def length_hint(mesh):
@@ -33,7 +33,7 @@ def is_of_disc(name):
 
 
 def is_volume(name):
-    """Whether a set of this name becomes a volume by default."""
+    """True if a set of this name becomes a volume by default."""
     return name.lower() == "disc" or name.lower().startswith("pin_") and not is_surface(name)
 
 
@@ -42,7 +42,7 @@ def is_surface(name):
 
 
 def chosen(given, sets, what, is_known, path):
-    """Name in squeal -> names in the file: those given, and those that need no renaming."""
+    """Name in squeal -> names in the file: the given names, and names that need no renaming."""
     result = {}
     for name, members in given.items():
         for member in members:
@@ -86,7 +86,7 @@ class Import:
         self.is_quadratic = any(middle_nodes(*mesh.elements[number]) for number in self.volume_of)
 
     def _outer_faces(self):
-        """Sorted corners -> corners and mid-side nodes, of the faces that belong to one element only."""
+        """Faces that belong to one element only: sorted corners -> corners and mid-side nodes."""
         found = collections.defaultdict(list)
         for number in self.volume_of:
             shape, nodes = self.mesh.elements[number]
@@ -100,7 +100,7 @@ class Import:
         return {key: faces[0] for key, faces in found.items() if len(faces) == 1}
 
     def _faces_of(self, name, member):
-        """Faces of a set on the boundary, as keys of `outer`."""
+        """Faces of a set that are on the boundary, as keys of `outer`."""
         found = [{tuple(sorted(face)) for face in faces} for faces in (self.mesh.faces.get(member), self.mesh.shells(member)) if faces]
         if nodes := set(self.mesh.node_sets.get(member, ())):
             found.append({key for key in self.outer if nodes.issuperset(key)})
@@ -116,7 +116,7 @@ class Import:
         return outside[0]
 
     def write(self, path, scale):
-        """Writes Gmsh's format 2.2; an element with several names is written once for each."""
+        """Writes Gmsh's format 2.2; an element with several names is written once for each name."""
         order = sorted(self.volume_of)
         used = sorted({node for number in order for node in self.mesh.elements[number][1]})
         new = {node: number for number, node in enumerate(used)}
@@ -152,7 +152,7 @@ class Import:
         return "\n".join(lines + [f"  left out: {what}" for what in self.left])
 
     def materials(self, unit):
-        """Volume -> (constants, rho, axes) in SI units, for volumes of one material in known units."""
+        """Volume -> (constants, rho, axes) in SI units; only volumes with a single material in known units."""
         found, (stress, density) = {}, STRESS_AND_DENSITY.get(unit, (0.0, 0.0))
         for name in self.volumes:
             known = {self.mesh.materials.get(number) for number, volume in self.volume_of.items() if volume == name}
@@ -167,7 +167,7 @@ class Import:
 
 
 def parameter_file(mesh_file, result, materials, contact, mounts):
-    """Parameter file of the brake; unknown contact pairs and mounts are comments to fill in."""
+    """Text of the parameter file of the brake; unknown contact pairs and mounts are comments to be completed."""
     def section(name, *lines):
         return f"subsection {name}\n" + "".join(f"  {line}\n" for line in lines) + "end\n"
 
@@ -203,7 +203,7 @@ def parameter_file(mesh_file, result, materials, contact, mounts):
 
 
 def names_of(arguments):
-    """Volumes, surfaces, contact, mounts and unit from the command line and the file --names."""
+    """Volumes, surfaces, contact, mounts and unit, from the command line and the file --names."""
     given = read_yaml(arguments.names, 'names') if arguments.names else {}
     if not (isinstance(given, dict) and given.keys() <= {"unit", "volumes", "surfaces", "contact", "mounts"} and
             all(isinstance(given.get(key, {}), dict) for key in ("volumes", "surfaces")) and
@@ -227,7 +227,7 @@ def names_of(arguments):
 
 
 def check_entries(entries, parse, surfaces, what, path):
-    """Rejects entries of Contact/Pairs or Mounts/Elastic mounts with unknown surfaces."""
+    """Rejects entries of Contact/Pairs or Mounts/Elastic mounts that name unknown surfaces."""
     for entry in entries:
         match = re.fullmatch(parse, entry)
         unknown = [name for name in match.groups() if name not in surfaces] if match else [""]

@@ -7,7 +7,7 @@ import re
 
 SOLIDS = {4: "tetra", 10: "tetra10", 6: "wedge", 15: "wedge15", 5: "pyramid", 13: "pyramid13", 8: "hexahedron", 20: "hexahedron20"}
 SHELLS = {3: "triangle", 6: "triangle6", 4: "quad", 8: "quad8"}
-# Corners of the faces S1, S2, ... of a shape; a shell has one face
+# Corners of the faces S1, S2, ... of a shape; a shell has a single face
 FACES = {
     "triangle": ((0, 1, 2),),
     "quad": ((0, 1, 2, 3),),
@@ -27,20 +27,20 @@ EDGES = {
 
 @functools.cache
 def faces_of(shape):
-    """Faces of an element of any order by its corners; none for unsupported shapes."""
+    """Corners of the faces of an element of any order; empty for unsupported shapes."""
     return FACES.get(re.sub(r"\d+$", "", shape), ())
 
 
 def middle_nodes(shape, nodes):
-    """Ends of an edge (frozenset) -> its mid-side node; empty for first-order elements."""
+    """Mid-side node of each edge, given as the frozenset of its ends; empty for first-order elements."""
     edges = EDGES.get(re.sub(r"\d+$", "", shape), ())
     n_corners = len({corner for edge in edges for corner in edge})
     return {frozenset((nodes[a], nodes[b])): node for (a, b), node in zip(edges, nodes[n_corners:])}
 
 
 def shape_of(element_type):
-    """Shape and number of nodes of an Abaqus element type: variants such as C3D8R and C3D10M have the nodes of the plain element, continuum
-    shells those of solids; an unsupported type is returned with 0 nodes."""
+    """Shape and number of nodes of an Abaqus element type. Variants such as C3D8R and C3D10M have the nodes of the
+    basic element, continuum shells those of solids; an unsupported type is returned with 0 nodes."""
     if match := re.fullmatch(r"(?:C3D|SC)(\d+)[A-Z]*", element_type):
         shapes = SOLIDS
     elif match := re.fullmatch(r"(?:S|M3D|SFM3D|R3D)(\d)(?:R5?|RS|S|)", element_type):

@@ -10,13 +10,13 @@ from squeal.importing.mesh_shapes import SHELLS, SOLIDS, read_text
 
 ELEMENTS = {"CHEXA": SOLIDS, "CPENTA": SOLIDS, "CTETRA": SOLIDS, "CPYRA": SOLIDS, "CPYRAM": SOLIDS, "CQUAD4": SHELLS, "CQUAD8": SHELLS,
             "CQUADR": SHELLS, "CTRIA3": SHELLS, "CTRIA6": SHELLS, "CTRIAR": SHELLS}
-CORNERS = {"CQUAD4": 4, "CQUADR": 4, "CTRIA3": 3, "CTRIAR": 3}  # followed by angle and offsets
+CORNERS = {"CQUAD4": 4, "CQUADR": 4, "CTRIA3": 3, "CTRIAR": 3}  # number of corner nodes, which angle and offsets follow
 # Nastran lists the mid-side nodes of the vertical edges before those of the top
 ORDER = {"hexahedron20": (*range(12), *range(16, 20), *range(12, 16)), "wedge15": (*range(9), *range(12, 15), *range(9, 12))}
 
 
 def number(word):
-    """A real number of Nastran: 1.5-3 is 1.5e-3, a blank is zero."""
+    """The value of a Nastran real number: 1.5-3 means 1.5e-3, and a blank field means zero."""
     return float(re.sub(r"(?<=[\d.])([+-]\d+)$", r"e\1", word.upper().replace("D", "E")) if word else 0.0)
 
 
@@ -53,7 +53,8 @@ def cards(path):
 
 
 class NastranInput:
-    """Attributes as in AbaqusInput; node sets, surfaces and materials are empty."""
+    """The content of a Nastran file, with the attributes of AbaqusInput; node sets, surfaces and materials are empty.
+    """
 
     def __init__(self, path):
         self.points, self.elements, self.element_sets = {}, {}, {}

@@ -24,13 +24,13 @@ def number_of(value, where):
 
 
 def ranges_of(numbers):
-    """Increasing numbers as inclusive ranges."""
+    """Increasing numbers as inclusive ranges (first, last)."""
     parts = np.split(numbers, np.flatnonzero(np.diff(numbers) > 1) + 1)
     return [[int(part[0]), int(part[-1])] for part in parts if len(part)]
 
 
 def groups_of(entries, numbering, where):
-    """Ranges of dofs, as given or of the nodes in the ranges `nodes`."""
+    """Ranges of dofs of each group, given directly or by ranges of `nodes`."""
     groups = {}
     for name, entry in entries.items():
         if isinstance(entry, dict):
@@ -43,7 +43,7 @@ def groups_of(entries, numbering, where):
 
 
 def points_of(config, folder, numbering, where):
-    """Positions of the nodes and their displacements, dofs 1 to 3, if the configuration names a file with nodes."""
+    """Positions of the nodes and their displacements (dofs 1 to 3), if the configuration names a file with nodes."""
     if "nodes" not in config:
         return {}
     if numbering.labels is None or config.get("unit") not in foreign_mesh.UNITS:
@@ -64,7 +64,7 @@ def points_of(config, folder, numbering, where):
 
 
 def import_system(path):
-    """The system of a configuration, notes to print, and the numbering of its dofs. Raises Error."""
+    """The system described by a configuration, notes to print, and the numbering of its dofs. Raises Error."""
     path = pathlib.Path(path)
     config = as_kind(read_yaml(path, "configuration"), dict, path)
     check_keys(config, KNOWN, path)
@@ -102,7 +102,7 @@ def import_system(path):
 
 
 def write_labels(path, labels):
-    """Writes node and dof of every row."""
+    """Writes node and dof of each row."""
     with open(path, "w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerows([("row", "node", "dof"), *((row, *label) for row, label in enumerate(labels, start=1))])

@@ -7,7 +7,7 @@ from squeal.plotting.reduction import pareto_front
 
 FULL_ORDER = "full order"
 KINDS = ("discretisation", "reduction", "algebraic")
-FLOOR = 1e-12  # [%], replaces zero and rounding errors on the logarithmic axis
+FLOOR = 1e-12  # replaces zero and rounding errors on the logarithmic axis [%]
 TIME = "CPU time [s]"
 FREQUENCY, DIVERGENCE = "frequency error [%]", "divergence error [percentage points]"
 TITLES = {FREQUENCY: "largest frequency error [%]", DIVERGENCE: "largest divergence error [points]"}
@@ -24,7 +24,7 @@ class Solution:
 
 
 def cost_figure(solutions):
-    """One panel for frequencies, one for divergence rates; lines join the meshes of each family at full order."""
+    """One panel for frequencies and one for divergence rates; lines connect the meshes of a family at full order."""
     picture = style.Picture("Accuracy versus cost", 2, 2, (5.6, 4.4))
     families = dict.fromkeys(solution.family for solution in solutions)
     for panel, column in zip(picture.panels, (FREQUENCY, DIVERGENCE)):
@@ -47,7 +47,7 @@ def cost_figure(solutions):
 
 
 def kind_figure(solutions):
-    """A panel for each method and quantity, one mark for each kind of error and mesh; rounding errors are omitted."""
+    """A panel for each method and quantity with a mark for each kind of error and mesh; rounding errors are omitted."""
     methods = list(dict.fromkeys(solution.method for solution in solutions))
     picture = style.Picture("Errors by kind", 2 * len(methods), len(methods), (4.4, 3.6))
     panels = iter(picture.panels)

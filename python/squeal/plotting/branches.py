@@ -8,10 +8,10 @@ from squeal.results import axis_title
 from squeal.plotting import charts, complex_plane, style
 
 FAMILIES_PER_PICTURE = 3
-NAME_LENGTH = 0.2  # share of the width over which a curve must not cross its label
-NAME_MARGIN = 0.1  # space for labels above and below the frequencies of a family, as a share of their range
+NAME_LENGTH = 0.2  # fraction of the width over which a curve must not cross its label
+NAME_MARGIN = 0.1  # space for labels above and below the frequencies of a family, as a fraction of their range
 
-# Charts without and with dissipation: the first is drawn on top, the second is wider so that it stays visible
+# Charts without and with dissipation. The first is drawn on top; the second is wider, so that it remains visible
 LOOKS = ({"color": style.BLACK, "linestyle": "-"}, {"color": style.GREY, "linestyle": (0, (4, 1.5))})
 GROWING_LOOKS = ({"color": style.VERMILLION, "linestyle": "-"}, {"color": style.ORANGE, "linestyle": (0, (3, 1))})
 WIDTHS, GROWING_WIDTHS = (0.9, 1.5), (2.4, 4.2)  # [points]
@@ -20,7 +20,8 @@ BREAK = (math.nan, math.nan)
 
 
 def lines_of(chart, branches, quantity):
-    """All points of branches, and their growing parts with the adjacent thresholds, as lines broken by NaN; empty without points."""
+    """All points of branches, and their growing parts with the adjacent thresholds, as lines broken by NaN; empty if
+    there are no points."""
     everything, growing = [], []
     for branch in branches:
         points = chart.curve(branch)
@@ -41,7 +42,7 @@ def draw_curves(panel, all_charts, chosen, quantity, width):
     titles = list(dict.fromkeys(chart.title for chart in all_charts))
     for chart, branches in zip(all_charts, chosen):
         number = titles.index(chart.title)
-        # A single point needs a mark to be visible
+        # A single point needs a marker to be visible
         marks = {"marker": "o", "markersize": 4} if len(chart.mus) == 1 else {}
         everything, growing = lines_of(chart, branches, quantity)
         style.draw_points(panel, everything, label=chart.title, linewidth=WIDTHS[number] * width, zorder=4 - number, **LOOKS[number], **marks)
@@ -57,12 +58,13 @@ def draw_curves(panel, all_charts, chosen, quantity, width):
 
 
 def add_names(panel, chart, branches):
-    """Labels branches at their starts, above their curves; the lowest one of several below its curve."""
+    """Labels branches at their starting points, above the curve; of several branches, the lowest is labelled below its
+    curve."""
     labels = [chart.labels[branch] for branch in branches]
     length = NAME_LENGTH * (chart.mus[-1] - chart.mus[0])
     starts = []
     for branch in branches:
-        # A label that several branches share only repeats the title
+        # Omit a label that several branches share: it would only repeat the title
         if labels.count(chart.labels[branch]) == 1:
             points = [point for point in chart.curve(branch) if point.is_shown]
             nearby = [point.frequency for point in points if point.mu <= points[0].mu + length]
@@ -92,11 +94,11 @@ def partners_of(all_charts, name):
 
 
 def members(chart, name, partners):
-    """Branches of a family, and those of other families with which they coalesce in one of the charts."""
+    """Branches of a family, and branches of other families that coalesce with them in one of the charts."""
     labels = list(chart.labels.values())
     result = []
     for branch, label in chart.labels.items():
-        # Only the growing ones of the unnamed branches
+        # Of the unnamed branches, include only those that grow
         is_member = charts.family(label) == name and (name != charts.NO_LABEL or chart.grows_somewhere(branch))
         # A label that several branches share does not identify the partner in the other chart
         is_partner = label in partners and labels.count(label) == 1
@@ -115,7 +117,7 @@ def leave_room(panel):
 
 
 def family_picture(all_charts, names):
-    """Frequencies of each family with the divergence rates below; next to them for a single family."""
+    """Frequencies of each family, with the divergence rates below them, or next to them for a single family."""
     picture = style.Picture("Growing branches and their families", 2 * len(names), len(names) if len(names) > 1 else 2)
     for name, upper, lower in zip(names, picture.panels, picture.panels[len(names):]):
         partners = partners_of(all_charts, name)
@@ -139,7 +141,7 @@ def set_friction_range(panels, all_charts):
 
 
 def family_figures(all_charts):
-    """Growing families, three to a figure."""
+    """Figures of the growing families, three per figure."""
     names = growing_families(all_charts)
     parts = [names[i:i + FAMILIES_PER_PICTURE] for i in range(0, len(names), FAMILIES_PER_PICTURE)]
     return {"sweep_families" + (f"_{number}" if len(parts) > 1 else ""): family_picture(all_charts, part)
@@ -147,7 +149,7 @@ def family_figures(all_charts):
 
 
 def overview_figure(all_charts, band_end):
-    """All modes in the band."""
+    """Figure of all modes in the band."""
     picture = style.Picture("Modes in the band over " + axis_title(all_charts[0].parameter).split(" [")[0], 2, 2, (5.4, 5.2))
     for panel, title, quantity, label in zip(picture.panels, ("Frequencies", "Divergence rates"), ("frequency", "divergence"),
                                              (style.FREQUENCY, style.DIVERGENCE)):

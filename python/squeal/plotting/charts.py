@@ -5,13 +5,13 @@
 import dataclasses
 import re
 
-NO_LABEL = "unnamed"  # of modes that resemble no component mode
+NO_LABEL = "unnamed"  # label of modes that do not resemble a component mode
 WITHOUT, WITH = "without radial dissipation", "with radial dissipation"
 
 
 @dataclasses.dataclass
 class Mode:
-    """A mode with frequency [Hz] and divergence rate [%]; both None if a branch has no mode at a value of the parameter of a sweep."""
+    """A mode with frequency [Hz] and divergence rate [%]; both are None where a branch has no mode."""
 
     label: str
     frequency: float
@@ -27,19 +27,20 @@ class Mode:
 
 @dataclasses.dataclass
 class Threshold:
-    """Where a branch begins or ceases to grow: its divergence rate is zero there."""
+    """A point at which a branch begins or ceases to grow; its divergence rate there is zero."""
 
     mu: float
     event: str
     branch: int
-    partner: int  # None: no other branch takes part
+    partner: int  # None: no other branch is involved
     frequency: float
 
 
 class Chart:
     """Modes of the band over the friction coefficient at one load and speed, with one contact set.
 
-    `mus` are all values of the chart, ascending; `modes[branch][mu]` a mode; `labels[branch]` the name of a branch.
+    `mus` are all values of the chart in ascending order, `modes[branch][mu]` is a mode, `labels[branch]` the label of a
+    branch.
     """
 
     def __init__(self, title, branches, thresholds, counts, band_end):
@@ -59,7 +60,7 @@ class Chart:
                            for mu, event, branch, partner, frequency in zip(*columns) if frequency <= band_end]
 
     def curve(self, branch):
-        """Modes of a branch at all values, and at its thresholds."""
+        """Modes of a branch at all values of the chart and at the thresholds of the branch."""
         points = [Mode("", event.frequency, 0.0, False, False, event.mu) for event in self.thresholds
                   if branch in (event.branch, event.partner) and event.mu <= self.mus[-1]]
         points += [self.modes[branch].get(mu, Mode("", None, None, False, False, mu)) for mu in self.mus]
@@ -73,12 +74,13 @@ class Chart:
 
 
 def family(label):
-    """Label of a branch without the sign of its doublet: `A0-4` of `A0-4 -`."""
+    """Label of a branch without the sign of its doublet: `A0-4` for `A0-4 -`."""
     return label[:-2] if len(label) > 2 and label[-2:] in (" -", " +") else label
 
 
 def read_charts(results):
-    """Charts of a sweep, without radial dissipation first, one for each interval with a constant contact set."""
+    """Charts of a sweep, first those without radial dissipation; one chart for each interval with a constant contact
+    set."""
     band_end = results.number("Band/Maximum frequency")
     is_damped = results.parameter("Operation/Radial dissipation") != "none"
     charts = []

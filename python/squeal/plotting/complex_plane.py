@@ -10,14 +10,14 @@ from matplotlib.transforms import Bbox
 from squeal.plotting import charts, style
 from squeal.results import symbol
 
-ROUNDING = 1e-6  # divergence rates [%] up to this are treated as zero
-SAME_PLACE = 0.05  # share of the width within which modes of two series share a label
+ROUNDING = 1e-6  # largest absolute divergence rate that is treated as zero [%]
+SAME_PLACE = 0.05  # fraction of the width within which modes of two series share a label
 
-Series = collections.namedtuple("Series", "title modes")  # modes with one form of the dissipation
+Series = collections.namedtuple("Series", "title modes")  # modes with one form of the radial dissipation
 
 
 class NameRoom:
-    """Finds positions for labels next to marks without overlaps, in points of the panel."""
+    """Finds positions for labels next to marks so that they do not overlap; units are points in the panel."""
 
     LETTER, LINE, GAP = 0.58 * style.SMALL, 1.25 * style.SMALL, 5.0
 
@@ -26,7 +26,7 @@ class NameRoom:
         self.boxes = [Bbox.from_extents(x - self.GAP, y - self.GAP, x + self.GAP, y + self.GAP) for x, y in marks]
 
     def find(self, x, y, text):
-        """Offset and horizontal alignment of a text next to a point, None if there is no space."""
+        """Offset and horizontal alignment of a text next to a point; None if there is no space."""
         length = self.LETTER * len(text)
         for low, alignment in itertools.product((y, y - self.LINE), ("left", "right")):
             left = x + self.GAP if alignment == "left" else x - self.GAP - length
@@ -38,7 +38,8 @@ class NameRoom:
 
 
 class Limits:
-    """Limits of the divergence rate; modes that decay much faster than any mode grows are drawn at the lower edge."""
+    """Limits of the axis of the divergence rate; modes that decay much faster than any mode grows are drawn at the
+    lower edge."""
 
     def __init__(self, series):
         rates = [mode.divergence for one in series for mode in one.modes] + [0.0]
@@ -56,7 +57,7 @@ class Limits:
 
 
 class Plane:
-    """A panel with its limits."""
+    """A panel and its limits."""
 
     def __init__(self, panel, size, series, band_end, limits):
         self.panel, self.series, self.edge = panel, series, limits.edge
@@ -66,7 +67,7 @@ class Plane:
         self.points = ((size[0] - 0.9) * style.INCH, (size[1] - 0.9) * style.INCH)
 
     def place(self, mode):
-        """Position of a mode [kHz, %]."""
+        """Position of a mode in the panel, from kHz and %."""
         return 1e-3 * mode.frequency, max(mode.divergence, self.edge)
 
     def in_points(self, mode):
@@ -84,7 +85,7 @@ class Plane:
                               markersize=6, clip_on=False)
 
     def draw_marks(self):
-        """Draws rings around growing modes, squares around undecided ones."""
+        """Draws rings around growing modes and squares around undecided modes."""
         growing = [self.place(mode) for one in self.series for mode in one.modes if mode.grows and not mode.is_undecided]
         undecided = [self.place(mode) for one in self.series for mode in one.modes if mode.is_undecided]
         for places, label, marker, colour in ((growing, "growing", "o", style.VERMILLION), (undecided, "undecided", "s", style.BLUE)):
@@ -92,12 +93,12 @@ class Plane:
                               markeredgewidth=1.3, zorder=5)
 
     def draw_names(self):
-        """Labels growing modes where there is space, the fastest growing first."""
+        """Labels growing modes where there is space; the fastest growing modes come first."""
         room, named = NameRoom(self.points[0], [self.in_points(mode) for one in self.series for mode in one.modes]), []
         for one in self.series:
             for mode in sorted((mode for mode in one.modes if mode.grows and not mode.is_undecided), key=lambda mode: -mode.divergence):
                 x, y = self.in_points(mode)
-                # One label serves nearby modes of both series
+                # One label is sufficient for nearby modes of both series
                 serves = any(other is not one and name == mode.label and abs(x - place) < SAME_PLACE * self.points[0]
                              for other, name, place in named)
                 if not serves and (found := room.find(x, y, mode.label)):
@@ -108,7 +109,7 @@ class Plane:
 
 
 def draw(panel, size, title, series, band_end, limits=None):
-    """Draws modes up to `band_end` [Hz] into a panel of a picture; `limits` may be shared with other panels."""
+    """Draws the modes up to `band_end` [Hz] into a panel of a picture; panels may share `limits`."""
     style.prepare(panel, title, "frequency [kHz]", style.DIVERGENCE)
     style.zero_line(panel)
     plane = Plane(panel, size, series, band_end, limits or Limits(series))
@@ -118,7 +119,8 @@ def draw(panel, size, title, series, band_end, limits=None):
 
 
 def planes_of_table(table):
-    """Friction coefficient -> series, in the order of the table complex_plane, without radial dissipation first."""
+    """Friction coefficient -> series, in the order of the table complex_plane; series without radial dissipation come
+    first."""
     planes = {}
     columns = (table.numbers(table.parameter), table.texts("radial dissipation"), table.texts("label"), table.numbers("frequency [Hz]"),
                table.numbers("divergence rate [%]"), table.texts("verdict"))
@@ -136,7 +138,8 @@ def last_plane(all_charts):
 
 
 def sweep_figure(results, all_charts, band_end):
-    """A panel for each friction coefficient in the table complex_plane; without this table, one for the last of the sweep."""
+    """A panel for each friction coefficient in the table complex_plane or, without this table, for the last one of the
+    sweep."""
     planes = planes_of_table(results.table("complex_plane")) if results.has("complex_plane") else last_plane(all_charts)
     picture = style.Picture("Modes in the complex plane", len(planes), 2, (5.2, 3.6))
     for panel, (mu, series) in zip(picture.panels, planes.items()):
@@ -152,7 +155,7 @@ def series_of_run(results):
 
 
 def paper_figure(without, damped):
-    """Figure 6 of the paper: results without and with radial dissipation, next to each other with the same axes."""
+    """Figure 6 of the paper: results without and with radial dissipation side by side, with the same axes."""
     series = [series_of_run(results) for results in (without, damped)]
     picture = style.Picture(f"Stability charts for \u03bc = {without.number('Operation/Friction coefficient'):g}", 2, 2, (5.6, 4.4))
     for panel, caption, one in zip(picture.panels, ("(a) $C_b = 0$", "(b) $C_b \\neq 0$"), series):
@@ -161,7 +164,7 @@ def paper_figure(without, damped):
 
 
 def run_figure(results):
-    """The complex modes of a run at one friction coefficient."""
+    """Figure of the complex modes of a run at one friction coefficient."""
     picture = style.Picture("Modes in the complex plane", 1, 1, (7.0, 4.4))
     panel, = picture.panels
     title = f"\u03bc = {results.number('Operation/Friction coefficient'):g}"

@@ -34,7 +34,7 @@ def figures(results):
                 if not is_solved:
                     continue
                 if math.isnan(y):
-                    # Quiet up to the last friction coefficient
+                    # No growth up to the last friction coefficient
                     panel.plot(x, end if row == 0 else 0, linestyle="", marker="o", markersize=6, color=style.BLACK, markerfacecolor="white",
                                label="quiet")
                 else:

@@ -8,7 +8,7 @@ import io
 from squeal.errors import Error
 
 DOTS_PER_INCH = 150
-# Without dates, identical tables give identical files
+# Omit dates, so that identical tables give identical files
 UNDATED = {"svg": {"Date": None}, "png": {}, "pdf": {"CreationDate": None}}
 
 # Module that draws plots -> the table that it requires
@@ -18,7 +18,7 @@ PLOTS = {"complex_plane": "complex_modes", "branches": "branches", "stability_ma
 
 
 def figures(results):
-    """All figures of a run by name. Raises Error if no table has a plot."""
+    """All figures of a run by name. Raises Error if there is no plot for any of its tables."""
     found = {}
     for name, table in PLOTS.items():
         if results.has(table):
@@ -29,7 +29,7 @@ def figures(results):
 
 
 def render(figure, ending):
-    """The picture as bytes."""
+    """The picture as bytes in the format `ending`."""
     import matplotlib
 
     stream = io.BytesIO()

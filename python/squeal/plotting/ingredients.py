@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Largest changes by each part of the model compared with the required accuracy, and the cost of each variant."""
+"""Largest changes caused by each part of the model, compared with the required accuracy, and the cost of each variant.
+"""
 
 import math
 
 from squeal.plotting import style
 
-LEAST = 1e-6  # smaller changes are rounding [%]
+LEAST = 1e-6  # smaller changes are rounding errors [%]
 
 PANELS = (("change of frequency [%]", "change of frequency [%]", "Ingredients/Frequency tolerance"),
           ("change of divergence rate [percentage points]", "change of divergence rate [points]", "Ingredients/Divergence tolerance"))
@@ -14,7 +15,7 @@ COST = "cost relative to reference [-]"
 
 
 def draw_bars(panel, values, changed):
-    """Draws a bar for each available value, coloured by whether the verdict changes."""
+    """Draws a bar for each available value; the colour shows whether the verdict changes."""
     for colour, label, wanted in ((style.BLUE, "the verdict stays", False), (style.VERMILLION, "the verdict changes", True)):
         chosen = [place for place, flag in enumerate(changed) if flag is wanted and not math.isnan(values[place])]
         style.draw_bars(panel, chosen, [values[place] for place in chosen], colour, label, wanted)

@@ -16,7 +16,7 @@ class Candidate:
     def __init__(self, name, truncation, build_seconds, solve_seconds):
         self.name, self.truncation = name, truncation
         self.build_seconds, self.solve_seconds = build_seconds, solve_seconds
-        self.errors = {}  # by group and column
+        self.errors = {}  # error by group and column
 
     @property
     def title(self):
@@ -37,7 +37,7 @@ def read_candidates(results):
 
 
 def draw_floor(panel, values):
-    """Draws a line at the floor if a value lies on it."""
+    """Draws a line at FLOOR if a value lies on it."""
     if any(value <= FLOOR for value in values):
         panel.axhline(FLOOR, color=style.GREY, linestyle=(0, (2, 2)), linewidth=1.2, zorder=1, label=AT_FLOOR)
 
@@ -47,7 +47,7 @@ def draw_errors(panel, candidates, names, group, criteria):
     shown = []
     for candidate in candidates:
         number = names.index(candidate.name)
-        # Offset marks so that equal values stay visible
+        # Offset marks so that equal values remain visible
         offset = 0.75 * (number / (len(names) - 1) - 0.5) if len(names) > 1 else 0.0
         values = [candidate.errors[group][column] for column in criteria]
         shown += values
@@ -67,10 +67,10 @@ def error_figure(candidates):
     truncations = list(dict.fromkeys(candidate.truncation for candidate in candidates if candidate.truncation)) or [""]
     groups = list(dict.fromkeys(group for candidate in candidates for group in candidate.errors))
     names = list(dict.fromkeys(candidate.name for candidate in candidates))
-    # Without growing modes, the error of the divergence rate vanishes
+    # Without growing modes, the error of the divergence rate is zero
     criteria = [column for column in CRITERIA if any(candidate.largest(column) > 0 for candidate in candidates)]
     title = "Largest errors of reduced bases by group of modes"
-    # One row for each truncation; the groups of a single one are wrapped
+    # One row for each truncation; if there is only one, its groups are wrapped
     n_columns = len(groups) if len(truncations) > 1 else min(len(groups), MOST_COLUMNS)
     picture = style.Picture(title, len(truncations) * len(groups), n_columns, (4.9, 3.6))
     panels = iter(picture.panels)
@@ -84,7 +84,7 @@ def error_figure(candidates):
 
 
 def pareto_front(points):
-    """The Pareto-optimal points (cost, error), by ascending cost."""
+    """The Pareto-optimal points (cost, error), in ascending order of cost."""
     front = []
     for cost, error in sorted(points):
         if not front or error < front[-1][1]:

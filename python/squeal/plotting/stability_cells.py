@@ -8,11 +8,11 @@ import math
 import numpy as np
 import scipy.ndimage
 
-ISOLATED = 0.05  # half-width of the cell of a single value
+ISOLATED = 0.05  # half-width of the cell if there is only one value
 WIDE = 1e4  # ratio of the ends of a logarithmic axis above which only powers of ten are labelled
-ROOM_OF_LETTER, ROOM_OF_LINE = 0.02, 0.04  # size of a label as shares of a panel
+ROOM_OF_LETTER, ROOM_OF_LINE = 0.02, 0.04  # size of a label as fractions of a panel
 
-# From pale to dark, without white and grey, which mark other cells; black text is legible on all colours
+# From pale to dark, without white and grey, which mark other cells; black text is legible on every colour
 COLOURS = ("#fff3c4", "#fdd27f", "#f9a052", "#e8673a", "#c43a24")
 ORDINATES = ("load per side [N]", "rotation speed [rad/s]")
 
@@ -22,7 +22,7 @@ class StabilityMap:
 
     def __init__(self, table):
         self.abscissa, self.ordinate = table.columns[:2]
-        self.is_logarithmic = self.ordinate in ORDINATES  # geometrically spaced
+        self.is_logarithmic = self.ordinate in ORDINATES  # values are geometrically spaced
         abscissae, ordinates = table.numbers(self.abscissa), table.numbers(self.ordinate)
         self.mus, self.values = sorted(set(abscissae)), sorted(set(ordinates))
         shape = len(self.values), len(self.mus)
@@ -49,7 +49,8 @@ class StabilityMap:
 
 
 def cell_edges(values, logarithmic):
-    """Edges halfway between values; the outer cells are symmetric about their value but do not cross zero."""
+    """Cell edges halfway between values; the outer cells are symmetric about their value but do not extend across zero.
+    """
     v = np.log(values) if logarithmic else np.asarray(values)
     if len(v) > 1:
         edges = np.concatenate([[1.5 * v[0] - 0.5 * v[1]], 0.5 * (v[:-1] + v[1:]), [1.5 * v[-1] - 0.5 * v[-2]]])
@@ -69,7 +70,8 @@ def logarithmic_ticks(first, last):
 
 
 def limits(stability, differ):
-    """Edges between known cells for which differ(cell, other) is true, as lines separated by NaN; adjacent edges are joined."""
+    """Edges between known cells for which differ(cell, other) is true, as lines separated by NaN; adjacent edges are
+    joined."""
     x, y = stability.x_edges, stability.y_edges
     n_rows, n_columns = stability.rate.shape
     # (start, end, cell, other) of the edges on each vertical and horizontal grid line
@@ -90,7 +92,7 @@ def limits(stability, differ):
 
 
 def regions(stability):
-    """Connected unstable cells with the same most unstable mode."""
+    """Connected regions of unstable cells with the same most unstable mode."""
     for name in sorted(set(stability.leader[stability.is_unstable]) - {""}):
         numbers, n_regions = scipy.ndimage.label(stability.is_unstable & (stability.leader == name))
         for number in range(1, n_regions + 1):
@@ -98,7 +100,8 @@ def regions(stability):
 
 
 def place_of_name(region, shape, length):
-    """The cell of a region farthest from its boundary, nearest to its centre if there are several; None without space for the label."""
+    """The cell of a region that is farthest from its boundary and, of several, nearest to its centre; None if there is
+    no space for the label."""
     inside = set(region)
     middle = np.mean(region, axis=0)
 

@@ -8,30 +8,32 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-# Distinguishable with all types of colour vision (Okabe and Ito); markers, widths and dashes repeat their meaning
+# Colours that are distinguishable with all types of colour vision (Okabe and Ito); markers, widths and dashes carry the
+# same information
 BLACK, GREY, BLUE, VERMILLION, GREEN = "#000000", "#8c8c8c", "#0072b2", "#d55e00", "#009e73"
 PURPLE, ORANGE, SKY, BROWN = "#cc79a7", "#e69f00", "#56b4e9", "#7f5539"
 SERIES = (BLACK, BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY, BROWN)
 MARKERS = ("o", "s", "^", "v", "D", "P", "X", "<", ">", "p", "*", "h")
 
-FONT_SIZE, SMALL = 10, 8  # [points]
-INCH = 72  # [points]
-BAR = 0.24  # height of a row [inches]
+FONT_SIZE, SMALL = 10, 8  # font sizes [points]
+INCH = 72  # an inch [points]
+BAR = 0.24  # height of a row of bars [inches]
 WIDE = 1e3  # ratio of the ends of a cost axis above which only powers of ten are labelled
-KEY_LINE, KEY_MARK, KEY_LETTER, TITLE = 0.22, 0.75, 0.063, 0.35  # [inches]
+KEY_LINE, KEY_MARK, KEY_LETTER, TITLE = 0.22, 0.75, 0.063, 0.35  # line, mark, letter of the legend; title [inches]
 
 FREQUENCY, DIVERGENCE = "frequency [Hz]", "divergence rate R/\u03c9 [%]"
 
 
 def mark_of(number):
-    """Colour, marker and face colour of a series: 24 different styles, first filled, then open."""
+    """Colour, marker and face colour of a series. There are 24 different styles: filled markers first, then open ones.
+    """
     colour = SERIES[number % len(SERIES)]
     return {"color": colour, "marker": MARKERS[number % len(MARKERS)],
             "markerfacecolor": "white" if number // len(MARKERS) % 2 else colour}
 
 
 class Picture:
-    """A grid of panels with a title above and one legend below; `size` of a panel with its labels [inches]."""
+    """A grid of panels with a title above and one legend below; `size`: size of a panel with its labels [inches]."""
 
     def __init__(self, title, n_panels, n_columns, size=(4.6, 3.4)):
         self.size = size
@@ -46,7 +48,7 @@ class Picture:
         self.figure.suptitle(title, fontsize=FONT_SIZE + 2)
 
     def add_key(self):
-        """Adds a legend with every label once below the panels; call after drawing."""
+        """Adds a legend below the panels in which every label occurs once; call after drawing."""
         entries = {}
         for panel in self.panels:
             for handle, label in zip(*panel.get_legend_handles_labels()):
@@ -57,7 +59,7 @@ class Picture:
             entry_width = KEY_MARK + KEY_LETTER * max(len(label) for label in entries)
             n_columns = min(len(entries), max(1, int(width / entry_width)))
             strip += math.ceil(len(entries) / n_columns) * KEY_LINE
-            # Order by rows, since matplotlib fills columns
+            # Arrange entries by rows; matplotlib fills columns
             labels = list(entries)
             labels = [label for column in range(n_columns) for label in labels[column::n_columns]]
         self.figure.set_size_inches(width, height + strip)
@@ -78,7 +80,7 @@ def prepare(panel, title, x_label, y_label):
 
 
 def draw_points(panel, points, **look):
-    """Draws marks at points, or a line through them, if there are any."""
+    """Draws marks at the points, or a line through them; draws nothing if there are no points."""
     if points:
         panel.plot(*zip(*points), **{"linestyle": "none", **look})
 
@@ -97,13 +99,13 @@ def cost_axes(panel, costs):
 
 
 def draw_bars(panel, places, values, colour, label, is_hatched):
-    """Draws horizontal bars in rows counted from the top, if there are any."""
+    """Draws horizontal bars in rows counted from the top; draws nothing if there are no values."""
     if places:
         panel.barh(places, values, height=0.62, color=colour, label=label, hatch="///" if is_hatched else None, edgecolor="white", linewidth=0)
 
 
 def name_rows(panel, names):
-    """Labels the rows of bars; names are empty if another panel has them."""
+    """Labels the rows of bars; names are empty if another panel shows them."""
     panel.set_ylim(len(names) - 0.4, -0.6)
     panel.set_yticks(range(len(names)), names, fontsize=SMALL)
     panel.grid(axis="y", visible=False)

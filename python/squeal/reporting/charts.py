@@ -5,7 +5,7 @@
 import math
 
 UNSTABLE, STABLE, PALE = "#b2182b", "#2166ac", "#b9c2cc"
-WEAK = 0.01  # divergence rate [%] up to which growth is called weak
+WEAK = 0.01  # divergence rate [%] up to which growth counts as weak
 RATE, DAMPING, FREQUENCY = "divergence rate [%]", "effective damping ratio -2R/omega [%]", "frequency [Hz]"
 
 
@@ -14,7 +14,7 @@ def number(text):
 
 
 def short(text, n=6):
-    """A number rounded to n digits, for a chart."""
+    """A number in a text, rounded to n digits, for a chart."""
     return float(f"{number(text):.{n}g}")
 
 
@@ -30,13 +30,13 @@ def layout(x, y, **more):
 
 
 def points(name, x, y, about=None, mode="markers", **more):
-    """A series of points or lines; about: hover text of each point."""
+    """A series of points or lines; `about`: hover text of each point."""
     hover = {} if about is None else {"customdata": about, "hovertemplate": "%{customdata}<extra></extra>"}
     return {"type": "scatter", "mode": mode, "name": name, "x": x, "y": y, **hover, **more}
 
 
 def best_so_far(rows, goal, **more):
-    """The best value of a goal over the number of evaluated designs."""
+    """Series of the best value of a goal over the number of evaluated designs."""
     return points("best so far", [int(row["design [-]"]) for row in rows], [short(row["best " + goal]) for row in rows], mode="lines",
                   line={"color": "#222", "width": 1.6, "shape": "hv"}, **more)
 
@@ -61,7 +61,7 @@ def plain(text, n=5):
 
 
 def names_apart(heights, span, most=8, share=0.05):
-    """Keys of the greatest heights whose labels do not overlap in a chart of this span."""
+    """Keys of the largest heights whose labels do not overlap in a chart with this span."""
     named = []
     for key in sorted(heights, key=heights.get, reverse=True):
         if len(named) < most and all(abs(heights[key] - heights[other]) > share * span for other in named):

@@ -2,8 +2,9 @@
 
 """Content of a report: verdict, sections, tables, checks, and how to repeat the run. Everything is read from the results.
 
-Each kind of results has a module in PAGES with the tables that it requires (`TABLES`), titles of tables (`TITLES`), `verdict`, and
-optionally `sections` with charts, `checks`, and the plots that its charts replace (`REPLACED`).
+Each kind of results has a module in PAGES. It defines the tables that it requires (`TABLES`), titles of tables
+(`TITLES`), `verdict`, and optionally `sections` with charts, `checks`, and the plots that its charts replace
+(`REPLACED`).
 """
 
 import base64
@@ -13,7 +14,7 @@ from squeal.reporting import designs, robust_search, robustness, search, sensiti
 from squeal.reporting.charts import digits
 
 PAGES = (sweep, stability_map, stability, search, robust_search, designs, sensitivity, robustness, updating)
-LARGEST_TABLE = 2500  # rows
+LARGEST_TABLE = 2500  # maximum number of rows of a table
 
 
 def parts(pages, name, results):
@@ -22,7 +23,7 @@ def parts(pages, name, results):
 
 
 def verdict(results, pages):
-    """Level and sentence."""
+    """Verdict of the run as (level, sentence)."""
     found = [said for page in pages if (said := page.verdict(results))]
     if not found:
         return "none", f"Results of Study = {results.parameter('Study')}: see the tables."
@@ -30,7 +31,7 @@ def verdict(results, pages):
 
 
 def tables(results, pages):
-    """Tables, the most important first, and the names of those that are omitted because they are too long."""
+    """Tables, most important first, and the names of tables that are omitted because they are too long."""
     titles = {name: title for page in pages for name, title in page.TITLES.items()}
     order = {name: place for place, name in enumerate(titles)}
     found, too_long = [], []
@@ -53,7 +54,7 @@ def pictures(results, pages):
 
 
 def checks(results, pages):
-    """Pairs (check, result)."""
+    """Checks of the results as pairs (check, result)."""
     record = results.record
     counts, quantities = record.get("counts", {}), record.get("quantities", {})
     found = parts(pages, "checks", results)

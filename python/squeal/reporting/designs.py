@@ -15,7 +15,7 @@ def variables_of(table):
 
 
 def name_of(variable):
-    """The name of a variable for an axis; the first of several that share a value."""
+    """The name of a variable for an axis: that of its first parameter if several share a value."""
     first, *others = variable.split(" + ")
     return first.split("/")[-1] + (" …" if others else "")
 
@@ -42,7 +42,7 @@ def end_of_sweep(results):
 
 
 def verdict(results):
-    """None for a search, which has its own verdict."""
+    """Verdict of a design study; None for a search, which has its own verdict."""
     if results.has("search"):
         return None
     table = results.table("designs")
@@ -84,7 +84,7 @@ def about(row, variables, end):
 
 
 def onset_section(results):
-    """Largest growth over onset."""
+    """Chart of the largest growth over the onset of squeal."""
     table = results.table("designs")
     variables, end, rows = variables_of(table), end_of_sweep(results), solved(table)
     traces = []
@@ -99,7 +99,7 @@ def onset_section(results):
 
 
 def lines_section(results):
-    """Each design as a line through its values; the mouse selects ranges of an axis."""
+    """Chart with each design as a line through its values; the mouse selects ranges on an axis."""
     table = results.table("designs")
     rows, end = solved(table), end_of_sweep(results)
     dimensions = []

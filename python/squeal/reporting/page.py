@@ -12,7 +12,7 @@ from squeal.errors import Error
 
 HERE = pathlib.Path(__file__).resolve().parent
 JAVASCRIPT = pathlib.Path("/usr/share/javascript")
-# Debian packages, and the file of each that is embedded
+# Debian packages, and the file of each package that is embedded
 LIBRARIES = {"python3-plotly": pathlib.Path("/usr/share/python3-plotly/plotly.js"),
              "libjs-three": JAVASCRIPT / "three" / "three.min.js",
              "libjs-jquery": JAVASCRIPT / "jquery" / "jquery.min.js",
@@ -35,7 +35,7 @@ def style_of(path):
 
 
 def script(text):
-    """A script element whose text cannot end it early."""
+    """A script element; its text is escaped so that it cannot end the element."""
     return "<script>" + text.replace("</script", "<\\/script").replace("<!--", "<\\!--") + "</script>\n"
 
 
@@ -51,7 +51,8 @@ def section(title, body, name):
 
 
 def entry_section(entry):
-    """A section with the parts of its entry: caption, moving shapes, selection list, chart, picture, facts, notes, command."""
+    """A section with the parts of its entry: caption, animated shapes, selection list, chart, picture, facts, notes,
+    command."""
     parts, name = [], html.escape(entry["id"])
     if "caption" in entry:
         parts.append(f'<p>{html.escape(entry["caption"])} {choices(entry)}</p>')
@@ -72,7 +73,7 @@ def entry_section(entry):
 
 
 def choices(entry):
-    """A selection list for the chart."""
+    """A selection list for the data of a chart."""
     if "choices" not in entry:
         return ""
     options = "".join(f'<option value="{html.escape(choice["key"])}">{html.escape(choice["name"])}</option>' for choice in entry["choices"])
@@ -84,7 +85,7 @@ def is_chart(entry):
 
 
 def rows_of(columns, rows, text_of):
-    """Head and body of a table; text_of(cell) is the displayed text."""
+    """Head and body of a table; text_of(cell) returns the displayed text."""
     head = "".join(f"<th>{html.escape(column)}</th>" for column in columns)
     lines = "".join("<tr>" + "".join(f"<td>{html.escape(text_of(cell))}</td>" for cell in row) + "</tr>" for row in rows)
     return f"<thead><tr>{head}</tr></thead><tbody>{lines}</tbody>"
@@ -97,7 +98,7 @@ def table(entry):
 
 
 def shown(cell):
-    """Numbers with six digits; the files have twelve."""
+    """A number with six digits; the files have twelve."""
     try:
         value = float(cell)
     except ValueError:

@@ -1,12 +1,12 @@
-/* Draws what the page brings along: charts by plotly.js, tables by DataTables, shapes by three.js. */
+/* Draws the content of the page: charts by plotly.js, tables by DataTables, shapes by three.js. */
 "use strict";
 
 const content = JSON.parse(document.getElementById("data").textContent);
-// On a narrow screen buttons would lie on the chart
+// On a narrow screen, buttons would cover the chart
 const options = { responsive: true, displaylogo: false, displayModeBar: window.innerWidth < 600 ? false : "hover",
   modeBarButtonsToRemove: ["lasso2d", "select2d"] };
 
-/* Draws all charts; returns for each with a list of choices a function that shows the one with a key. */
+/* Draws all charts. For each chart with a selection list, returns a function that shows the entry with a given key. */
 function drawCharts() {
   const choosers = {};
   for (const chart of content.charts) {
@@ -45,7 +45,7 @@ function numbers(text, Type) {
   return new Type(bytes.buffer);
 }
 
-/* YlGnBu of ColorBrewer */
+/* Colour scale YlGnBu of ColorBrewer */
 const COLOURS = ["#ffffd9", "#edf8b1", "#c7e9b4", "#7fcdbb", "#41b6c4", "#1d91c0", "#225ea8", "#253494", "#081d58"].map((code) => new THREE.Color(code));
 
 function colour(share) {
@@ -53,7 +53,7 @@ function colour(share) {
   return COLOURS[first].clone().lerp(COLOURS[first + 1], place - first);
 }
 
-/* Disc and pins that move, in a canvas that turns. */
+/* Animated disc and pins in a canvas that can be rotated. */
 class Viewer {
   constructor(shapes, place) {
     this.rest = numbers(shapes.points, Float32Array);
@@ -144,7 +144,7 @@ class Viewer {
   }
 }
 
-/* The energy is that of the mode whose shape is shown. */
+/* Shows the energy of the mode that is animated. */
 function drawShapes(showEnergy) {
   if (!content.shapes) return null;
   const viewer = new Viewer(content.shapes, document.getElementById("canvas"));

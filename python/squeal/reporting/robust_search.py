@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Page of a search with uncertain parameters: the best design with its own samples and with others."""
+"""Page of a search with uncertain parameters: the best design with the samples of the search and with other samples."""
 
 from squeal.reporting.charts import STABLE, UNSTABLE, best_so_far, confidence, digits, layout, number, plain, points, short
 
@@ -10,7 +10,7 @@ TITLES = {"best_design": "The best design with its own samples and with others",
 
 
 def goal_of(results):
-    """The column of the goal, which precedes that of the best so far."""
+    """The column of the goal, which precedes the column of the best value so far."""
     return results.table("search").columns[-2]
 
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Page of a study of uncertain parameters: the probability of squeal. Plots: modes of all samples, influential parameters."""
+"""Page of a study of uncertain parameters: the probability of squeal. Plots show the modes of all samples and the
+influential parameters."""
 
 from squeal.reporting.charts import confidence, digits, number
 

@@ -15,7 +15,7 @@ GOALS = {LARGEST: "largest divergence rate [%]", ONSET: "μ of 0.01 %"}
 
 
 class Search:
-    """Evaluated designs with their goal, and the best of them."""
+    """Evaluated designs with their goal, and the best design."""
 
     def __init__(self, results):
         self.table = results.table("search")
@@ -33,7 +33,7 @@ class Search:
         return number(row[self.goal])
 
     def text(self, row):
-        """The value of the goal of a design."""
+        """Text with the goal of a design."""
         return f"{digits(self.value(row))} %" if self.goal == LARGEST else f"μ = {digits(self.value(row))}"
 
 
@@ -72,7 +72,7 @@ def checks(results):
 
 
 def history_section(search):
-    """The goal over the evaluations, and the best so far."""
+    """Chart of the goal over the evaluations, with the best value so far."""
     first = search.table.rows.index(search.solved[0]) if search.solved else len(search.table)
     best = best_so_far(search.table.rows[first:], search.goal, hovertemplate="best of %{x} designs: %{y:.4g}<extra></extra>")
     traces = [best, *designs_traces(search, lambda row: int(row["design [-]"]))]
@@ -89,7 +89,7 @@ def history_section(search):
 
 
 def designs_traces(search, place):
-    """Points of the samples, and of the designs of searches."""
+    """Series of points for the samples and for the designs of searches."""
     for phase, title, colour, symbol in (("sample", "samples", STABLE, "circle"), ("search", "search", UNSTABLE, "diamond")):
         rows = [row for row in search.solved if row["phase"] == phase]
         yield points(title, list(map(place, rows)), [short(row[search.goal]) for row in rows],
@@ -115,7 +115,7 @@ def best_section(results, search):
         if row[LARGEST] and abs(number(full["mu [-]"]) - number(row["mu of largest [-]"])) < 1e-9:
             text += f"; the sweep of the search gives {digits(number(row[LARGEST]))} % there"
         notes.append(text + ".")
-    # The first word of the command, which may contain quoted blanks
+    # Take the first word of the command, which may contain quoted blanks
     program = re.match(r"(?:[^\s'\\]|\\.|'[^']*')*", results.record.get("command", ""))[0] or "squeal"
     return {"id": "best", "title": f"The best design, number {search.best['design [-]']}",
             "facts": {"columns": ["parameter", "baseline", "range", "best"], "rows": facts}, "notes": notes,
@@ -134,7 +134,7 @@ def baseline_value(results, name):
 
 
 def variables_section(results, search):
-    """The goal over each variable."""
+    """Chart of the goal over each variable."""
     choices = []
     for name in search.variables:
         ring = points("the best", [number(search.best[name])], [short(search.best[search.goal])], hoverinfo="skip",

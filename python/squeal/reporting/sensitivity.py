@@ -11,10 +11,10 @@ TITLES = {"sensitivity_ranking": "Effect of a 1 % increase on the fastest growin
 REPLACED = ("sensitivity",)
 CHANGE, FREQUENCY_CHANGE, MU_CHANGE = "divergence rate per 1 % [percentage points]", "frequency per 1 % [Hz]", "mu per 1 % [-]"
 MOST_BARS = 16
-ROUNDING = 1e-8  # of R/ω, as in include/squeal/modes/verdict.h
-LEAST_CHANGE = 1e-4  # [percentage points]
-ROUGH = 0.01  # estimated error that is worth a note, over the largest derivative of a threshold
-BAR, AXES = 30, 130  # heights [pixels]
+ROUNDING = 1e-8  # rounding level of R/ω, as in include/squeal/modes/verdict.h
+LEAST_CHANGE = 1e-4  # smallest change that is shown [percentage points]
+ROUGH = 0.01  # estimated error, relative to the largest derivative of a threshold, above which a note is shown
+BAR, AXES = 30, 130  # heights of a bar and of the axes [pixels]
 
 
 def verdict(results):
@@ -58,17 +58,17 @@ def checks(results):
 
 
 def modes_of(table):
-    """Rows of each mode, the fastest growing mode first."""
+    """Rows of the table for each mode; the fastest growing mode comes first."""
     return sorted(table.groups("mode [-]"), key=lambda rows: -number(rows[0][RATE]))
 
 
 def thresholds_of(table):
-    """Rows of each threshold, by ascending friction coefficient."""
+    """Rows of the table for each threshold, in ascending order of the friction coefficient."""
     return table.groups("mu [-]", "event", "label", "partner label", FREQUENCY)
 
 
 def ranking(rows, change=CHANGE):
-    """Rows of parameters of the whole model with a change per 1 %, the largest change first."""
+    """Rows of parameters of the whole model that have a change per 1 %, in descending order of the change."""
     return sorted((row for row in rows if row[change] and not row["body"]), key=lambda row: -abs(number(row[change])))
 
 
@@ -84,7 +84,7 @@ def relative_error(rows, derivative, error):
 
 
 def bars(rows, change, title, about, squeals):
-    """A bar for each parameter, the largest change on top."""
+    """Chart with a bar for each parameter; the largest change is at the top."""
     shown = ranking(rows, change)[:MOST_BARS]
     traces = []
     for sign in (1, -1):
@@ -101,7 +101,7 @@ def bars(rows, change, title, about, squeals):
 
 
 def in_two_lines(parameter):
-    """The parameter on two lines: name and direction of a mount, section and name of others."""
+    """The parameter in two lines: name and direction for a mount, section and name for other parameters."""
     return parameter.split("/", 1)[1].replace(": ", "<br>") if ": " in parameter else parameter.replace("/", "<br>", 1)
 
 
@@ -160,7 +160,7 @@ def about_threshold(row):
 
 
 def notes_sections(results):
-    """Pairs near exceptional points, where two modes coalesce, and thresholds without derivatives."""
+    """Sections on pairs near exceptional points, where two modes coalesce, and on thresholds without derivatives."""
     notes = []
     modes = modes_of(results.table("sensitivities"))
     for rows in modes:

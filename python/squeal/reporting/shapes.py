@@ -10,8 +10,8 @@ from squeal.results import shape_files
 from squeal.surface import outer_faces
 from squeal.vtu_file import VtuFile
 
-LARGEST = 12  # modes
-STEPS = 32767  # integers for displacements from zero to the largest
+LARGEST = 12  # maximum number of modes
+STEPS = 32767  # largest integer of the quantised displacements
 
 
 def text_of(array, kind):
@@ -19,7 +19,8 @@ def text_of(array, kind):
 
 
 def of_growing_modes(results, modes):
-    """Points, faces and displacements of the fastest growing modes; None without growing modes, their files or surfaces."""
+    """Points, faces and displacements of the fastest growing modes; None if there are no growing modes, files or
+    surfaces."""
     files = shape_files(results.folder)
     growing = [i for i, row in enumerate(modes, start=1) if row["unstable [-]"] == "1" and i in files]
     growing = sorted(sorted(growing, key=lambda i: -float(modes[i - 1]["growth rate [1/s]"]))[:LARGEST])

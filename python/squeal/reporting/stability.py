@@ -41,7 +41,7 @@ def checks(results):
 
 
 def damping_section(rows):
-    """Effective damping ratio -2R/omega over frequency; it is negative for growing modes."""
+    """Chart of the effective damping ratio -2R/omega over frequency; it is negative for growing modes."""
     traces, ratios = [], [number(row[DAMPING]) for row in rows] or [0]
     for title, colour, flag in (("does not grow", STABLE, "0"), ("grows", UNSTABLE, "1")):
         own = [row for row in rows if row["unstable [-]"] == flag]
@@ -72,7 +72,7 @@ def shape_sections(results, modes):
 
 
 def energy_sections(results):
-    """Contribution of each body to the divergence rate of each growing mode."""
+    """Charts of the contribution of each body to the divergence rate of each growing mode."""
     bodies = {rows[0]["mode [-]"]: rows for rows in results.table("energy").groups("mode [-]")} if results.has("energy") else {}
     if not bodies:
         return []

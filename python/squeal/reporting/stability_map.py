@@ -78,7 +78,7 @@ def spanned(stability):
 
 
 def heatmap(stability, texts, mask, **look):
-    """Cells where a mask is true, in the colour of their rates, which are zero without a mode in the band."""
+    """Cells for which a mask is true, coloured by their rates; the rate is zero if there is no mode in the band."""
     shown = [[float(f"{rate:.6g}") if is_shown else None for rate, is_shown in zip(rates, are_shown)]
              for rates, are_shown in zip(np.nan_to_num(stability.rate), mask)]
     return {"type": "heatmap", "x": stability.x_edges.tolist(), "y": stability.y_edges.tolist(), "z": shown,
@@ -86,7 +86,7 @@ def heatmap(stability, texts, mask, **look):
 
 
 def texts_of(stability, table):
-    """Hover texts of the cells, by rows."""
+    """Hover texts of the cells, row by row."""
     found = [[""] * len(stability.mus) for _ in stability.values]
     for row in table.rows:
         mu, value = number(row[stability.abscissa]), number(row[stability.ordinate])
@@ -118,7 +118,7 @@ def limit(stability):
 
 
 def names(stability):
-    """The label of the leading mode in each region with space for it."""
+    """The label of the most unstable mode in each region that has space for it."""
     found = [(stability.leader[region[0]], cells.place_of_name(region, stability.rate.shape, 2 * len(stability.leader[region[0]])))
              for region in cells.regions(stability)]
     found = [(name, cell) for name, cell in found if cell]

@@ -58,7 +58,7 @@ def events_of(results, name):
 
 
 def branch_section(results, name, title):
-    """The divergence rate of every branch over the friction coefficient."""
+    """Chart of the divergence rate of every branch over the friction coefficient."""
     (branches, peaks), parameter = branches_of(results, name), results.table(name).parameter
     lowest = min(number(row[RATE]) for rows in branches.values() for row in rows)
     named = names_apart({branch: peak for branch, peak in peaks.items() if peak > WEAK}, max(peaks.values()) - lowest)
@@ -86,7 +86,8 @@ def branch_section(results, name, title):
 
 
 def bifurcation_sections(results):
-    """Frequencies of pairs of modes relative to the frequency at which they coalesce, for the pairs that grow most."""
+    """Charts of the frequencies of pairs of modes, relative to the frequency at which they coalesce, for the pairs that
+    grow most."""
     name = "branches_without_dissipation" if results.has("branches_without_dissipation") else "branches"
     (branches, peaks), parameter = branches_of(results, name), results.table(name).parameter
     events = [row for row in events_of(results, name) if row["event"] == "onset" and row["partner [-]"] in branches]

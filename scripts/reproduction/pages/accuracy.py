@@ -26,7 +26,7 @@ def goals(runs):
                            numbers_in(*cells[:7], cells[8]), found)
 
 
-BRAKE = (7, 8, 10, 12, 17)  # rows of complex_modes.csv
+BRAKE = (7, 8, 10, 12, 17)  # row numbers in complex_modes.csv
 WHICH = ("found", "2 times", "1.3 times")
 
 
@@ -50,7 +50,7 @@ LARGEST, RMS = "frequency error [%]", "rms frequency error [%]"
 
 
 def compared(results, quoted, columns):
-    """Errors of full order compared with rows of element, mesh factor and these columns."""
+    """Errors of full order, compared with rows of element, mesh factor and these columns."""
     rows = {(row["element"], row["mesh factor [-]"]): row for row in results.rows("accuracy") if row["method"] == "full order"}
     for element, factor, *texts in quoted:
         yield from several(f"{element}, mesh factor {factor}: ", columns, texts, map(rows[element, float(factor)].get, columns))

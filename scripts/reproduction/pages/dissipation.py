@@ -22,7 +22,7 @@ def of_modes(results, label):
     return sorted(mode["divergence rate [%]"] for mode in results.complex_modes(label))
 
 
-# Label and positions in the ascending rates for each row of the table; half of the 24 F1 modes bend radially
+# For each row of the table: label and positions among the ascending rates; half of the 24 F1 modes bend radially
 POSITIONS = (("F1", 0), ("F1", 11), ("T1", 0), ("T1", -1), ("R0-1 +", 0), ("A1-2 +", 0), ("A0-4", 0, -1), ("A0-5", 0, -1), ("F1", -1))
 
 

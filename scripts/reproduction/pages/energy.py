@@ -4,7 +4,7 @@
 
 from reproduction.numbers import Number, entry, numbers_in, table
 
-MODES = (17, 21, 37, 44)  # rows of complex_modes.csv
+MODES = (17, 21, 37, 44)  # row numbers in complex_modes.csv
 
 
 @entry("energy", "The table of the default model")

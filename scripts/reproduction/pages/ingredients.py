@@ -9,7 +9,7 @@ FREQUENCY, DIVERGENCE = "change of frequency [%]", "change of divergence rate [p
 
 
 def of_table(rows, head):
-    """Frequency, divergence rate, unstable modes and verdict of the rows of a table of the page."""
+    """Numbers for frequency, divergence rate, unstable modes and verdict in the rows of a table of the page."""
     for feature, tried, frequency, _, divergence, _, unstable, verdict, *_ in table("ingredients", head):
         row = rows[feature, tried]
         yield from several(f"{feature}: {tried}, ", ("frequency [%]", "divergence rate [points]", "unstable modes", "verdict changes (1) or not (0)"),
@@ -18,7 +18,7 @@ def of_table(rows, head):
 
 
 def rows_of(runs, *run):
-    """Rows by feature and variant; a variant may be a number."""
+    """Rows of a run by feature and variant; a variant may be a number."""
     rows = runs(*run).rows("ingredients")
     return {(row["ingredient"], row["variant"] if isinstance(row["variant"], str) else f"{row['variant']:g}"): row for row in rows}
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""doc/paper.md, except what has its own page"""
+"""doc/paper.md, except numbers that have their own page"""
 
 import paper
 from reproduction.numbers import Number, entry, of_mode, table
@@ -74,7 +74,7 @@ def bifurcation(runs):
         rows = results.rows(name)
         yield Number(name, n, len(rows))
         for label, mu in quoted.items():
-            # The leading pair of F1 lies above the others
+            # The leading pair of F1 modes has a higher frequency than the other pairs
             onset = max((row for row in rows if row["event"] == "onset" and row["label"].startswith(label)), key=lambda row: row["frequency [Hz]"])
             yield Number(f"onset of {label}", mu, onset["mu [-]"])
     rows = results.rows("thresholds_without_dissipation")

@@ -12,7 +12,7 @@ def study(runs, dissipation, name):
 
 
 def largest(rows, basis, column, group=None):
-    """Largest value of a column for a basis, in one group of modes or in all."""
+    """Largest value in a column for a basis, in one group of modes or in all groups."""
     return max(row[column] for row in rows if row["basis"] == basis and group in (None, row["group"]))
 
 
@@ -21,7 +21,8 @@ NAMES = {"the same + damping": "real + 1st-ord. two-sided + damping", "POD of μ
 
 
 def compared(runs, head, columns, group=None):
-    """Errors of bases compared with a table of the page, whose cells are `without | with` if these differ; None skips a column."""
+    """Errors of bases compared with a table of the page; its cells are `without
+    with` if the two differ. None skips a column."""
     for number, dissipation in enumerate(STUDIES):
         rows = study(runs, dissipation, "errors")
         for basis, *cells in table("reduction", head):

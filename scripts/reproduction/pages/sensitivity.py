@@ -4,7 +4,7 @@
 
 from reproduction.numbers import Number, entry, of_mode, table
 
-# In the order of the page's table
+# In the order of the table in the page
 PARAMETERS = ("Geometry/Disc outer radius", "Geometry/Pin height", "Geometry/Disc thickness", "Pin material/Density", "Disc material/Density",
               "Disc material/Young modulus", "Pin material/Young modulus", "Operation/Friction coefficient", "Pin material/Poisson ratio",
               "Geometry/Disc inner radius", "Disc material/Poisson ratio", "Geometry/Pin diameter")

@@ -9,7 +9,7 @@ from reproduction.numbers import Number, entry, numbers_in, table
 NO_SHAPES = "Output/Mode shapes=none"
 FEW_MODES = "Band/Maximum frequency=600"
 PINS = [f"pin_{side}_{number}" for side in ("top", "bottom") for number in range(1, 7)]
-MEAN_PRESSURE = 1000.0 / (6 * 0.002028)  # load of a side over the area of its pins, as a run prints it [Pa]
+MEAN_PRESSURE = 1000.0 / (6 * 0.002028)  # load per side divided by the area of its pins, as printed by a run [Pa]
 
 
 def steady(runs, name, *settings):
@@ -52,7 +52,7 @@ def meshes(runs):
 
 
 def random_gaps(seed):
-    """Gaps [m] and both tapers of every pin, and a friction coefficient."""
+    """Random gaps [m] and tapers of every pin, and a friction coefficient."""
     generator = random.Random(seed)
     gaps = "; ".join(f"{pin}: {generator.uniform(0, 3e-6):.3e}, {generator.uniform(-5e-5, 5e-5):.3e}, {generator.uniform(-5e-5, 5e-5):.3e}"
                      for pin in PINS)

@@ -14,7 +14,7 @@ NO_SHAPES = "Output/Mode shapes=none"
 UNCOMPARED = "Sweep/Compare dissipation=false"
 NO_COUNT = "Sweep/Count modes at="
 GRID = [0.45 * place / 89 for place in (9, 27, 45, 62, 80)]
-SWEEPS = {  # name: parameter file, settings of the sweep, settings of single friction coefficients
+SWEEPS = {  # name -> parameter file, settings of the sweep, settings of single friction coefficients
     "without": ("sweep.prm", [], []),
     "consistent": ("sweep_damped.prm", [UNCOMPARED, NO_COUNT], ["Operation/Radial dissipation=consistent"]),
     "published": ("sweep_damped.prm", [UNCOMPARED, NO_COUNT, "Operation/Radial dissipation=published"],
@@ -40,7 +40,8 @@ def at_value(results, mu):
 
 
 def largest_differences(runs, name, results):
-    """Largest relative difference of lambda, and of the divergence rate, to full order at five friction coefficients."""
+    """Largest relative differences of lambda, and of the divergence rate, from full order at five friction
+    coefficients."""
     of_lambda, of_divergence = 0.0, 0.0
     for mu in GRID:
         swept, full = at_value(results, mu), np.array(full_order(runs, name, mu).eigenvalues())
@@ -54,7 +55,7 @@ def largest_differences(runs, name, results):
 
 
 def step_number(results, step, pattern):
-    """A number in the result of a step of the run record."""
+    """A number from the result of a step in the run record."""
     text = next(entry["result"] for entry in results.record["steps"] if entry["name"] == step)
     return float(re.search(pattern, text)[1])
 

@@ -7,7 +7,7 @@ from reproduction.numbers import Number, entry, numbers_in, of_mode, table
 
 NO_SHAPES = "Output/Mode shapes=none"
 FINE = ("Geometry/Element size=0.008", "Geometry/Disc layers=4", "Geometry/Pin layers=6")
-MESHES = (  # in the order of the page's table: folder, parameter file, settings
+MESHES = (  # folder, parameter file and settings, in the order of the table in the page
     ("mesh_7_nodes", "disc_pins.prm", "Geometry/Nodes per pin face=7"), ("default", "disc_pins.prm"),
     ("mesh_37_nodes", "disc_pins.prm", "Geometry/Nodes per pin face=37"),
     ("mesh_37_nodes_8_mm", "disc_pins.prm", "Geometry/Nodes per pin face=37", *FINE), ("mesh_degree_2", "quadratic.prm"))

@@ -9,7 +9,7 @@ from squeal import exported_matrices
 from reproduction.numbers import Number, entry, numbers_in, of_mode, several, table
 from reproduction.sliding_layer import Layer
 
-# Ring: pin layers, element size [m], end of the band [Hz]
+# Meshes of the ring: pin layers -> element size [m], end of the band [Hz]
 MESHES = {5: (0.0024, 46e3), 8: (0.0016, 70e3), 10: (0.0012, 94e3), 12: (0.00095, 118e3)}
 HALF_SPACE = {0.999: "0", 1.2: "4.3", 1.5: "9.1", 2.0: "14.5"}
 PAD = Layer(0.012, 1.9e9, 0.25, 3070)
@@ -96,7 +96,7 @@ def beyond_band(runs):
 
 
 def all_eigenvalues(results, friction_coefficient):
-    """lambda with Re >= 0 and Im >= 0 of the exported matrices without damping, every growing mode once."""
+    """lambda with Re >= 0 and Im >= 0 of the exported matrices without damping; every growing mode is included once."""
     problem = exported_matrices.couple(exported_matrices.read_matrices(results.folder), friction_coefficient)
     squares = scipy.linalg.eigvals(scipy.linalg.solve(problem.mass.toarray(), problem.stiffness.toarray()))
     roots = np.sqrt(-squares[squares.imag >= 0])
