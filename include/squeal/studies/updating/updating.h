@@ -41,7 +41,8 @@ namespace Squeal
   /// dλ/dp = i dω/dp of each mode without friction and damping with respect to each parameter, ω' = φᵀ (K' − ω² M') φ / 2ω. Zero for ω = 0;
   /// in a cluster of equal ω, every mode has the mean. Collective.
   ///
-  /// @param squares ω² [rad²/s²] @param shapes  φ, mass-normalised
+  /// @param squares ω² [rad²/s²]
+  /// @param shapes  φ, mass-normalised
   std::vector<std::vector<std::complex<double>>> real_mode_derivatives(const std::vector<double>    &squares,
                                                                        const MultiVector            &shapes,
                                                                        const std::vector<BodyRates> &rates);
