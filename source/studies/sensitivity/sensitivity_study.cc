@@ -199,7 +199,7 @@ namespace Squeal
       run.screen << '\n';
     }
 
-    /// Derivatives of the modal damping in the coupled system of a sweep; nothing without modal damping.
+    /// Derivatives of the modal damping in the coupled system of a sweep; empty without modal damping.
     std::optional<ModalDampingDerivatives> modal_damping_derivatives(const SweepModel &sweep, const DampingParameters &damping)
     {
       if (damping.modal_ratios.empty())

@@ -62,7 +62,7 @@ namespace Squeal
     /// Folder in which a worker process solves designs.
     std::filesystem::path folder_of(const std::vector<int> &designs) const;
 
-    /// Stored result of a design; nothing if it is not finished.
+    /// Stored result of a design; empty if it is not finished.
     std::optional<DesignResult> find(int design) const;
 
     /// Number of @p designs that are finished.

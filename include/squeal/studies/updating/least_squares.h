@@ -18,7 +18,7 @@ namespace Squeal
     DenseMatrix     J; ///< m × n [-]
   };
 
-  /// Residuals at a point of the unit cube; nothing if they cannot be computed.
+  /// Residuals at a point of the unit cube; empty if they cannot be computed.
   using ResidualsAt = std::function<std::optional<Residuals>(const std::vector<double> &x)>;
 
   struct Fit
