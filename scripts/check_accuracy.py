@@ -5,11 +5,11 @@
 
     scripts/check_accuracy.py RUN REFERENCE
 
-RUN and REFERENCE are results folders. Unlike in the program, modes are not paired by shape, but by minimising the sum
-of the distances of λ, with a penalty for different kinds (the letters of the labels). Prints the largest errors of
-frequencies and divergence rates of all modes and of those that RUN reports as converged, the number of errors larger
-than estimated, and every mode reported as converged whose frequency error exceeds the accuracy, or whose divergence
-rate error in percentage points exceeds a tenth of it. The exit status is 1 if there is such a mode.
+RUN and REFERENCE are result folders. Unlike in the program, modes are not paired by shape, but by minimising the sum of
+the distances of λ, with a penalty for different kinds (the letters of the labels). Prints the largest errors of
+frequencies and divergence rates of all modes, and of the modes that RUN reports as converged, the number of errors
+larger than estimated, and every mode reported as converged whose frequency error exceeds the accuracy, or whose
+divergence rate error in percentage points exceeds a tenth of it. The exit status is 1 if there is such a mode.
 """
 
 import pathlib

@@ -42,7 +42,7 @@ def in_units(field, values):
     values = values if values.ndim == 1 else np.linalg.norm(values, axis=1)
     caption, factor, units = QUANTITIES.get(field, (field.replace("_", " "), 1, {"": 1}))
     unit = max((unit for unit in units if abs(values).max() >= 2 * units[unit]), key=units.get, default=next(iter(units)))
-    return factor * values / units[unit] + 0.0, caption, unit  # + 0 turns -0 into 0
+    return factor * values / units[unit] + 0.0, caption, unit  # adding 0 replaces -0 by 0
 
 
 def rotation_of(path):
@@ -93,7 +93,7 @@ def draw(path, picture, field, view):
     axes.plot(*places[shown[is_open]].T, linestyle="", marker="o", markersize=8, markerfacecolor="none", markeredgecolor=INK)
 
     radius = distances.max() + 0.06 * extent
-    angles = 0.175 * extent / radius * side * rotation_of(path) * np.array([1, -1])  # of tail and tip, from outwards
+    angles = 0.175 * extent / radius * side * rotation_of(path) * np.array([1, -1])  # of tail and tip, relative to outwards
     tail, tip = radius * np.column_stack([np.sin(angles), np.cos(angles)])
     axes.annotate("", tip, tail, arrowprops={
         "arrowstyle": "-|>,head_length=0.8,head_width=0.3", "mutation_scale": 40, "linewidth": 5, "color": INK, "shrinkA": 0, "shrinkB": 0,

@@ -173,7 +173,7 @@ int main(int argc, char **argv)
   char  *library_arguments[] = {argv[0], without_handler, nullptr};
   char **library_argv        = library_arguments;
   int    library_argc        = 2;
-  // deal.II must not start its own threads in addition to the processes
+  // deal.II must not start threads in addition to those of the program
   dealii::Utilities::MPI::MPI_InitFinalize mpi(library_argc, library_argv, 1);
   const bool                               is_root = dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
   std::ostream                             silence(nullptr);

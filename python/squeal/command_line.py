@@ -21,7 +21,7 @@ class Parser(argparse.ArgumentParser):
         raise Error(message, "command line", "see --help")
 
 
-# Debian packages whose name differs from that of the module
+# Debian packages whose names differ from the module names
 PACKAGES = {"PIL": "python3-pil", "netCDF4": "python3-netcdf4", "paraview": "paraview python3-paraview (or scripts/setup.sh paraview)",
             "vtk": "python3-vtk9 (or scripts/setup.sh pictures)"}
 

@@ -16,7 +16,7 @@ DIRECTORY/matrices contains, in Matrix Market format,
 The coupled problem is (lambda^2 M~_c + lambda C_c + K~_c) phi = 0 with
 
     K~ = K - mu P_t^T S K + (P_n + mu P_t)^T K_n P_n,  M~ = M - mu P_t^T S M,  C~ = C + G - mu P_t^T S (C + G) + C_b,
-    K~_c = T_c^T K~ T_c, M~_c and C_c likewise.
+    K~_c = T_c^T K~ T_c, M~_c and C_c accordingly.
 
 S extracts the reactions of the rigid contact nodes from nodal forces, S [P_n; P_t; P_b]^T = [I, 0, 0]: the pseudo-inverse, which is 1/2 P_n
 for pairs of coincident nodes. For nonmatching faces the program uses another left inverse.

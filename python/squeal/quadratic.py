@@ -23,7 +23,7 @@ DENSE_SIZE = 200
 FIRST_NUMBER, LARGEST_NUMBER = 24, 160
 # Relative distance up to which eigenvalues may be copies of the same one
 EQUAL = 1e-8
-# Smallest new component of a unit vector for which it counts as linearly independent of the others
+# Smallest component of a unit vector outside the span of the others for which it counts as linearly independent
 INDEPENDENT = 1e-3
 # The pencil counts as singular if relative changes of entries up to this value make Q(s) singular at an arbitrary s
 SINGULAR = 1e-13

@@ -80,7 +80,7 @@ class Oracle:
         if n > LARGEST_DENSE:
             shift = check_eigenvalues.choose_shift(self.problem, self.band)
             found, vectors = check_eigenvalues.solve_by_scipy(self.problem, 1.05 * self.band, 40, shift)
-            # Copies are modes far below the band, whose vectors are the least accurate
+            # Merge copies; they occur far below the band, where vectors are least accurate
             return found[quadratic.merge(found, vectors, COPIES)], "ARPACK"
         mass, damping, stiffness = (matrix.toarray() for matrix in (self.problem.mass, self.problem.damping, self.problem.stiffness))
         s = self.shift

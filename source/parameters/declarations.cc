@@ -40,7 +40,7 @@ namespace Squeal
       bool        is_integer;
       std::string unit; ///< unit after a blank; empty for a number without a unit, or with several
 
-      /// "0 ... 10", ">= 0", "<= 10", or nothing.
+      /// Bounds as text: "0 ... 10", ">= 0" or "<= 10"; empty if there are none.
       std::string bounds() const
       {
         if (std::isfinite(range.least) && std::isfinite(range.greatest))

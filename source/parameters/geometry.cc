@@ -104,7 +104,7 @@ namespace Squeal
         });
     }
 
-    /// True if a Gmsh mesh has physical volumes; their names are text in binary files, too.
+    /// True if a Gmsh mesh has physical volumes. Their names are stored as text in binary files as well.
     bool has_volumes(const std::string &mesh)
     {
       std::ifstream stream(mesh, std::ios::binary);

@@ -194,7 +194,7 @@ namespace Squeal
       }
 
       unsigned int             n_files = 0;
-      std::vector<std::string> open_files; ///< from the outermost to the current one
+      std::vector<std::string> open_files; ///< from the outermost file to the current one
       std::vector<Section>     sections;
     };
   } // namespace

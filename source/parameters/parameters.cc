@@ -202,7 +202,7 @@ namespace Squeal
     for (const std::string &text : overrides)
       statements.push_back(parse_override(text));
 
-    // The variables of the geometry are parameters, too
+    // The variables of the geometry are also parameters
     Parameters parameters;
     parameters.system.directory = std::filesystem::path(file).parent_path().string();
     parameters.geometry.set_file(geometry_file(statements), std::filesystem::path(file).parent_path().string());

@@ -117,7 +117,7 @@ namespace Squeal
     for (const Factor &f : factors)
       motions[f.factor] = model.motions(*f.factor);
 
-    // New columns of (A T)ᵀ S⁻¹ A' T; its new rows are those of the transposed problem
+    // New columns of (A T)ᵀ S⁻¹ A' T; its new rows follow from the transposed problem
     const MultiVector &T     = model.basis();
     const MultiVector  fresh = view(T, old, r - old);
     for (Sparse &part : sparse)

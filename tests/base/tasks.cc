@@ -51,7 +51,7 @@ namespace
 TEST(Tasks, AreDoneAtATime)
 {
   set_task_threads(2);
-  // Each task waits for the other
+  // Each of the two tasks waits until the other has begun
   std::atomic<int> n_begun = 0;
   run_tasks(2, [&](const int) {
     ++n_begun;

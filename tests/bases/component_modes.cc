@@ -274,7 +274,7 @@ TEST(RigidBody, AFreeDiscHasSixMotionsAloneAndThreeCoupled)
   EXPECT_GT(shift, 0.);
   EXPECT_LT(shift, omega);
   options.shift = shift * shift;
-  // Sliding faces fix the height, which leaves only in-plane motions.
+  // Sliding faces cannot move along the axis, so that only in-plane motions remain
   for (const auto &[boundary, n] : {std::make_pair(ContactBoundary::free, 6), {ContactBoundary::sliding, 3}})
     {
       const auto modes = modes_below(s, 3000., Component::disc, boundary, options);

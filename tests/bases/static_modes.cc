@@ -76,7 +76,7 @@ TEST_P(StaticModesOf, AttachmentModesAreStaticResponses)
 {
   ASSERT_EQ(m.modes.normal_attachment().n_columns(), n_c);
   const auto f = [](const SparseMatrix &P) { return transpose_times(P, unit_vectors(P.rows())); };
-  // A held disc with trilinear elements leaves only rounding errors
+  // With a held disc and trilinear elements, only rounding errors remain
   const bool is_simple = GetParam().slope == 0. && GetParam().element == Element::trilinear && GetParam().n_free == 0;
   EXPECT_LT(residual(m, m.modes.normal_attachment(), f(*P.normal)), is_simple ? 1e-11 : 1e-9);
   EXPECT_LT(residual(m, m.modes.tangential_attachment(), f(*P.tangential)), 1e-9);

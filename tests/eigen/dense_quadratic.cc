@@ -26,7 +26,7 @@ namespace
     return DenseMatrix::NullaryExpr(n, n, [&] { return entry(generator); });
   }
 
-  /// A pencil like that of a reduced model: diagonal stiffness over a wide range, nonsymmetric coupling, low-rank damping.
+  /// A pencil with the properties of a reduced model: diagonal stiffness over a wide range, nonsymmetric coupling, low-rank damping.
   struct Pencil
   {
     explicit Pencil(const int n)

@@ -12,7 +12,7 @@ namespace
 {
   constexpr double mu = 0.4;
 
-  /// Expects products of projected residuals to equal those of full order, with and without friction.
+  /// Expects projected residuals to have the same products as full-order residuals, with and without friction.
   void expect_agreement(const CoupledSystem &system, const double shift, const ContactDamping &damping, const MultiVector &real)
   {
     const UpdatedInverse inverse(shift > 0. ? undamped(system) : system, shift, FactorizationLibrary::automatic);

@@ -50,7 +50,7 @@ namespace Scenes
     return parameters;
   }
 
-  /// Two stacked blocks of 8 hexahedra each; @p names: names of volumes and surfaces, for example those below.
+  /// Two stacked blocks of 8 hexahedra each; @p names: script lines that name volumes and surfaces.
   inline std::string blocks(const std::string &names, const std::string &before_names = "")
   {
     return R"(

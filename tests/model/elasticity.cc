@@ -271,7 +271,8 @@ TEST(Assembly, CurvedElementsHaveTheVolumeOfTheAnnulus)
 
 TEST_P(Elasticity, VolumesOfABodyHaveTermsOfTheirOwn)
 {
-  // The upper half of a pin is a separate volume: the same material changes nothing, a different one has its own parameters
+  // The upper half of a pin is a separate volume: with the same material, results do not change; a different material has its own
+  // parameters
   Mesh halves = mesh;
   halves.volume_names.push_back("pin_top_1_backplate");
   halves.body_of_volume.push_back(1);

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Parameters far from the default: the spectrum is right and complete, or the run stops early with a reason.
+"""Extreme parameters: the spectrum is correct and complete, or the run stops early with a reason.
 
 References are eigenvalues of the exported matrices, refined with a 64-bit mantissa by scripts/extremes/oracle.py.
 """

@@ -29,7 +29,7 @@ class OwnGeometry(ProgramTest):
         of Gmsh."""
         self.write("part.geo", 'x = 1;\nSystemCall "touch trace";')
         self.geometry_refused(["starts a program", "part.geo, line 2", "Allow shell commands"], 'Include "part.geo";')
-        # The name is that of a mesh, the content a script
+        # The file is named like a mesh, but contains a script
         self.write("script.msh", 'SystemCall "touch trace";')
         self.dry_run_refused(["starts a program"], "Geometry/File=script.msh")
         self.assertFalse((self.folder / "trace").exists())

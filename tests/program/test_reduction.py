@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The study of reduced bases: sizes, errors, verdicts, and rejected parameters."""
+"""Study of reduced bases: sizes, errors, verdicts, and rejected parameters."""
 
 import math
 import unittest

@@ -145,7 +145,7 @@ SHAPES = ("Output/Mode shapes=unstable", "Output/Component mode shapes=true", "O
 
 
 class Repetition(ProgramTest):
-    """The parameter file of a run repeats it, for any file names, and with closed standard streams."""
+    """A run can be repeated from its parameter file, with any file names, and with closed standard streams."""
 
     BAND = ("--set", "Band/Maximum frequency=1000")
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Folders of the code include only from their own row of the table in doc/structure.md or from rows above."""
+"""Checks includes: a folder of the code includes only from its own row of the table in doc/structure.md, or from rows
+above."""
 
 import pathlib
 import re

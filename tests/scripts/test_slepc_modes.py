@@ -12,7 +12,7 @@ import two_blocks
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "scripts"))
 
-import slepc_modes  # also adds the path of the module squeal
+import slepc_modes  # also adds the folder of the module squeal to the path
 from squeal import exported_matrices
 
 BAND = 20000.0

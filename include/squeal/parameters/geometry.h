@@ -87,7 +87,7 @@ namespace Squeal
     void check() const;
   };
 
-  /// Nodes of a pin face filled with three blocks of k × k elements: 3 k (k + 1) + 1.
+  /// Number of nodes of a pin face that is filled with three blocks of k × k elements: 3 k (k + 1) + 1.
   inline unsigned int nodes_of_pin_face(const unsigned int k)
   {
     return 3 * k * (k + 1) + 1;

@@ -131,7 +131,7 @@ namespace Squeal
   /// Modal damping (section `Damping`). Material damping is part of MaterialParameters, contact damping of OperationParameters.
   struct DampingParameters
   {
-    std::vector<ModalDampingRatio> modal_ratios; ///< ascending frequencies; empty: none
+    std::vector<ModalDampingRatio> modal_ratios; ///< in order of ascending frequency; empty: no modal damping
 
     /// ζ of a mode of @p frequency [Hz]: linear between the entries, constant beyond the first and last; 0 if there are none.
     double modal_ratio(double frequency) const;

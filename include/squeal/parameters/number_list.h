@@ -23,7 +23,7 @@ namespace Squeal
    */
   std::vector<std::string> split_numbers(const std::string &list, const std::string &what, const std::string &where);
 
-  /// Hint for an error message: "; write a decimal point: 0.4" if a number seems to have a decimal comma, else nothing.
+  /// Hint for an error message: "; write a decimal point: 0.4" if a number seems to have a decimal comma; empty otherwise.
   std::string decimal_point_hint(const std::string &text);
 
   /// Throws ParameterError if @p parameter, "Section/Name", contains a number twice.

@@ -56,8 +56,8 @@ namespace Squeal
 
     /**
      * Reads a parameter file, then applies overrides "Section/Name=value" and the settings of Accuracy, then checks all values and
-     * combinations. Throws FileError, or ParameterError, with the nearest known name for an unknown name and the accepted values for a
-     * rejected one.
+     * combinations. Throws FileError or ParameterError; the message gives the nearest known name for an unknown name, and the accepted
+     * values for a rejected value.
      */
     static Parameters read(const std::string &file, const std::vector<std::string> &overrides);
 

@@ -26,7 +26,7 @@ namespace Squeal
   {
     double frequency    = 0.; ///< [Hz]; 0: use the numbers
     int    disc         = 0;  ///< free modes of all pins together
-    int    pins_free    = 0;  ///< of all pins together
+    int    pins_free    = 0;  ///< free modes of all pins together
     int    pins_sliding = 0;  ///< sliding modes of all pins together
 
     /// "10000 Hz" or "80/120/60".

@@ -60,7 +60,7 @@ namespace Squeal
     ValueRange   map_values                = {100., 10000., 11}; ///< values of the map parameter [N] or [rad/s]
     unsigned int map_friction_coefficients = 19;
 
-    std::string parameter, second_parameter; ///< of a system file: "name, first, last, number"; empty: mu, and no second one
+    std::string parameter, second_parameter; ///< parameters of a system file: "name, first, last, number"; empty: mu, and no map
 
     /// Friction coefficients for the complex plane.
     const std::vector<double> &complex_plane() const

@@ -35,7 +35,7 @@ namespace Squeal
    *
    * Terms with the same power of λ have the same rows up to their coefficients: at an operating point y = C c and z = D d, where C and D
    * combine blocks in the same way for all modes. The bracket B is therefore reduced to Dᵀ B C first, which costs no more than reading B.
-   * The remaining cancellation error is that of the bracket, about 10⁻¹⁵ of φᴴKφ: errors |δλ|/|λ| are reliable well below 10⁻¹².
+   * The remaining cancellation error, in the bracket, is about 10⁻¹⁵ of φᴴKφ, so that estimates |δλ|/|λ| well below 10⁻¹² are reliable.
    */
   class ProjectedResiduals
   {
@@ -49,14 +49,14 @@ namespace Squeal
     ProjectedResiduals(const CoupledSystem &system, const UpdatedInverse &inverse, double shift, const ParameterValues &values);
 
     /**
-     * Replaces products by those of a random sketch of the residuals (Balabanov and Nouy, Adv. Comput. Math. 45, 2019): with s = 128 random
+     * Approximates products by a random sketch of the residuals (Balabanov and Nouy, Adv. Comput. Math. 45, 2019): with s = 128 random
      * vectors V of covariance S⁻¹ / s,
      *
      *   Lᵀ S⁻¹ R ≈ (VᵀL)ᵀ (VᵀR),   VᵀR = Z y,   Z = VᵀW − VᵀST (TᵀST)⁻¹ TᵀW.
      *
      * Z has s rows in place of the columns of W, and a larger basis requires no further solves. principal_responses() uses another s
-     * independent vectors. The standard deviation of a norm is 6 % of it, that of a product 9 % of the product of the norms. Call before
-     * extend().
+     * independent vectors. The relative standard deviation is 6 % for a norm; for a product, it is 9 % of the product of the norms. Call
+     * before extend().
      *
      * @return false if the library of the factor cannot draw V: products remain exact
      */

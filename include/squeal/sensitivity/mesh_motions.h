@@ -34,7 +34,7 @@ namespace Squeal
    *   angle of a pin       ρ π/180 e_z × x
    *
    * In the disc, the last three motions vary linearly from the face of the pin to zero on the opposite face. The derivative of an
-   * eigenvalue of the continuum does not depend on the motion of interior nodes; that of a mesh depends on it by its discretisation error.
+   * eigenvalue of the continuum does not depend on the motion of interior nodes; on a mesh, the difference is a discretisation error.
    *
    * Empty if the mesh does not match these parameters, or if pins touch each other or a rim.
    */

@@ -88,7 +88,7 @@ def growing_families(all_charts):
 
 
 def partners_of(all_charts, name):
-    """Labels of the branches with which those of a family coalesce."""
+    """Labels of the branches that coalesce with branches of a family."""
     return {chart.labels[threshold.partner] for chart in all_charts for threshold in chart.thresholds
             if threshold.partner in chart.labels and charts.family(chart.labels[threshold.branch]) == name}
 

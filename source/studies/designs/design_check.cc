@@ -48,7 +48,7 @@ namespace Squeal
         }
     }
 
-    /// Reason why a variable has no effect: that of its first parameter if none is used; empty otherwise.
+    /// Reason why a variable has no effect: the reason for its first parameter if none of its parameters has an effect; empty otherwise.
     std::string why_all_unused(const std::string &variable, const Parameters &design, const Parameters &as_written)
     {
       std::string reason;

@@ -91,7 +91,7 @@ namespace Squeal
       return result;
     }
 
-    /// Solves one design, or several on a common mesh one after the other with a growing basis, as a worker process of the study.
+    /// Solves one design as a worker process of the study, or several designs on a common mesh in turn, with a growing basis.
     void solve_part(Run &run, const DesignWork &work, const ReferenceModes &reference, const DesignStore &store)
     {
       const auto              alone = [&](const int design) { return solve_here(run, work, design, reference); };

@@ -81,7 +81,7 @@ namespace Squeal
   {
     ReferenceModel result;
     result.parameters = run.parameters;
-    for (const StepRecord &step : run.progress.steps()) // steps so far: those of the mesh
+    for (const StepRecord &step : run.progress.steps()) // steps so far, which belong to the mesh
       {
         result.costs.mesh.seconds += step.seconds;
         result.costs.mesh.cpu_seconds += step.cpu_seconds;

@@ -44,14 +44,14 @@ namespace Squeal
           run.progress.note(text("  continuing an interrupted search: ", n_known, " designs are finished"));
       }
 
-      /// Objective at a known point.
+      /// Objective at a point that has been evaluated.
       std::optional<double> value(const SearchPoint &point) const
       {
         const auto place = std::find(plan.designs.begin(), plan.designs.end(), values_at(point));
         return place == plan.designs.end() ? std::nullopt : std::optional(objective(results[place - plan.designs.begin()], run.parameters));
       }
 
-      /// Solves those of some points that are not known, concurrently; false if this would exceed the number of evaluations.
+      /// Solves the points that have not been evaluated, concurrently; false if this would exceed the number of evaluations.
       bool solve(const std::vector<SearchPoint> &points)
       {
         DesignWork work{plan, {}};

@@ -18,7 +18,7 @@ namespace Squeal
     /// Maximum number of extensions of the basis.
     constexpr int most_growths = 6;
 
-    /// Eigenvalues that are differentiated together, starting with that of the requested mode.
+    /// Eigenvalues that are differentiated together; the first one belongs to the requested mode.
     struct ModeGroup
     {
       std::vector<int> modes; ///< indices of modes of a point

@@ -172,7 +172,7 @@ namespace Squeal
     /// Maximum number of rows of the ranking on the screen.
     constexpr std::size_t n_shown_parameters = 12;
 
-    /// Friction coefficients of the sweep for thresholds, including that of the operation.
+    /// Friction coefficients of the sweep for thresholds, including Operation/Friction coefficient.
     SweepLine line_of(const Parameters &parameters)
     {
       SweepLine    line{SweepLine::Kind::main, parameters.operation, 0., {}};

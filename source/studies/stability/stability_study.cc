@@ -230,7 +230,7 @@ namespace Squeal
     const OperationParameters &operation  = parameters.operation;
     const double               omega_max  = circular_frequency(parameters.discretization.maximum_frequency);
 
-    // Process 0 keeps the whole mesh to write it; the others need only its names, because the model has their parts
+    // Process 0 keeps the whole mesh to write it; other processes need only its names, because the model has their parts
     if (Mesh names; !run.is_root)
       {
         names.volume_names = scene.mesh.volume_names;

@@ -47,7 +47,7 @@ namespace Squeal
       return std::sqrt(material.young_modulus / material.density);
     }
 
-    /// Volumes, those of the disc first; volumes with equal height, contact area, volume and material are combined.
+    /// Volumes, starting with the disc; volumes with equal height, contact area, volume and material are combined.
     std::vector<Body> summarise_bodies(const Mesh &mesh, const MaterialParameters &materials)
     {
       std::vector<Body>                     bodies(mesh.volume_names.size());

@@ -41,7 +41,7 @@ namespace Squeal
     struct CountAt
     {
       double       friction_coefficient;
-      int          n_found; ///< number in the rectangle found by the sweep
+      int          n_found; ///< number of modes in the rectangle, found by the sweep
       ContourCount count;
       bool         has_real_modes; ///< the system has a definite part
     };
@@ -177,7 +177,7 @@ namespace Squeal
       run.progress.finish(text(n_written, " leading modes"));
     }
 
-    /// Throws ParameterError if nothing depends on the parameter of the map.
+    /// Throws ParameterError if no result depends on the parameter of the map.
     void check_map(const Parameters &parameters)
     {
       const MapParameter varied = parameters.sweep.map_parameter;
@@ -284,7 +284,7 @@ namespace Squeal
     }
   } // namespace
 
-  /// Solves the points of a plan, one contact set after the other, and writes the results.
+  /// Solves the points of a plan, one contact set at a time, and writes the results.
   static void run_plan(const SweepPlan &plan, Run &run)
   {
     const double                         omega_max = circular_frequency(run.parameters.discretization.maximum_frequency);

@@ -88,7 +88,7 @@ namespace Squeal
     DesignOutcome            outcome = DesignOutcome::failed;
     std::string              reason; ///< reason for rejection or failure
 
-    int    n_dofs = 0, n_modes = 0, n_counted = 0; ///< modes in the band at the smallest friction coefficient; real modes by inertia
+    int    n_dofs = 0, n_modes = 0, n_counted = 0; ///< modes in the band at the smallest friction coefficient, and real modes by inertia
     bool   is_complete = false;                    ///< both numbers agree, and the count is as expected at every friction coefficient
     int    n_unstable = 0, n_undecided = 0;        ///< at the largest friction coefficient
     int    n_growing     = 0;                      ///< number of modes that grow at any friction coefficient

@@ -23,7 +23,7 @@ namespace Squeal
     /// Opens the checkpoint in a worker process of the study.
     explicit Checkpoint(const std::filesystem::path &folder);
 
-    /// The process that created it removes the folder if nothing has been stored.
+    /// Removes the folder if nothing has been stored; only the object that created the folder does so.
     ~Checkpoint();
 
     Checkpoint(const Checkpoint &)            = delete;
@@ -90,7 +90,7 @@ namespace Squeal
                           const std::function<void(const DesignResult &)> &report,
                           const std::vector<std::string>                  &arguments);
 
-  /// Designs, and the numbers of those to be solved by a run.
+  /// Designs, and the numbers of the designs that a run solves.
   struct DesignWork
   {
     DesignPlan       plan;

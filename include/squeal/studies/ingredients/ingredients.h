@@ -89,7 +89,7 @@ namespace Squeal
     /// Current value and trial value of the feature, in a few words.
     std::function<std::string(const Parameters &)> here, tried;
 
-    /// True if the model already has the trial value, so that there is nothing to try.
+    /// True if the model already has the trial value, so that the change would have no effect.
     std::function<bool(const Parameters &)> is_present;
 
     /// Makes the change in the parameters or, if no parameter can express it, in other members of the variation.

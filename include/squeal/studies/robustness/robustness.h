@@ -17,7 +17,7 @@ namespace Squeal
     std::string  pin; ///< volume with this value; empty: all volumes of the parameter
     Distribution distribution;
     bool         is_relative = false;                                ///< the distribution is in per cent of the nominal value
-    const char  *where       = "parameter Robustness/Distributions"; ///< parameter for messages
+    const char  *where       = "parameter Robustness/Distributions"; ///< parameter that messages name
   };
 
   /// The samples of a study.
@@ -26,7 +26,7 @@ namespace Squeal
     std::vector<UncertainNumber> numbers;
     DenseMatrix                  values;        ///< one row for each sample
     int                          n_independent; ///< the first samples, which are independent and used for probabilities
-    bool                         has_indices;   ///< the samples are those of saltelli_samples()
+    bool                         has_indices;   ///< the samples are those of saltelli_samples(), for Sobol' indices
     int n_followed = 0; ///< number of samples followed over the friction coefficient: the first of the independent samples
 
     int n() const

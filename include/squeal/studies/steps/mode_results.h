@@ -47,8 +47,8 @@ namespace Squeal
   /// `complex_modes.csv`, `real_modes.csv` and `component_modes.csv`.
   void write_mode_shapes(const FrictionlessModes &frictionless, const FrictionModes &friction, const PowerBalances &balances, Run &run);
 
-  /// Writes mode shapes of a system file at its points, with the same names of files and fields: one vertex for each point; `component` is
-  /// the index of its group of dofs from 0. Writes nothing without points.
+  /// Writes mode shapes of a system file at its points, with the same names of files and fields as for a mesh: one vertex for each point;
+  /// `component` is the index of its group of dofs, from 0. Writes no files if the system has no points.
   void write_mode_shapes(const SystemFile &file, const FrictionlessModes &frictionless, const FrictionModes &friction, Run &run);
 
   /// Writes `sliding_pins.csv` and `sliding_certificate.csv`, and a note on open pins and uniqueness.

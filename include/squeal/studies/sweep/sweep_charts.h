@@ -13,21 +13,21 @@ namespace Squeal
   {
     enum class Kind
     {
-      main,                ///< given operation
-      without_dissipation, ///< given operation without radial dissipation
+      main,                ///< operation in the parameter file
+      without_dissipation, ///< operation in the parameter file, without radial dissipation
       map                  ///< at another load or speed
     };
 
     Kind                kind;
     OperationParameters operation;             ///< all but the friction coefficient
     double              value;                 ///< for a line of the map: load, speed or second parameter
-    std::vector<double> friction_coefficients; ///< or values of the varied parameter of a system file
+    std::vector<double> friction_coefficients; ///< friction coefficients, or values of the varied parameter of a system file
     ParameterValues     values = {};           ///< values of other parameters of the system
 
     OperationParameters at(double friction_coefficient) const;
   };
 
-  /// Operating points with the same closed contact nodes: one coupled system, one basis.
+  /// Operating points with the same closed contact nodes, which share one coupled system and one basis.
   struct ContactRegime
   {
     std::size_t                 number; ///< counted from one
@@ -70,7 +70,7 @@ namespace Squeal
       return state_at(0, friction_coefficient).closed;
     }
 
-    /// A point of a line with its parameter values, and the damping of the contact nodes that are closed in a regime.
+    /// A point of a line with its parameter values, and the damping of the contact nodes in @p closed.
     OperatingPoint point(int line, double friction_coefficient, const std::vector<unsigned int> &closed) const;
   };
 
@@ -159,7 +159,7 @@ namespace Squeal
   /// Indices among n friction coefficients for training a basis: the last value, then the first, the middle and the quarters.
   std::vector<int> ends_and_quarters(int n);
 
-  /// Point of a regime with the largest contact damping.
+  /// Point with the largest contact damping.
   const OperatingPoint &most_damped(const ContactRegime &regime);
 
   /// Evaluates all points of the contact set to the requested tolerance, as a step of the run.
