@@ -256,7 +256,7 @@ namespace Squeal
                     const bool               transposed)
   {
     MultiVector                                                result(X.map(), X.n_columns());
-    std::vector<std::pair<const LowRankFactor *, DenseMatrix>> onto; // product of each factor, reused by all of its terms
+    std::vector<std::pair<const LowRankFactor *, DenseMatrix>> onto; // Y summed over the terms of each target factor
     for (const Term *term : terms_of(terms, values, power))
       {
         const double theta = term->coefficient.at(values);

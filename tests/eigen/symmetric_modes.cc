@@ -203,7 +203,7 @@ TEST(SymmetricModes, DoNotDependOnThreads)
 
 TEST(SymmetricModes, ModesOnTheLimitAreCountedAgain)
 {
-  // Twelve modes at the end of the band, and a thirteenth just above it, which the count includes because of rounding
+  // Twelve modes at the end of the band, and a thirteenth just above it, which the given count includes
   const auto            K = diagonal(rows(400), [](const int i) { return i < 12 ? 1. : i == 12 ? 1. + 5e-9 : 5. + i; });
   const auto            M = diagonal(K->rows(), [](int) { return 1.; });
   SymmetricModesOptions options;

@@ -9,7 +9,7 @@ import scipy.io
 import scipy.sparse as sparse
 import scipy.sparse.linalg
 
-# Initial travel of the backplates, negative so that d >= 0 even if the disc recedes [m]
+# Travel from which d is measured, negative so that d >= 0 even if the disc recedes [m]
 START = -1e-4
 
 

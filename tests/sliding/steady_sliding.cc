@@ -202,7 +202,7 @@ TEST(SteadySliding, LoadsOfSinglePinsGapsAndDisplacements)
   for (int pin = 0; pin < 4; ++pin)
     EXPECT_NEAR(pins[pin].load, loads[pin], 1e-8 * loads[pin]);
 
-  // A shorter pin opens
+  // A pin that is too short has no contact
   sliding                      = steady();
   sliding.gaps                 = {{s.pin_names[0], 1e-3}};
   const SlidingState short_pin = s.solve(sliding);

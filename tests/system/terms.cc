@@ -14,7 +14,8 @@ using namespace Squeal::Testing;
 
 namespace
 {
-  /// Terms with power @p of λ: θ = 2 a b² with a symmetric matrix, −3 a with a skew matrix, and low-rank terms with and without weights.
+  /// Terms with the first power of λ, θ = 2 a b² with a symmetric matrix, −3 a with a skew one, and low-rank terms with and without
+  /// weights; and a term with another power.
   struct Terms
   {
     RowMap                               map = rows(4), short_map = rows(2);
@@ -31,7 +32,7 @@ namespace
                                                    low_rank_term("of low rank", 1, {}, left, right), low_rank_term("weighted", 1, {0.5, {}}, left, right, "d"),
                                                    sparse_term("of another power", 2, {}, S)};
 
-    /// Expected value of the sum of the terms.
+    /// Expected sum of the terms with the first power of λ.
     DenseMatrix expected() const
     {
       DenseMatrix weighted = to_dense(*R);

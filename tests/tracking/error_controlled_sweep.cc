@@ -169,7 +169,7 @@ TEST(ErrorControlledSweep, StopsAtWhatItProved)
   const auto result     = sweep(model, points, options);
   EXPECT_NE(result.why_stopped.find("the basis would exceed " + std::to_string(options.maximum_basis) + " vectors"), std::string::npos);
   EXPECT_LE(model.size(), options.maximum_basis);
-  ASSERT_TRUE(result.points.front().has_value()); // the reduced model contains the real modes without friction
+  ASSERT_TRUE(result.points.front().has_value()); // exact without friction: the basis contains the real modes
   EXPECT_FALSE(result.points.back().has_value());
   EXPECT_LE(result.worst_error, options.tolerance);
 

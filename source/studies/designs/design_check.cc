@@ -48,7 +48,7 @@ namespace Squeal
         }
     }
 
-    /// Reason why a variable has no effect: the reason for its first parameter if none of its parameters has an effect; empty otherwise.
+    /// Reason why no parameter of a variable has an effect; empty if one has.
     std::string why_all_unused(const std::string &variable, const Parameters &design, const Parameters &as_written)
     {
       std::string reason;

@@ -149,8 +149,8 @@ namespace Squeal
       result.n_undecided           = model.n_of(last, Verdict::undecided);
     }
 
-    /// Compares the number of modes in the band at the first friction coefficient with the number of real modes counted by inertia,
-    /// including rigid-body modes.
+    /// Compares the number of modes in the band at the first friction coefficient with the number of real modes by inertia; @p n_counted
+    /// includes rigid-body modes.
     void compare_counts(const SweepModel &model, const SweepChart &sweep, const int n_counted, DesignResult &result)
     {
       const ChartCount &first = sweep.chart.counts.front();

@@ -6,7 +6,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Factor of the end of the band, in addition to one, up to which a basis with upper modes has real modes.
+    /// Relative distance beyond the end of the band up to which a basis with upper modes has real modes.
     constexpr double upper_modes = 0.5;
     /// End of the narrower band, as a fraction of the band in the parameters.
     constexpr double shorter_band = 0.5;

@@ -274,7 +274,7 @@ namespace Squeal
         {
           const auto slash = path.find('/');
           if (slash == std::string::npos || unused.count(path) > 0)
-            continue; // `stability` is the default study
+            continue; // the study is the default one; unused parameters have no effect
           if (path.substr(0, slash) != section)
             {
               end_section();

@@ -37,7 +37,7 @@ namespace Squeal
       {
         for (const DesignVariable &variable : variables)
           plan.names.push_back(variable.name);
-        // Load all stored results at once: they are needed in the order of the interrupted search
+        // Count all stored results at once: the search repeats its rounds in sequence
         std::vector<int> designs(run.parameters.search.n_evaluations);
         std::iota(designs.begin(), designs.end(), 1);
         if (const std::size_t n_known = store.n_known(designs); n_known > 0)

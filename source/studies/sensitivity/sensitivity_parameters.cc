@@ -175,7 +175,7 @@ namespace Squeal
     for (const MountParameter &mount : mount_parameters(materials))
       result.push_back({mount.path, "", mount.unit, mount.value, {{mount.name, {1.}}}, {}});
 
-    // Contact stiffnesses are parameters only without steady sliding, where contact damping would depend on them as well
+    // Omit contact stiffnesses in steady sliding with contact damping, which would depend on them as well
     const auto &pairs = parameters.contact.pairs;
     for (unsigned int pair = 0; pair < pairs.size(); ++pair)
       if (pairs[pair].normal_stiffness > 0. && !(parameters.needs_steady_sliding() && parameters.has_contact_damping()))

@@ -133,7 +133,7 @@ namespace Squeal
     const auto       second = run.parameters.sweep.second_varied_parameter();
     SystemFile       file   = read_system(run);
     const NamedRange varied = swept_parameter(file, run);
-    // Check the ends of the other range as well, before the computation
+    // Check the ends of the second range as well, before the computation
     std::map<std::string, double> given = run.parameters.system.values;
     if (second)
       for (const double value : {second->values.last, second->values.first})

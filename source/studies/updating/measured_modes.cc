@@ -78,7 +78,7 @@ namespace Squeal
           throw ParameterError("missing column " + in_quotes(known_columns[i]), file.where_names, "the columns are " + known);
     }
 
-    /// Smallest relative deviation; smaller ones are below the resolution of numbers.
+    /// Smallest accepted deviation, relative to the frequency; smaller ones are rounding errors of the frequency.
     constexpr double smallest_deviation = 1e-12;
 
     MeasuredMode mode_of(const Row &row)
