@@ -250,8 +250,7 @@ TEST_P(ReducedBases, StaticallyCompleteBasesGiveStaticResponsesExactly)
   for (const std::string kind : {"free", "fixed", "mixed", "free with r.a.m.", "real"})
     EXPECT_GT(missing(kind), 1e-2) << kind;
 
-  // Loads f for which the static response of the bodies is a mode, and the resulting contact forces: (K_c − μ A V_K) u = T_cᵀf − μ/2 A P_n
-  // f
+  // Loads f whose static response without contact is a mode; with contact, (K_c − μ A V_K) u = T_cᵀf − μ/2 A P_n f
   const MultiVector f = *b.s.system.stiffness * view(*b.components.at(BasisSource::disc_free), 0, 4);
   for (const auto &[kind, friction] :
        {std::make_pair(std::string("free"), 0.), {"mixed", 0.}, {"free + t.a.m.", mu}, {"mixed + t.a.m.", mu}, {"free with r.a.m.", mu}})

@@ -122,6 +122,6 @@ TEST(Travel, FrictionThatCarriesTheLoadIsRefused)
   const Mesh    mesh = mapped(unequal_pins(), [](const Point3 &p) { return Point3{{p[0], p[1], p[2] + 0.1 * std::atan2(p[1], p[0])}}; });
   const Pressed weak(mesh, 0.4), strong(mesh, 5.), reversed(mesh, 5., Rotation::negative);
   EXPECT_NO_THROW(weak.shares());
-  for (const Pressed *s : {&strong, &reversed}) // locking occurs for one of the two directions
+  for (const Pressed *s : {&strong, &reversed}) // locks the pins of one side or of the other
     expect_refusal([&] { s->shares(); }, {"Operation/Friction coefficient"});
 }

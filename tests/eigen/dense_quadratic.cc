@@ -194,7 +194,7 @@ TEST(DenseQuadratic, ABandThatIsNotApartIsNotSeparated)
   // Not available without a gap above the band, or for an unbounded band
   EXPECT_FALSE(band_subspaces(stiffness(0.) + noise, squares_of(stiffness(0.)), end).has_value());
   EXPECT_FALSE(band_subspaces(apart + noise, squares, std::numeric_limits<double>::infinity()).has_value());
-  // A mode above the band that coupling moves into it or makes real
+  // A mode that should lie above the band, but lies in it or is real
   for (const double square : {100., -1e4})
     {
       DenseMatrix A = apart + noise;

@@ -82,7 +82,7 @@ TEST_P(Sparse, SumsOfDifferentPatterns)
 
 TEST_P(Sparse, ProductsWithAnyNumberOfColumns)
 {
-  // Empty rows and rows longer than the unrolled loop; few rows with fewer or more entries than the block length of vectors
+  // Empty rows and rows longer than the unrolled loop; wide matrices with fewer or more entries than the length of their vectors
   for (const auto &[n_rows, n_columns, most_entries] : {std::array<int, 3>{{90, 70, 30}}, {{5, 400, 2}}, {{5, 400, 150}}})
     {
       const int  m = n_columns, period = most_entries;
