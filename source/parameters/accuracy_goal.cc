@@ -25,7 +25,7 @@ namespace Squeal
       unsigned int blocks; ///< k, elements along a block edge of a pin face
       unsigned int rings;
       double       grading;
-      unsigned int pin_layers; ///< for pins with a height of up to 0.6 times their diameter
+      unsigned int pin_layers; ///< layers of pins with a height of up to 0.6 times their diameter
       unsigned int disc_layers;
       double       elements_per_wave; ///< elements per wavelength in the disc
     };

@@ -233,7 +233,7 @@ TEST_P(Contact, UpdatedInverseEqualsSparseFactors)
               EXPECT_LT(difference(X, Y), 1e-10) << "shift " << shift << ", mu " << mu;
             }
         }
-      // The frictionless inverse is independent of μ; attachment modes S X = A
+      // The frictionless inverse is independent of μ; the attachment modes X solve S X = A
       const Matrix S = dynamic_stiffness(with_friction(s.coupled, 0.), shift);
       EXPECT_LT(difference(*S * inverse.solve_frictionless(B), B), 1e-10);
       const DenseMatrix forces = replicate(s.coupled.friction_forces->columns(0, s.coupled.n_contact()));

@@ -448,7 +448,7 @@ TEST(Branches, ManyModes)
   struct Spectrum
   {
     std::string         name;
-    std::vector<double> squares, weights, damping; ///< for each mode; weights are the entries in U and V
+    std::vector<double> squares, weights, damping; ///< values for each mode; weights are the entries in U and V
     double              band, last;
   };
   std::mt19937                     generator(11);

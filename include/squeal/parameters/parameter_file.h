@@ -11,7 +11,7 @@ namespace Squeal
   struct ParameterStatement
   {
     std::string path;  ///< "Section/Name"; a section ends with "/"
-    std::string value; ///< without surrounding blanks; empty for a section
+    std::string value; ///< value without surrounding blanks; empty for a section
     std::string where; ///< file and line, for messages
 
     bool is_section() const;

@@ -52,7 +52,7 @@ namespace Squeal
   /// Scatter of modes with uncertain parameters (section `Robustness`).
   struct RobustnessParameters
   {
-    std::string         distributions, correlations; ///< not yet parsed
+    std::string         distributions, correlations; ///< texts that are not yet parsed
     unsigned int        n_samples   = 2000;          ///< independent samples
     unsigned int        seed        = 1;
     double              tolerance   = 1e-4; ///< limit of the estimated |δλ| / |λ| at every sample [-]

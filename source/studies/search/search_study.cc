@@ -75,7 +75,7 @@ namespace Squeal
       const std::vector<DesignVariable> variables;
       const DesignStore                 store;
       DesignPlan                        plan;
-      std::vector<DesignResult>         results; ///< in the order of the design numbers
+      std::vector<DesignResult>         results; ///< results in the order of the design numbers
 
     private:
       /// Values of the variables at a point.

@@ -114,7 +114,7 @@ namespace Squeal
     const ConvergedMode *reference;
     int                  number;           ///< index of the mode on the mesh; -1: no counterpart
     double               overlap;          ///< overlap of both shapes [-]
-    bool                 in_cluster;       ///< one of several modes that mix from mesh to mesh
+    bool                 in_cluster;       ///< true for one of several modes that mix from mesh to mesh
     double               frequency;        ///< [Hz]
     double               divergence;       ///< [-]
     ErrorKinds           frequency_error;  ///< relative error [-]
@@ -129,7 +129,7 @@ namespace Squeal
     std::vector<ModeErrors> modes;
     ErrorKinds              largest_frequency;  ///< [-]
     double                  rms_frequency;      ///< rms of the total errors [-]
-    ErrorKinds              largest_divergence; ///< for modes outside clusters [-]
+    ErrorKinds              largest_divergence; ///< largest errors of modes outside clusters [-]
     int                     n_in_cluster, n_lost;
     bool                    on_front = false; ///< Pareto-optimal: no faster method has a smaller largest frequency error
   };

@@ -90,7 +90,7 @@ namespace Squeal
 
     int    n_dofs = 0, n_modes = 0, n_counted = 0; ///< modes in the band at the smallest friction coefficient, and real modes by inertia
     bool   is_complete = false;                    ///< both numbers agree, and the count is as expected at every friction coefficient
-    int    n_unstable = 0, n_undecided = 0;        ///< at the largest friction coefficient
+    int    n_unstable = 0, n_undecided = 0;        ///< numbers of modes at the largest friction coefficient
     int    n_growing     = 0;                      ///< number of modes that grow at any friction coefficient
     double largest_error = 0., largest_residual = 0.;
     int    n_doubtful = 0; ///< number of steps in which modes were distinguished only by frequency

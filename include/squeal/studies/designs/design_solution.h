@@ -35,7 +35,7 @@ namespace Squeal
   {
     std::string name;               ///< empty if no reference mode is similar
     double      overlap    = 0.;    ///< overlap of both shapes [-]
-    bool        in_cluster = false; ///< one of several modes that mix between designs
+    bool        in_cluster = false; ///< true for one of several modes that mix between designs
   };
 
   /// Labels modes of a design: shapes are compared at the points of the reference, mapped to the bodies that both models have.

@@ -140,12 +140,12 @@ namespace Squeal
   /// Effect of a variant on all modes.
   struct Effect
   {
-    std::vector<ModeChange> modes;    ///< in the order of the reference, then modes that only the variant has
+    std::vector<ModeChange> modes;    ///< modes in the order of the reference, then modes that only the variant has
     double                  band_end; ///< end of the band of the variant [rad/s]
     int                     n_growing_real_reference, n_growing_real_variant;
 
-    LargestChange frequency() const;  ///< over the modes in the bands of both models [%]
-    LargestChange divergence() const; ///< over the same modes [percentage points]
+    LargestChange frequency() const;  ///< largest change over the modes in the bands of both models [%]
+    LargestChange divergence() const; ///< largest change over the same modes [percentage points]
 
     std::size_t n_unstable(bool in_variant) const;
     std::size_t n_lost() const; ///< number of reference modes without counterpart

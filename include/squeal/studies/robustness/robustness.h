@@ -104,7 +104,7 @@ namespace Squeal
   /// Onsets of the modes of a sample over the friction coefficient.
   struct FollowedSample
   {
-    std::vector<SquealOnset> onsets;       ///< one for each label and divergence rate in a contact set
+    std::vector<SquealOnset> onsets;       ///< one onset for each label and divergence rate in a contact set
     std::size_t              n_missed = 0; ///< number of friction coefficients that miss the tolerance
 
     /// First onset of modes with this label, or of any mode if the label is empty, at this divergence rate; null: none.
@@ -115,7 +115,7 @@ namespace Squeal
   struct SolvedSamples
   {
     std::vector<std::optional<Sample>> samples;  ///< empty for samples that miss the tolerance
-    std::vector<FollowedSample>        followed; ///< for the first samples
+    std::vector<FollowedSample>        followed; ///< onsets of the first samples
   };
 
   /// Creates the model of a contact set of samples.

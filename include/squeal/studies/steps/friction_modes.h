@@ -53,7 +53,7 @@ namespace Squeal
     const char           *component, *contact; ///< "disc" or "pins", "free" or "sliding"
     const ComponentModes *set;
     int                   number; ///< index in the set, from 0
-    ModeLabel             label;  ///< with the sign of a doublet
+    ModeLabel             label;  ///< label with the sign of a doublet
 
     double frequency() const; ///< [Hz]
   };

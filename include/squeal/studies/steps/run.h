@@ -34,7 +34,7 @@ namespace Squeal
     const Parameters &parameters;
     const MPI_Comm    communicator;
     Progress         &progress;
-    std::ostream     &screen; ///< for tables; a null stream buffer on all processes but one
+    std::ostream     &screen; ///< stream for tables; its buffer is null on all processes but one
     const bool        is_dry, is_root;
     const RunOptions  options;
   };

@@ -15,12 +15,12 @@ namespace Squeal
     {
       main,                ///< operation in the parameter file
       without_dissipation, ///< operation in the parameter file, without radial dissipation
-      map                  ///< at another load or speed
+      map                  ///< operation at another load or speed
     };
 
     Kind                kind;
-    OperationParameters operation;             ///< all but the friction coefficient
-    double              value;                 ///< for a line of the map: load, speed or second parameter
+    OperationParameters operation;             ///< operation; its friction coefficient is not used
+    double              value;                 ///< load, speed or second parameter of a line of the map
     std::vector<double> friction_coefficients; ///< friction coefficients, or values of the varied parameter of a system file
     ParameterValues     values = {};           ///< values of other parameters of the system
 

@@ -15,9 +15,9 @@ namespace Squeal
   /// State of the brake in which a mode is measured.
   enum class MeasuredState
   {
-    component, ///< of the free disc, or of pins with sliding contact
-    coupled,   ///< of the bodies in contact without friction and damping
-    complex    ///< at Operation/Friction coefficient
+    component, ///< measured on the free disc, or on pins with sliding contact
+    coupled,   ///< measured on bodies in contact, without friction and damping
+    complex    ///< measured at Operation/Friction coefficient
   };
 
   template <>
@@ -36,7 +36,7 @@ namespace Squeal
   struct MeasuredMode
   {
     MeasuredState           state;
-    std::string             label;         ///< with or without the sign of a doublet
+    std::string             label;         ///< label with or without the sign of a doublet
     std::string             member;        ///< "lowest", "highest", or a number >= 1; empty: the mean of all
     Measured                frequency;     ///< "lowest", "highest", or a number >= 1; empty: the mean of all modes with the label
     std::optional<Measured> damping_ratio; ///< ζ = −Re λ / |λ| [-]
@@ -80,7 +80,7 @@ namespace Squeal
   {
     double                frequency;                            ///< [Hz]
     double                damping_ratio;                        ///< [-]
-    std::vector<double>   frequency_rates, damping_ratio_rates; ///< per unit of each parameter
+    std::vector<double>   frequency_rates, damping_ratio_rates; ///< derivatives per unit of each parameter
     std::string           label;                                ///< label of the mode, or of the first of several modes
     std::optional<double> mac;                                  ///< MAC of the shapes at the sensors [-]
   };
