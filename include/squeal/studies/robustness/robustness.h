@@ -139,8 +139,8 @@ namespace Squeal
   /// Receives a contact set with its model and the samples known so far, when all samples of the set are solved.
   using KeepModel = std::function<void(std::size_t contact_set, const SweepModel &, const std::vector<std::optional<Sample>> &)>;
 
-  /// Solves all samples with one reduced model for each contact set, as steps of the run. Samples known from an interrupted run are taken
-  /// from the @p checkpoint, if there is one, and others stored there.
+  /// Solves all samples with one reduced model for each contact set, as steps of the run. If @p checkpoint is not null, it supplies the
+  /// samples that an interrupted run has stored, and stores the new ones.
   SolvedSamples solve_samples(const SampledSystems &systems,
                               int                   n_samples,
                               double                tolerance,
