@@ -130,8 +130,10 @@ TEST(ParameterUsage, OfEveryStudy)
                             "Steady sliding/Gaps"};
   const Paths undamped   = {"Operation/Load", "Operation/Rotation speed"};
   const Paths krylov     = {"Complex modes/Iteration", "Complex modes/Maximum"};
-  const Paths no_shapes  = {"Output/", "Complex modes/Iteration"};
-  const Paths reduced    = {"Output/", "Complex modes/"};
+  const Paths no_fields  = {"Output/Mode", "Output/Animation", "Output/Component", "Output/Real", "Output/Write matrices"};
+  const Paths no_system  = {"Output/Write system"};
+  const Paths no_shapes  = joined(no_fields, {"Complex modes/Iteration"});
+  const Paths reduced    = joined(no_fields, {"Complex modes/"});
   const Paths no_stability = {"Output/Write matrices", "Output/Component", "Output/Real"};
   const Paths no_map       = {"Sweep/First map", "Sweep/Last map", "Sweep/Number of map", "Sweep/Map friction"};
   const Paths no_sweep     = joined(no_map, {"Sweep/Compare", "Sweep/Mode", "Sweep/Complex", "Sweep/Count", "Sweep/Map parameter"});
@@ -152,10 +154,10 @@ TEST(ParameterUsage, OfEveryStudy)
      {no_sliding, {"Complex modes/Shift", "Complex modes/Tolerance", "Output/Animation"}}},
     {{"Output/Animation frames=0"}, {}, {no_sliding, undamped, krylov, {"Output/Animation periods", "Output/Animation growth"}}},
 
-    {{"Study=accuracy"}, {"Accuracy study/"}, {no_shapes, no_sliding, undamped, own_meshes}},
+    {{"Study=accuracy"}, {"Accuracy study/"}, {no_shapes, no_system, no_sliding, undamped, own_meshes}},
     {{"Study=accuracy", "Accuracy study/Bases=real", dissipation},
      {"Accuracy study/"},
-     {no_shapes, no_sliding, own_meshes, {"Complex modes/Maximum", "Accuracy study/Grown"}}},
+     {no_shapes, no_system, no_sliding, own_meshes, {"Complex modes/Maximum", "Accuracy study/Grown"}}},
 
     // The study varies contact state, dissipation, solver and rotation, so that these parameters are used
     {{"Study=ingredients"}, {"Ingredients/"}, {{"Output/"}}},
@@ -195,18 +197,18 @@ TEST(ParameterUsage, OfEveryStudy)
 
     {design,
      {"Designs/", "Sweep/"},
-     {reduced, no_rate, no_sweep, no_sliding, undamped, one_mu, {"Designs/Number", "Designs/Seed", "Designs/File"}}},
+     {reduced, no_system, no_rate, no_sweep, no_sliding, undamped, one_mu, {"Designs/Number", "Designs/Seed", "Designs/File"}}},
     {joined(design, {"Designs/Plan=Sobol sequence", steady}),
      {"Designs/", "Sweep/"},
-     {reduced, no_rate, no_sweep, one_mu, {"Designs/File", "Operation/Rotation speed"}}},
+     {reduced, no_system, no_rate, no_sweep, one_mu, {"Designs/File", "Operation/Rotation speed"}}},
     // A search uses ranges instead of a plan
     {{"Study=search", "Designs/Variables=Geometry/Pin height=0.03 to 0.04"},
      {"Designs/", "Search/", "Sweep/"},
-     {reduced, no_sweep, no_sliding, undamped, one_mu, {"Designs/Plan", "Designs/Number", "Designs/File", "Search/Quantile"}}},
+     {reduced, no_system, no_sweep, no_sliding, undamped, one_mu, {"Designs/Plan", "Designs/Number", "Designs/File", "Search/Quantile"}}},
     {{"Study=search", "Designs/Variables=Pin material/Density = 2000 to 3000", "Search/Goal=quantile",
       "Robustness/Distributions=Operation/Friction coefficient = uniform 0.2 to 0.4"},
      {"Designs/", "Search/", "Robustness/"},
-     {reduced, no_sliding, undamped, {"Designs/Plan", "Designs/Number", "Designs/File", "Designs/Processes"}}},
+     {reduced, no_system, no_sliding, undamped, {"Designs/Plan", "Designs/Number", "Designs/File", "Designs/Processes"}}},
 
     {{"Study=robustness", "Robustness/Distributions=Pin material/Density = uniform 90 % to 110 %"},
      {"Robustness/"},

@@ -244,6 +244,17 @@ namespace Squeal
     run.measure("largest estimated error of lambda [-]", worst);
   }
 
+  void evaluate_again(SweepModel &model)
+  {
+    std::map<int, std::vector<double>> of_line;
+    for (const auto &[place, point] : model.known)
+      of_line[place.first].push_back(place.second);
+    model.known.clear();
+    for (const auto &[line, friction_coefficients] : of_line)
+      model.evaluate(line, friction_coefficients);
+    model.sharpens_thresholds = false;
+  }
+
   void evaluate_points(SweepModel &model)
   {
     if (!model.reduced)

@@ -297,7 +297,15 @@ namespace Squeal
       {
         SweepModel model(plan, regime, run);
         evaluate_points(model);
+        const auto of_other_sets = charts;
         follow_branches(model, charts);
+        if (model.reduced && run.parameters.output.write_system == SystemOutput::reduced)
+          {
+            // Searches for thresholds have extended the basis: with the same one, tables agree with the written model
+            evaluate_again(model);
+            charts = of_other_sets;
+            follow_branches(model, charts);
+          }
         append_map_cells(model, main.empty() ? nullptr : &main.back(), map);
         append_plane_modes(model, plane);
         append_counts(model, counts);

@@ -165,6 +165,9 @@ namespace Squeal
   /// Evaluates all points of the contact set to the requested tolerance, as a step of the run.
   void evaluate_points(SweepModel &model);
 
+  /// Evaluates all known points again with the current basis, which is not extended for thresholds any more. Collective.
+  void evaluate_again(SweepModel &model);
+
   /**
    * Reduced model for a sweep that was solved at full order: a Galerkin projection on principal axes of the right and left modes at some of
    * its points. Points with the largest error are added, or fewer axes are truncated, until all points meet the tolerance of the sweep and
