@@ -458,17 +458,20 @@ class RoundTrip(SystemTest):
         self.write("again.prm", STUDY.format(study="stability", band=5000).replace("= system\n", f"= {folder}/system\n"))
         return self.run_scene("again", file="again.prm")
 
+    def assert_read_back(self, folder, expected, tolerance=SAME):
+        """A stability run of the system in a folder of results has these eigenvalues."""
+        again = self.lambdas(self.system_of(folder))
+        self.assertEqual(len(again), len(expected))
+        for value, other in zip(again, expected):
+            self.assertLess(abs(value - other), tolerance * abs(other))
+
     def test_full(self):
         for name, overrides in (("plain", []), ("damped", ["Operation/Radial dissipation=consistent", "Operation/Friction slope=-0.02"]),
                                 ("modal", ["Damping/Modal damping ratio=1: 0.001, 10000: 0.001"]),
                                 ("turning", ["Operation/Gyroscopic forces=true", "Pin material/Rayleigh beta=1e-7"])):
             with self.subTest(name):
                 results = self.run_scene("mesh", "Output/Write system=full", *overrides)
-                expected = self.lambdas(results)
-                again = self.lambdas(self.system_of("mesh"))
-                self.assertEqual(len(again), len(expected))
-                for value, other in zip(again, expected):
-                    self.assertLess(abs(value - other), SAME * abs(other))
+                self.assert_read_back("mesh", self.lambdas(results))
 
     def test_shapes(self):
         """There is a point with its displacement for each free node; bodies become groups."""
@@ -555,13 +558,10 @@ class RoundTrip(SystemTest):
 
     def test_other_studies(self):
         expected = self.lambdas(self.run_scene("mesh"))
-        for study in (["reduction", "Reduction/Bases=free"], ["sensitivity", "Sensitivity/Thresholds=false", "Sensitivity/Geometry=none"],
+        for study in (["reduction", "Reduction/Bases=free"], ["sensitivity", "Sensitivity/Geometry=none"],
                       ["robustness", "Robustness/Distributions=Pin material/Density = uniform 90 % to 110 %", "Robustness/Number of samples=10"]):
             self.run_scene("written", f"Study={study[0]}", *study[1:], "Output/Write system=full")
-            again = self.lambdas(self.system_of("written"))
-            self.assertEqual(len(again), len(expected))
-            for value, other in zip(again, expected):
-                self.assertLess(abs(value - other), SAME * abs(other))
+            self.assert_read_back("written", expected)
 
     def test_reduced_bases(self):
         """The reduced model of each basis has the modes in the table of the study."""
@@ -589,8 +589,5 @@ class RoundTrip(SystemTest):
         mesh = self.run_scene("mesh", "Study=sweep", "Output/Write system=reduced", "Sweep/Number of friction coefficients=10",
                               "Sweep/Last friction coefficient=0.5", "Sweep/Complex plane at=0.5")
         expected = [complex(row["growth rate [1/s]"], 2. * math.pi * row["frequency [Hz]"]) for row in self.rows(mesh, "complex_plane")]
-        again = self.lambdas(self.system_of("mesh"))
-        self.assertEqual(len(again), len(expected))
-        for value, other in zip(again, expected):
-            self.assertLess(abs(value - other), 1e-10 * abs(other))
+        self.assert_read_back("mesh", expected, 1e-10)
         self.assertTrue((mesh / "system" / "basis.mtx").is_file())

@@ -23,6 +23,12 @@ namespace Squeal
     return is_used ? nullptr : reason;
   }
 
+  /// Reason of a parameter that is used although its section is not.
+  inline Reason is_used(const Parameters & /*parameters*/)
+  {
+    return nullptr;
+  }
+
   /// True if @p path, "Section/Name" or "Section/", names the parameter or its section.
   inline bool concerns(const std::string &path, const std::string &parameter)
   {

@@ -192,8 +192,7 @@ namespace Squeal
     const ReductionPlan     plan         = reduction_plan(run.parameters);
     const FrictionlessModes frictionless = damped_modes(scene, run);
     const CoupledSystem    &coupled      = frictionless.linearisation.coupled;
-    if (run.parameters.output.write_system == SystemOutput::full)
-      write_scene_system(frictionless.linearisation, friction_parameter(run.parameters), "system/", run);
+    write_scene_system(frictionless.linearisation, friction_parameter(run.parameters), "system/", run);
     measure_bases(plan, frictionless, plan.has_friction ? coupled : undamped(coupled),
                   plan.has_friction ? complex_reference(plan, frictionless, run) : real_reference(frictionless),
                   scene.model->free_map().n(), run);
@@ -204,8 +203,7 @@ namespace Squeal
   {
     const GivenSystem   given = given_system(run);
     const ReductionPlan plan  = reduction_plan(run.parameters, given.file, given.coupled, given.value);
-    if (run.parameters.output.write_system == SystemOutput::full)
-      write_system_again(given.file, "system/", run);
+    write_system_again(given.file, "system/", run);
     if (!given.coupled.stiffness)
       {
         const ReferenceSolution reference = reference_of_system(direct_solution(given, run));
@@ -219,7 +217,7 @@ namespace Squeal
 
   extern const Study reduction_study = [] {
     Study study{"reduction", run_reduction_study, {"Reduction/", "Output/Write system"}, reduction_usage()};
-    study.rules.push_back({"Output/Write system", [](const Parameters &) -> Reason { return nullptr; }});
+    study.rules.push_back({"Output/Write system", is_used});
     study.rules.push_back({"Output/", [](const Parameters &) { return "the study writes no mode shapes"; }});
     study.has_reduced_model = true;
     study.check             = [](const Parameters &p) {

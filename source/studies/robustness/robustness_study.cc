@@ -260,7 +260,7 @@ namespace Squeal
       {
         const auto model     = sample_model(systems, i, run);
         int        n_growths = solve_contact_set(*model, systems.n_samples[i], n_training_samples, tolerance, checkpoint, result.samples);
-        if (keep)
+        if (keep && systems.n_samples[i] > 0)
           {
             // All samples with the final basis, which the estimates of the written model refer to
             while (model->reduced && n_growths > 0)
@@ -290,8 +290,7 @@ namespace Squeal
     check_bands(run.parameters);
     const auto       nominal = [&run](const std::string &name) { return nominal_value(run.parameters, name); };
     const SamplePlan plan    = sample_plan(run.parameters.robustness, nominal, alike_pins(scene, run.parameters));
-    if (run.parameters.output.write_system == SystemOutput::full)
-      write_scene_system(damped_modes(scene, run).linearisation, friction_parameter(run.parameters), "system/", run);
+    write_scene_system(scene, run);
     const BodyTerms bodies = assemble_scene(scene, run);
     run_samples(plan, sampled_scene(scene, bodies, plan, run), model_key(scene), run);
   }
@@ -302,8 +301,7 @@ namespace Squeal
     SystemFile       file = read_system(run);
     const SamplePlan plan =
       sample_plan(run.parameters.robustness, [&](const std::string &name) { return value_in(file, name, run.parameters); }, {});
-    if (run.parameters.output.write_system == SystemOutput::full)
-      write_system_again(file, "system/", run);
+    write_system_again(file, "system/", run);
     run_samples(plan, sampled_file(std::move(file), plan, run), system_key(run.parameters.system.path()), run);
   }
 
@@ -311,7 +309,7 @@ namespace Squeal
     const auto of_onsets = [](const Parameters &p) { return unless(p.robustness.n_onsets > 0, "Robustness/Samples with onsets = 0"); };
     Study      study{"robustness", run_robustness_study, {"Robustness/", "Output/Write system"}};
     study.rules = {
-      {"Output/Write system", [](const Parameters &) -> Reason { return nullptr; }},
+      {"Output/Write system", is_used},
       {"Operation/Rotation speed", no_sliding_speed},
       {"Complex modes/", [](const Parameters &) { return "samples are solved by a reduced model"; }},
       {"Output/", [](const Parameters &) { return "the study writes no mode shapes; parameter files of its worst samples do"; }}};

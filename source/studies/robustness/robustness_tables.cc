@@ -242,13 +242,19 @@ namespace Squeal
     return result;
   }
 
-  Table sample_table(const SamplePlan &plan, const Samples &samples)
+  Columns<int> sample_columns(const SamplePlan &plan)
   {
-    using Row = int;
-    Columns<Row> columns{{"sample", "-", [](const int s) { return s + 1; }}};
+    Columns<int> columns{{"sample", "-", [](const int s) { return s + 1; }}};
     for (std::size_t j = 0; j < plan.numbers.size(); ++j)
       columns.push_back({plan.numbers[j].name, "", [&plan, j](const int s) { return plan.values(s, static_cast<Eigen::Index>(j)); }});
-    const auto n_of = [&samples](const Verdict verdict) {
+    return columns;
+  }
+
+  Table sample_table(const SamplePlan &plan, const Samples &samples)
+  {
+    using Row            = int;
+    Columns<Row> columns = sample_columns(plan);
+    const auto   n_of    = [&samples](const Verdict verdict) {
       return [&samples, verdict](const int s) -> Entry {
         if (!samples[s])
           return {};

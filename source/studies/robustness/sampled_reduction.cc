@@ -61,11 +61,9 @@ namespace Squeal
     if (systems.plan.scene == nullptr)
       for (std::size_t k = 0; k < n; ++k)
         {
-          std::vector<FileParameter> here = systems.plan.file->parameters;
-          for (FileParameter &parameter : here)
-            parameter.value = points[k].values.at(parameter.name).front();
+          const std::vector<FileParameter> here = fixed(systems.plan.file->parameters, points[k].values);
           if (k == 0)
-            parameters = fixed(here);
+            parameters = here;
           cover(parameters, here);
         }
     else
@@ -75,7 +73,9 @@ namespace Squeal
           return named_parameters(model.frictionless.linearisation, friction_parameter(sample), sample);
         };
         const NamedParameters first = named(0);
-        parameters                  = fixed(first.parameters);
+        parameters                  = first.parameters;
+        for (FileParameter &parameter : parameters)
+          parameter.lower = parameter.upper = parameter.value;
         for (std::size_t k = 1; k < n; ++k)
           cover(parameters, named(k).parameters);
         auto without_scales = first.names;
@@ -102,9 +102,7 @@ namespace Squeal
     for (std::size_t k = 0; k < n; ++k)
       if (samples[points[k].line])
         solved.push_back(points[k].line);
-    Columns<int> columns{{"sample", "-", [](const int s) { return s + 1; }}};
-    for (std::size_t j = 0; j < plan.numbers.size(); ++j)
-      columns.push_back({plan.numbers[j].name, "", [&plan, j](const int s) { return plan.values(s, static_cast<Eigen::Index>(j)); }});
+    Columns<int> columns = sample_columns(plan);
     columns.push_back({"largest estimated error of lambda", "-", [&](const int s) { return largest_error(*samples[s]); }, 1, true});
     write_reduced_system(model.reduced->reduced(),
                          {parameters, "reduced model of samples", run.parameters.robustness.tolerance, Table(columns, solved)}, rename,

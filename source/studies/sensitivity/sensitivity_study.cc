@@ -214,8 +214,9 @@ namespace Squeal
   /// `Study = sensitivity`: derivatives of λ and of thresholds with respect to all continuous parameters, from right and left vectors.
   static void run_sensitivity_study(Scene &scene, Run &run)
   {
-    const Parameters                 &p          = run.parameters;
-    const double                      mu         = p.operation.friction_coefficient;
+    const Parameters &p  = run.parameters;
+    const double      mu = p.operation.friction_coefficient;
+    write_scene_system(scene, run);
     const BodyTerms                   bodies     = assemble_scene(scene, run);
     std::vector<SensitivityParameter> parameters = sensitivity_parameters(scene, p);
     for (SensitivityParameter &parameter : geometry_sensitivity_parameters(scene, bodies, run))
@@ -230,7 +231,6 @@ namespace Squeal
                              plan.regimes.size(), " over the range"));
     SweepModel sweep(plan, *regime, run);
     evaluate_points(sweep);
-    write_system_of(sweep);
     std::optional<SweepChart> chart;
     if (p.sensitivity.thresholds)
       {
@@ -265,7 +265,7 @@ namespace Squeal
                 {"Sensitivity/", "Sweep/First friction coefficient", "Sweep/Last friction coefficient",
                       "Sweep/Number of friction coefficients", "Sweep/Tolerance", "Sweep/Maximum basis", "Sweep/Threshold tolerance",
                       "Output/Write system"}};
-    study.rules         = {{"Output/Write system", [](const Parameters &) -> Reason { return nullptr; }},
+    study.rules         = {{"Output/Write system", is_used},
                            {"Output/", [](const Parameters &) { return "the study writes no mode shapes"; }},
                            {"Complex modes/", [](const Parameters &) { return "the study solves reduced models"; }},
                            {"Sweep/First friction coefficient", no_thresholds},

@@ -84,8 +84,7 @@ namespace Squeal
                          {"growth rate per unit", "1/s", [](const Row &row) { return row.derivative.real(); }},
                          {"frequency per unit", "Hz", [](const Row &row) { return hertz(row.derivative.imag()); }}},
             rows));
-    if (run.parameters.output.write_system == SystemOutput::full)
-      write_system_again(file, "system/", run);
+    write_system_again(file, "system/", run);
     run.finish();
   }
 } // namespace Squeal

@@ -263,8 +263,7 @@ namespace Squeal
     write_mode_shapes(frictionless, friction, balances, run);
     if (parameters.output.write_matrices)
       write_matrices(linearisation, run);
-    if (parameters.output.write_system != SystemOutput::none)
-      write_scene_system(linearisation, friction_parameter(parameters), "system/", run);
+    write_scene_system(linearisation, friction_parameter(parameters), "system/", run);
     run.folder().write("mesh.msh", [&](std::ostream &stream) { write_msh(scene.mesh, stream); });
     run.finish();
   }
@@ -294,8 +293,7 @@ namespace Squeal
     columns.insert(columns.end(), groups.begin(), groups.end());
     store_mode_tables(frictionless, friction, columns, {}, run);
     write_mode_shapes(given.file, frictionless, friction, run);
-    if (run.parameters.output.write_system != SystemOutput::none)
-      write_system_again(given.file, "system/", run);
+    write_system_again(given.file, "system/", run);
     run.finish();
   }
 

@@ -114,9 +114,8 @@ namespace Squeal
   {
     ReductionPlan result =
       plan_for(Problem(parameters), parameters, parameters.has_friction() ? parameters.operation.friction_coefficient : 0.);
-    FileParameter mu  = friction_parameter(parameters);
-    mu.value          = result.friction_coefficient;
-    result.parameters = fixed({mu});
+    const FileParameter mu = friction_parameter(parameters);
+    result.parameters      = fixed({mu}, {{mu.name, {result.friction_coefficient}}});
     return result;
   }
 
@@ -131,11 +130,7 @@ namespace Squeal
                               return varied->lower <= snapshot && snapshot <= varied->upper;
                             });
     ReductionPlan plan        = plan_for(problem, parameters, value);
-    const auto    values      = system.at(value);
-    plan.parameters           = file.parameters;
-    for (FileParameter &parameter : plan.parameters)
-      parameter.value = values.at(parameter.name).front();
-    plan.parameters = fixed(plan.parameters);
+    plan.parameters           = fixed(file.parameters, system.at(value));
     if (!problem.has_snapshots && (plan.rests_on(BasisSource::snapshots) || !problem.has_definite_part))
       throw ParameterError(varied == nullptr ? "the basis POD needs a parameter, and the system has none" :
                                                text("snapshots are outside the range of ", varied->name, " from ",

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 #include <squeal/linear_algebra/multivector.h>
+#include <squeal/studies/steps/friction_modes.h>
 #include <squeal/studies/steps/material_numbers.h>
 #include <squeal/studies/steps/written_system.h>
 #include <squeal/system/expression.h>
@@ -185,10 +186,10 @@ namespace Squeal
     return {factor, powers};
   }
 
-  std::vector<FileParameter> fixed(std::vector<FileParameter> parameters)
+  std::vector<FileParameter> fixed(std::vector<FileParameter> parameters, const ParameterValues &values)
   {
     for (FileParameter &parameter : parameters)
-      parameter.lower = parameter.upper = parameter.value;
+      parameter.value = parameter.lower = parameter.upper = values.at(parameter.name).front();
     return parameters;
   }
 
@@ -241,6 +242,8 @@ namespace Squeal
 
   void write_scene_system(const Linearisation &linearisation, const FileParameter &friction, const std::string &folder, Run &run)
   {
+    if (run.parameters.output.write_system != SystemOutput::full)
+      return;
     const Parameters     &parameters = run.parameters;
     const NamedParameters named      = named_parameters(linearisation, friction, parameters);
     const CoupledSystem   system =
@@ -278,8 +281,19 @@ namespace Squeal
     run.folder().write(folder + "points.csv", [&](std::ostream &stream) { notes.points.write_csv(stream); });
   }
 
+  void write_scene_system(Scene &scene, Run &run)
+  {
+    if (run.parameters.output.write_system != SystemOutput::full)
+      return;
+    // Modal damping needs modes
+    const bool is_modal = !run.parameters.damping.modal_ratios.empty();
+    write_scene_system(is_modal ? damped_modes(scene, run).linearisation : linearised_scene(scene, run), friction_parameter(run.parameters),
+                       "system/", run);
+  }
+
   void write_system_again(const SystemFile &file, const std::string &folder, Run &run)
   {
-    write_system(file.terms, file.weights, {file.parameters, file.description, file.groups, file.points}, folder, run);
+    if (run.parameters.output.write_system == SystemOutput::full)
+      write_system(file.terms, file.weights, {file.parameters, file.description, file.groups, file.points}, folder, run);
   }
 } // namespace Squeal

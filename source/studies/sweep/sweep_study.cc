@@ -355,7 +355,7 @@ namespace Squeal
     };
     Study study{"sweep", run_sweep_study, {"Sweep/", "Output/Write system"}};
     study.rules = {
-      {"Output/Write system", [](const Parameters &) -> Reason { return nullptr; }},
+      {"Output/Write system", is_used},
       {"Output/",
        [](const Parameters &p) {
          return p.sweep.mode_shapes.empty() && p.output.fields != FieldSelection::none ?

@@ -21,10 +21,9 @@ namespace Squeal
           mu.lower            = first;
           return {mu};
         }
-      std::vector<FileParameter> result = plan.file->parameters;
+      std::vector<FileParameter> result = fixed(plan.file->parameters, plan.values);
       for (FileParameter &parameter : result)
         {
-          parameter.value = parameter.lower = parameter.upper = plan.values.at(parameter.name).front();
           if (parameter.name == plan.axis.name)
             parameter.lower = first;
           for (const SweepLine &line : plan.lines)

@@ -449,7 +449,7 @@ namespace Squeal
       {"Updating/Least MAC", [](const Parameters &p) { return unless(!p.updating.sensors.empty(), "there are no Updating/Sensors"); }},
       {"Complex modes/Solver", [](const Parameters &) { return "left and right modes come from the residual iteration"; }},
       {"Complex modes/Iteration tolerance", [](const Parameters &) { return "derivatives always use the smallest tolerance"; }},
-      {"Complex modes/Maximum basis", [](const Parameters &) -> Reason { return nullptr; }},
+      {"Complex modes/Maximum basis", is_used},
       {"Complex modes/Shift inverse", [](const Parameters &) { return "of the solver Krylov"; }},
       {"Complex modes/Tolerance", [](const Parameters &) { return "of the solver Krylov"; }}};
     study.check = [](const Parameters &p) {

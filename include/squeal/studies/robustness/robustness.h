@@ -65,7 +65,7 @@ namespace Squeal
     SweepPlan                      plan;      ///< one line for each sample that is followed over the friction coefficient
     std::vector<FrictionlessModes> middles;   ///< modes at the mean sample of each contact set in the plan
     std::vector<std::size_t>       n_samples; ///< number of samples in each contact set, the first points; the others belong to lines
-    std::vector<FamilyScales>      scales;    ///< of each contact set of a meshed model
+    std::vector<FamilyScales>      scales;    ///< scales of each contact set; empty for a system file
 
     /// Converts an additional sample to a point of the first contact set; `line` of the point is the index of the sample.
     std::function<OperatingPoint(const SamplePlan &, int sample)> point;
@@ -136,7 +136,7 @@ namespace Squeal
                                     const KeepPoint                   &keep,
                                     const std::string                 &name);
 
-  /// Receives a contact set with its model and the samples known so far, when all samples of the set are solved.
+  /// Called when the samples of a contact set are solved, with its model and the samples solved so far.
   using KeepModel = std::function<void(std::size_t contact_set, const SweepModel &, const std::vector<std::optional<Sample>> &)>;
 
   /// Solves all samples with one reduced model for each contact set, as steps of the run. If @p checkpoint is not null, it supplies the
@@ -166,6 +166,9 @@ namespace Squeal
 
   /// Writes the tables of onsets and reports them.
   void write_onsets(const std::vector<FollowedSample> &followed, const std::string &parameter, Run &run);
+
+  /// Columns with the number of a sample and its uncertain numbers; rows are indices of samples. @p plan must outlive them.
+  Columns<int> sample_columns(const SamplePlan &plan);
 
   /// One row for each sample, and one row for each mode of the independent samples.
   Table sample_table(const SamplePlan &plan, const std::vector<std::optional<Sample>> &samples);

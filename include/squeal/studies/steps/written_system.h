@@ -12,7 +12,7 @@ namespace Squeal
   /// μ of a meshed model as a parameter of a system file, with the range of the sweep; μ is fixed if contact nodes or damping depend on it.
   FileParameter friction_parameter(const Parameters &parameters);
 
-  /// Parameters of a system file for a meshed model, and their names there by names in the terms.
+  /// Parameters of the system file of a meshed model; `names` maps parameters of the terms to them.
   struct NamedParameters
   {
     std::vector<FileParameter>         parameters;
@@ -26,8 +26,8 @@ namespace Squeal
   /// rotation that are factors of terms, with a range of 0.01 to 100 times their values.
   NamedParameters named_parameters(const Linearisation &linearisation, const FileParameter &friction, const Parameters &parameters);
 
-  /// Parameters with ranges that contain only their values.
-  std::vector<FileParameter> fixed(std::vector<FileParameter> parameters);
+  /// Parameters at these values, with ranges that contain only the values.
+  std::vector<FileParameter> fixed(std::vector<FileParameter> parameters, const ParameterValues &values);
 
   /// A monomial with renamed parameters; parameters with an empty new name are replaced by one.
   Coefficient in_names(const Coefficient &monomial, const std::map<std::string, std::string> &names);
@@ -36,10 +36,13 @@ namespace Squeal
   ShapePoints displacements_of_nodes(const Model &model);
 
   /// Writes the coupled system of a mesh as a system file in a folder of the results, as a step of the run: its terms with
-  /// named_parameters(), the bodies as groups of dofs, and the free nodes as points.
+  /// named_parameters(), the bodies as groups of dofs, and the free nodes as points. Only for `Output/Write system = full`.
   void write_scene_system(const Linearisation &linearisation, const FileParameter &friction, const std::string &folder, Run &run);
 
-  /// Writes a system file unchanged.
+  /// Assembles the model at the given operation and writes its system like the function above, as steps of the run.
+  void write_scene_system(Scene &scene, Run &run);
+
+  /// Writes a system file unchanged. Only for `Output/Write system = full`.
   void write_system_again(const SystemFile &file, const std::string &folder, Run &run);
 
   /// Data of a reduced model in a system file.
