@@ -137,7 +137,7 @@ class Scene:
         legend.WindowLocation, legend.Orientation = "Lower Center", "Horizontal"
 
     def show_title(self, source, titles):
-        """Shows the title with the number of the time step."""
+        """Shows the title of the current time step; a single title is shown at all steps."""
         annotation = self.simple.PythonAnnotation(Input=source)
         annotation.ArrayAssociation = "Point Data"
         annotation.Expression = repr(titles[0]) if len(titles) == 1 else f"{titles!r}[int(t_index)]"

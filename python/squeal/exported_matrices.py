@@ -55,7 +55,7 @@ class QuadraticProblem:
 
 
 def read_matrices(directory):
-    """The exported matrices: name -> CSR matrix."""
+    """Reads the exported matrices: name -> CSR matrix. Missing G and K_n are zero; any other missing file is an Error."""
     matrices = {}
     for name in ("M", "C", "K", "G", "C_b", "P_n", "P_t", "P_b", "K_n", "T_c"):
         path = pathlib.Path(directory) / "matrices" / f"{name}.mtx"

@@ -103,7 +103,7 @@ def judge_refusal(case, process, folder, row):
     if not reason:
         raise Wrong(f"no clear error: {process.stderr[-400:]!r}")
     if (folder / "run").exists():
-        raise Wrong("refused, but wrote results")
+        raise Wrong("rejected, but a result folder was created")
     row.outcome, row.remark = "refused", reason[1]
     if case.expected == RIGHT or case.expected not in process.stderr:
         raise Wrong(f"refused: {reason[1]}")

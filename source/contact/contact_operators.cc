@@ -62,7 +62,7 @@ namespace Squeal
       return result;
     }
 
-    /// Selects the @p kept local dofs that are not slaves, and adds the rows of the slaves.
+    /// Matrix from independent dofs to all dofs: unit rows for @p kept dofs that are not slaves, rows of @p slaves, and zero rows.
     std::shared_ptr<SparseMatrix> kernel_matrix(const RowMap &rows, const std::vector<bool> &kept, const SlaveRows &slaves)
     {
       // Columns have the order and owners of their dofs

@@ -105,8 +105,8 @@ namespace Squeal
     const auto             &M = has_parts ? result.mass : whole.mass, &K = has_parts ? result.stiffness : whole.stiffness;
     for (const auto &[matrix, name] : {std::make_pair(&M, "mass"), {&K, "stiffness"}})
       if (!*matrix)
-        throw ParameterError(std::string("the ") + name + " has no terms at the values of the parameters", "file " + file.path,
-                             "give terms of power 0 and 2 that are nonzero there");
+        throw ParameterError(std::string("no ") + name + " term is nonzero at the values of the parameters", "file " + file.path,
+                             "give terms of power 0 (stiffness) and 2 (mass) that are nonzero at these values");
     const std::vector<double> d = dof_scales(*K, *M, largest_circular_frequency);
     const auto                D =
       std::make_shared<SparseMatrix>(map, map, [&](const int i, SparseMatrix::Row &row) { row.emplace_back(map.number(i), d[i]); });

@@ -18,12 +18,9 @@ namespace Squeal
     constexpr double largest_part = 0.6;
     /// Smallest ratio of the squared frequencies on both sides of the gap for fast convergence [-].
     constexpr double narrowest_gap = 1.2;
-    /// Target for the residual after the last step, for modes of unit norm, and limit that is accepted if rounding errors prevent a smaller
-    /// residual. Both are strict because friction transfers residuals of high modes to low modes.
-    constexpr double error_wanted = 1e-13, error_allowed = 1e-12;
-    constexpr int    most_steps = 80;
-    /// A step whose length exceeds this fraction of the previous one may consist of rounding errors [-].
-    constexpr double contraction = 0.7;
+    /// Target for the residual after the last step, for modes of unit norm. Errors of λ are products of the errors of both subspaces.
+    constexpr double error_wanted = 1e-8;
+    constexpr int    most_steps   = 80;
     /// Length of a step, relative to the first one, at which the iteration is abandoned [-].
     constexpr double hopeless_growth = 1000.;
     /// Number of previous steps that are combined.
@@ -67,9 +64,6 @@ namespace Squeal
           const double norm = step.norm();
           if (i == 0)
             first = norm;
-          // Accept X if steps no longer decrease because of rounding errors
-          if (i > 0 && !(norm < contraction * before) && norm <= error_allowed)
-            return true;
           if (!(norm <= hopeless_growth * first))
             return false;
           // By extrapolation, the next step is below the target
@@ -219,10 +213,10 @@ namespace Squeal
       Block       rest;      ///< B_22
     };
 
-    /// Separation of the band: R = [I; X], Lᵀ = [I − Y X, Y] and S, in modal coordinates.
+    /// Subspaces of the band in modal coordinates: R = [I; X], Lᵀ = [first, Y] with first = I − Y X, so that Lᵀ R = I; small = Lᵀ B R.
     struct Separation
     {
-      DenseMatrix X, Y, first, small; ///< first = I − Y X
+      DenseMatrix X, Y, first, small;
     };
 
     /**

@@ -107,9 +107,9 @@ namespace Squeal
               column_products(x.re, y.im)[0] - column_products(x.im, y.re)[0]};
     }
 
-    /// Corrected mode: φ with ‖φ‖ = 1 minus an orthogonal correction that minimises ‖Q(λ)φ‖ in the space of Q(s)⁻¹ r of successive
-    /// residuals r (generalised conjugate residuals; S. C. Eisenstat, H. C. Elman, M. H. Schultz, SIAM Journal on Numerical Analysis 20
-    /// (1983) 345–357), until ‖Q(λ)φ‖ ≤ @p tolerance ‖Kφ‖.
+    /// Improves a mode φ, ‖φ‖ = 1, by generalised conjugate residuals (S. C. Eisenstat, H. C. Elman, M. H. Schultz, SIAM Journal on
+    /// Numerical Analysis 20 (1983) 345–357): corrections are orthogonal to φ, lie in the space of Q(s)⁻¹ r of successive residuals r and
+    /// minimise ‖Q(λ)φ‖, until ‖Q(λ)φ‖ ≤ @p tolerance ‖Kφ‖ or for most_correction_steps steps.
     ComplexVector corrected(const QuadraticPencil &pencil,
                             const LinearOperator  &inverse,
                             const Complex          lambda,

@@ -109,7 +109,7 @@ namespace Squeal
     }
   } // namespace
 
-  /// LU factors of Q(s). Throws a SolverError that names @p source if Q is also singular at another shift, and thus for all λ.
+  /// LU factors of Q(s). Throws a SolverError that names @p source if Q is also singular at another shift, and thus probably for all λ.
   static std::unique_ptr<Factorization> factors_at(const SecondOrderSystem &matrices, const double shift, const std::string &source)
   {
     constexpr double other  = 1.3;
@@ -127,7 +127,7 @@ namespace Squeal
         catch (const SolverError &)
           {
             throw SolverError(
-              "det Q(lambda) vanishes for all lambda: a motion, or a combination of equations, has neither mass nor damping nor stiffness",
+              "Q(lambda) is singular at two shifts, thus probably for all lambda: a motion, or a combination of equations, may have neither mass nor damping nor stiffness",
               source, "remove dependent rows and columns from all matrices, such as redundant constraints");
           }
         throw;

@@ -102,7 +102,7 @@ namespace Squeal
       modes.real_values = std::move(found.real_values);
     }
 
-    /// All eigenvalues of the pencil.
+    /// Modes up to @p largest_circular_frequency by the QR algorithm, without separation of the band.
     ReducedModes all_modes(const ReducedModel    &model,
                            const ParameterValues &values,
                            const double           largest_circular_frequency,

@@ -35,10 +35,9 @@ namespace Squeal
       using dealii::Utilities::split_string_list;
       std::vector<ContactPair> pairs;
       const auto               refuse = [](const std::string &what) {
-        throw ParameterError(what, where,
-                                           "write surface of the disc / surface of another body: friction factor; ..., such as disc_top "
-                                                         "/ pad_outer; "
-                                                         "disc_bottom / pad_inner: 0.9");
+        throw ParameterError(
+                        what, where,
+                        "write surface of the disc / surface of another body: friction factor, normal stiffness; ...; the numbers may be omitted, as in disc_top / pad_outer; disc_bottom / pad_inner: 0.9");
       };
       for (const std::string &entry : split_string_list(text, ';'))
         {

@@ -14,7 +14,7 @@ def cylindrical(r, theta, z):
 
 
 class HexMesh:
-    """A mesh of bodies of hexahedra and of named faces. Blocks share no nodes."""
+    """Hexahedral mesh of several bodies with named faces. Blocks share no nodes."""
 
     def __init__(self):
         self.points = []

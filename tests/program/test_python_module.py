@@ -6,6 +6,7 @@ import contextlib
 import io
 import os
 import re
+import subprocess
 import unittest
 from unittest import mock
 
@@ -61,19 +62,23 @@ class PythonModule(ProgramTest):
         self.assertIn("plots/complex_plane.svg", squeal.Results(self.folder / "results").record["files [byte]"])
 
     def test_page(self):
-        """The code in doc/python.md prints the output shown on the page."""
+        """The code in doc/python.md prints the output shown on the page; other versions of Gmsh may print other numbers."""
         text = (SOURCE / "doc" / "python.md").read_text(encoding="utf-8")
         blocks = re.findall(r"```python\n(.*?)```\n\n```text\n(.*?)```", text, flags=re.DOTALL)
         self.assertEqual(len(blocks), text.count("```python"))
         (self.folder / "prm").symlink_to(SOURCE / "prm")
         names, before = {}, os.getcwd()
+        version = subprocess.run([EXECUTABLE, "--version"], text=True, capture_output=True, check=True).stdout
         self.addCleanup(os.chdir, before)
         os.chdir(self.folder)
         with mock.patch.dict(os.environ, {"SQUEAL": EXECUTABLE}):
             for code, printed in blocks:
                 with contextlib.redirect_stdout(io.StringIO()) as output:
                     exec(compile(code, "doc/python.md", "exec"), names)
-                self.assertEqual(output.getvalue(), printed)
+                texts = output.getvalue(), printed
+                if "Gmsh 4.8" not in version:
+                    texts = tuple(re.sub(r" *[-+]?\d[\d.]*(?:e[-+]\d+)?", "#", text) for text in texts)
+                self.assertEqual(*texts)
 
 
 if __name__ == "__main__":

@@ -49,6 +49,8 @@ class Refusals(ProgramTest):
                                  env={**os.environ, "OPENBLAS_NUM_THREADS": "1"}, capture_output=True, text=True,
                                  preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_STACK, (stack, most)), timeout=60)
         self.addCleanup(shutil.rmtree, self.folder / "limited", ignore_errors=True)
+        if "PMIX ERROR" in process.stderr:
+            self.skipTest("this version of MPI cannot start without a thread")
         self.assertEqual(process.returncode, 0, process.stderr)
         self.assertNotIn("defect", process.stderr)
 

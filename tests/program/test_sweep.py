@@ -188,7 +188,7 @@ class Sweep(SweepTest):
                 self.assertIn(row["event"], ("onset", "restabilisation"))
                 self.assertTrue(0 < row["uncertainty [-]"] < 1e-4, row)
                 self.assertEqual(row["partner [-]"] != "", mechanism == "coalescence")
-            # A mode that coalesces alone; by contrast, several pin modes grow at nearly the same value
+            # A threshold far from the others; several pin modes begin to grow at nearly the same value
             row, = [row for row in found if row["label"] == "A1-2 +"]
             step = max(1e-5, row["uncertainty [-]"])
             below, above = (sum(divergence(value) > GROWING for value in self.modes_at(row["mu [-]"] + sign * step, *overrides)) for sign in (-1, 1))

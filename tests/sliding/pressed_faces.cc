@@ -169,7 +169,7 @@ TEST(PressedFaces, FrictionShiftsThePressureToTheLeadingEdge)
         EXPECT_NEAR(pad.sliding_offset, -mu * height, 1e-10);
         EXPECT_NEAR(pad.radial_offset, 0., 1e-10);
         EXPECT_EQ(pad.sliding_speed, s.operation.rotation_speed);
-        double leading = 0., trailing = 0.; // largest pressures at both edges
+        double leading = 0., trailing = 0.; // largest pressure in each half
         for (std::size_t node = 0; node < s.interface.size(); ++node)
           {
             double &largest = s.interface[node].position[0] < 1. + 0.5 * length ? leading : trailing;

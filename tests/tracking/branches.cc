@@ -235,7 +235,7 @@ namespace
     return [=](const double mu) { return Complex(omega * slope * (mu - begin), omega); };
   }
 
-  /// Onset of growth below 10 rad/s, and onset of more than weak growth.
+  /// Onsets of growth and of divergence rates above weak_divergence, in the band up to 10 rad/s.
   std::vector<std::optional<GrowthOnset>> onsets(const Family &modes, const StabilityChart &chart, const double before = 0.)
   {
     const std::vector<std::optional<GrowthOnset>> result = {first_onset(chart, 10., before),

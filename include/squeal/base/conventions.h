@@ -15,9 +15,9 @@ namespace Squeal
   inline constexpr double largest_rate_of_band = 0.1;
 
   /**
-   * Frequency band of a run. The argument principle counts the eigenvalues in the rectangle Im λ ≤ end, |Re λ| ≤ rate. Eigenvalues with |λ|
-   * ≤ radius(), a circle that encloses the rectangle, are listed, except those that decay faster than largest_decay. Faster growth or decay
-   * depends on the mesh.
+   * Frequency band of a run. The argument principle counts the eigenvalues in the rectangle Im λ ≤ end, |Re λ| ≤ rate; modes with |Re λ| >
+   * rate depend on the mesh. The run lists the eigenvalues in the circle |λ| ≤ radius(), which encloses the rectangle, except those with Re
+   * λ < −largest_decay.
    */
   struct Band
   {

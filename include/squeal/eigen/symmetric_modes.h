@@ -93,8 +93,8 @@ namespace Squeal
   ModeCount count_below(const SparseMatrix &K, const SparseMatrix &M, double limit, const std::string &what);
 
   /**
-   * Upper end of a band [rad²/s²] that contains exactly the @p n_modes lowest modes, by inertia counts. Modes whose ω² is relatively larger
-   * by less than 10⁻³, for example members of a multiple eigenvalue, may also be included.
+   * Upper end of a band [rad²/s²] that contains the @p n_modes lowest modes, by inertia counts. The band may contain further modes whose ω²
+   * exceeds that of the last of these modes by less than 0.1 %, for example members of a multiple eigenvalue.
    *
    * @param first   start of the search [rad²/s²]
    * @param highest limit of the search [rad²/s²]

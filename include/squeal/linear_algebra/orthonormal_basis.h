@@ -15,6 +15,6 @@ namespace Squeal
     ComplexDenseMatrix Q, R;
   };
 
-  /// Computes X = Q R by Cholesky factors if X is well conditioned, else by the Gram-Schmidt process.
+  /// Computes X = Q R by Cholesky factors for more than four well-conditioned columns, otherwise by the Gram-Schmidt process.
   OrthonormalBasis orthonormal_basis(const ComplexDenseMatrix &X);
 } // namespace Squeal

@@ -45,9 +45,8 @@ namespace Squeal
     std::vector<float> values;
   };
 
-  /// The piece of a VTK file (.vtu) on this process: a mesh with the cell field `component`, also `volume` if a body has several volumes,
-  /// and fields, all compressed by zlib. Files on the same mesh start from copies of a piece without fields, which are independent. Cells
-  /// are sorted into columns along z, so that consecutive cells share nodes, which improves the compression.
+  /// Piece of a VTK file (.vtu) on this process: mesh, cell field `component` (also `volume` if a body has several volumes) and vertex
+  /// fields, compressed by zlib. To compress the mesh of several files only once, copy a piece without fields.
   class VtuPiece
   {
   public:

@@ -90,12 +90,12 @@ namespace Squeal
                                                                             {FieldSelection::unstable, "unstable"},
                                                                             {FieldSelection::all, "all"}};
 
-  /// Whether the system is written as a folder for the parameter `System`.
+  /// System that is written to the results, in the format that the parameter `System` reads.
   enum class SystemOutput
   {
     none,
-    full,   ///< all terms
-    reduced ///< the reduced model of a sweep
+    full,   ///< all terms of the system
+    reduced ///< the reduced model of a sweep or of samples; each basis of a study of bases
   };
 
   template <>

@@ -37,7 +37,7 @@ namespace Squeal
     /// Reads a script; for an unreadable file, the text is empty.
     explicit GeometryScript(const std::string &file);
 
-    /// Variables of DefineConstant[...] and DefineNumber[...], without lists and texts.
+    /// Variables in DefineConstant[...], and in DefineNumber[...] with the option Name; strings and lists are skipped.
     std::vector<GeometryVariable> variables() const;
 
     /// The script itself, then existing files in its Include and Merge commands.

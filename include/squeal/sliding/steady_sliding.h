@@ -69,7 +69,7 @@ namespace Squeal
    * Quasi-static steady sliding, eqs. (1) to (3) of the paper with u̇ = 0:
    *
    *   K u = P_nᵀ r_n + P_tᵀ r_t,   r_t = μ r_n,   r_n ≤ 0,  g ≤ 0,  r_n g = 0
-   *   g = P_n u + a d − gap
+   *   g = P_n u + a (d − gap)
    *
    * u is the elastic displacement relative to the backplates, which are rigid, guided along their travel e (contact/travel.h), and
    * displaced towards the disc by d; a = −e·n; the gaps in @p parameters are along e. Each load is the force on its backplate along e, Σ

@@ -53,7 +53,7 @@ class ExodusFile:
             self.surfaces[name] = [(element, face_number(self.elements[element][0], side)) for element, side in solids]
 
     def _sets(self, kind, what, variable):
-        """Pairs of name and variable that contains the members, for the nonempty sets."""
+        """Yields the name of each nonempty set and the variable with its members."""
         names = [b"".join(row).decode("utf-8", "replace").strip("\0 ") for row in self._variables.get(f"{kind}_names", [])]
         for number, identity in enumerate(self._variables.get(f"{kind}_prop1", []), 1):
             if f"{variable}{number}" in self._variables:

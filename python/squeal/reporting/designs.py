@@ -84,7 +84,7 @@ def about(row, variables, end):
 
 
 def onset_section(results):
-    """Chart of the largest growth over the onset of squeal."""
+    """Chart of the largest divergence rate versus the onset of squeal, one point per design."""
     table = results.table("designs")
     variables, end, rows = variables_of(table), end_of_sweep(results), solved(table)
     traces = []

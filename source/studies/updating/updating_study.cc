@@ -291,7 +291,7 @@ namespace Squeal
       run.measure("sum of squared residuals after the fit [-]", after.r.squaredNorm());
       run.progress.note(text("  ", problem.parameters.size(), problem.parameters.size() == 1 ? " parameter" : " parameters", " fitted to ",
                              problem.numbers.size(), " measured numbers: frequency differences ", updated.rms, " % rms (", start.rms,
-                             " % before), at most ", updated.largest, " % (", to_string(updated.worst->state), " ", updated.worst->label,
+                             " % before), largest ", updated.largest, " % (", to_string(updated.worst->state), " ", updated.worst->label,
                              "); agreement with fitted numbers does not validate the model"));
     }
 

@@ -108,7 +108,7 @@ namespace Squeal
   /// Ingredients that are not present in the model yet, in the order of the list.
   std::vector<const Ingredient *> ingredients_to_try(const Parameters &parameters);
 
-  /// The model with several ingredients changed, starting from their earliest departure.
+  /// Variation with several ingredients changed; it departs from the reference at the earliest step that one of them affects.
   Variation combined(const Parameters &parameters, const std::vector<const Ingredient *> &changed);
 
   /// A mode of the reference and its counterpart in a variant; one of them may be missing.

@@ -8,7 +8,7 @@
 
 namespace Squeal
 {
-  /// Eigenproblem of a study of reduced bases.
+  /// Bases that a study compares, and the eigenproblem that they reduce.
   struct ReductionPlan
   {
     std::vector<const BasisRecipe *> recipes;

@@ -200,8 +200,8 @@ namespace Squeal
     ModeLabel   label;
   };
 
-  /// Follows the branches of a line over known friction coefficients and finds their thresholds, for which the basis is extended, as a step
-  /// of the run.
+  /// Follows the branches of a line over its evaluated friction coefficients and finds their thresholds, as a step of the run. A reduced
+  /// model first extends its basis at the thresholds, if sharpens_thresholds is set.
   SweepChart follow_branches(SweepModel &model, int line, const std::vector<double> &friction_coefficients);
 
   /// Follows the branches on all lines except those of the map and finds their thresholds, as steps of the run; appends to the @p charts of
