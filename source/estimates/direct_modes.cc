@@ -127,7 +127,8 @@ namespace Squeal
         catch (const SolverError &)
           {
             throw SolverError(
-              "Q(lambda) is singular at two shifts, thus probably for all lambda: a motion, or a combination of equations, may have neither mass nor damping nor stiffness",
+              "Q(lambda) is singular at two shifts, thus probably for all lambda: a motion, or a combination of equations, may have "
+              "neither mass nor damping nor stiffness",
               source, "remove dependent rows and columns from all matrices, such as redundant constraints");
           }
         throw;

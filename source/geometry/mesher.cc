@@ -101,11 +101,13 @@ namespace Squeal
                         "use larger elements, look for an endless loop in the geometry, or raise Geometry/Meshing time limit");
       if (WIFSIGNALED(status) && WTERMSIG(status) == SIGSYS)
         throw ForbiddenAction("starts a program, writes a file or opens a connection");
-      // Newer versions of Gmsh print this message and crash
-      if (WIFSIGNALED(status) && log.find("Out of memory") != std::string::npos)
-        refuse_memory(limits, where);
       if (WIFSIGNALED(status))
-        throw MeshError(std::string("Gmsh crashed (") + strsignal(WTERMSIG(status)) + "). " + quoted(log), where, repair);
+        {
+          // Gmsh 4.13 prints this message and crashes; 4.8 throws std::bad_alloc
+          if (log.find("Out of memory") != std::string::npos)
+            refuse_memory(limits, where);
+          throw MeshError(std::string("Gmsh crashed (") + strsignal(WTERMSIG(status)) + "). " + quoted(log), where, repair);
+        }
       throw MeshError("The geometry ended Gmsh before the mesh was complete. " + quoted(log), where,
                       "remove Exit or Abort from the geometry");
     }

@@ -37,7 +37,8 @@ namespace Squeal
       const auto               refuse = [](const std::string &what) {
         throw ParameterError(
                         what, where,
-                        "write surface of the disc / surface of another body: friction factor, normal stiffness; ...; the numbers may be omitted, as in disc_top / pad_outer; disc_bottom / pad_inner: 0.9");
+                        "write surface of the disc / surface of another body: friction factor, normal stiffness; ...; the numbers may be "
+                                      "omitted, as in disc_top / pad_outer; disc_bottom / pad_inner: 0.9");
       };
       for (const std::string &entry : split_string_list(text, ';'))
         {

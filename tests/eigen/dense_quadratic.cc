@@ -66,7 +66,7 @@ namespace
     EXPECT_EQ(band->small.rows(), size);
     EXPECT_LT((A * band->right - band->right * band->small).norm(), tolerance);
     EXPECT_LT((A.transpose() * band->left - band->left * band->small.transpose()).norm(), tolerance);
-    EXPECT_LT((band->left.transpose() * band->right - DenseMatrix::Identity(size, size)).norm(), 1e-11);
+    EXPECT_LT((band->left.transpose() * band->right - DenseMatrix::Identity(size, size)).norm(), 1e-12);
   }
 
   void expect_same(const DenseQuadraticModes &some, const DenseQuadraticModes &all)
