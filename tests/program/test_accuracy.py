@@ -31,7 +31,7 @@ class Accuracy(ProgramTest):
         return [row for row in self.modes if all(row[names[key]] == value for key, value in condition.items())]
 
     def test_rows(self):
-        """A row for each mesh, element and method, with consistent numbers."""
+        """The table has a row for each mesh, element and method, with consistent numbers."""
         self.assertEqual([(row["mesh factor [-]"], row["element"], row["method"]) for row in self.meshes],
                          [(factor, element, method) for factor in "12" for element in ("trilinear", "incompatible modes") for method in METHODS])
         for name in ("accuracy", "accuracy_modes", "accuracy_orders"):
@@ -100,7 +100,7 @@ class Goal(ProgramTest):
                 found, exact = ([float(mode[column]) for column in ("frequency [Hz]", "divergence rate [%]")] for mode in (row, by_label[row["label"]]))
                 self.assertLess(abs(found[0] / exact[0] - 1), 0.05, row["label"])
                 self.assertLess(abs(found[1] - exact[1]), 0.5, row["label"])
-                # Twice, because the estimate is not a bound: frequencies on two meshes may agree by chance
+                # Allow twice the estimate, which is not a bound: frequencies on two meshes may agree by chance
                 estimated = float(row["estimated frequency error by the mesh [%]"]) / 100
                 self.assertLess(abs(found[0] / exact[0] - 1), 2 * estimated + 0.005, row["label"])
                 n_compared += 1
@@ -113,7 +113,7 @@ class Goal(ProgramTest):
         self.assertNotIn("chooses it", process.stdout)
 
     def test_unstable_modes_that_are_not_converged_are_named(self):
-        """On coarse meshes with strong friction, errors of divergence rates exceed 0.1 percentage points."""
+        """The summary reports unstable modes that are not converged; strong friction on a coarse mesh may cause them."""
         process = self.call_scene("strong", "Accuracy=1 %", "Operation/Friction coefficient=1.5", f"Band/Maximum frequency={BAND}")
         self.assertEqual(process.returncode, 0, process.stderr)
         rows = read_table(self.folder / "strong" / "complex_modes.csv")

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Growing waves of a sliding pad, compared with a solution of the continuum by Chebyshev polynomials:
-doc/well_posedness.md."""
+"""Growing waves of a sliding pad, compared with a Chebyshev solution of the continuum (doc/well_posedness.md)."""
 
 import math
 import os
@@ -35,7 +34,7 @@ class Continuum(unittest.TestCase):
 
 class Ring(ProgramTest):
     def test_growth_rates_converge_to_those_of_the_layer(self):
-        """The three fastest growing waves, on a ring with several waves, so that its curvature has little effect."""
+        """Growth rates of the three fastest-growing waves; with several waves around the ring, curvature has little effect."""
         exact = np.sort([max(values.real[abs(values.imag) < 2 * math.pi * 46e3])
                          for values in (PAD.eigenvalues(n / RADIUS, 1.5, 50) for n in (5, 6, 7))])[::-1]
         errors = []
