@@ -99,4 +99,4 @@ def lemke(matrix, vector):
         ratios = tableau[positive, -1] / column[positive]
         # In a tie, the artificial variable leaves the basis, which ends the iteration
         row = int(min(positive[ratios <= ratios.min() * (1 + 1e-12)], key=lambda i: basis[i] != 2 * n))
-    raise RuntimeError("Lemke's method ended on a ray.")
+    raise RuntimeError(f"Lemke's method found no solution: it ended on a ray or after {100 * n} pivots")

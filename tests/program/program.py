@@ -24,7 +24,7 @@ MPIRUN = os.environ.get("MPIRUN", "mpirun")
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(SOURCE / "scripts"), str(SOURCE / "python")]
 
-# Two pins with seven contact nodes on each side, and large elements: 38 modes, some of disc and pins unstable, in less
+# Two pins on each side, seven contact nodes per pin, large elements: 38 modes, some of disc and pins unstable, in less
 # than a second
 SCENE = """
 subsection Geometry

@@ -20,7 +20,7 @@ try:
     import scipy.sparse as sparse
     from squeal import quadratic
 except ImportError:
-    raise unittest.SkipTest("NumPy and SciPy are missing") from None
+    raise unittest.SkipTest("NumPy or SciPy is missing") from None
 
 
 class Cases(unittest.TestCase):

@@ -21,7 +21,7 @@ try:
     from extremes import oracle
     from squeal import exported_matrices
 except ImportError:
-    raise unittest.SkipTest("NumPy and SciPy are missing") from None
+    raise unittest.SkipTest("NumPy or SciPy is missing") from None
 
 BAND = 2 * np.pi * 5000
 RADIUS = 1.01**0.5 * BAND

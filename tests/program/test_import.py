@@ -159,7 +159,7 @@ class Import(ProgramTest):
             self.assertEqual(len(meshio.read(self.folder / "variant.msh").cells[0].data), len(self.mesh.faces))
 
     def test_engineering_constants(self):
-        """Constants refer to cylindrical axes about z or, without orientation, to x, y and z; other materials are omitted."""
+        """Constants refer to cylindrical axes about z or, without orientation, to x, y and z; materials with other axes are omitted."""
         constants = "*ELASTIC, TYPE=ENGINEERING CONSTANTS\n2000., 1500., 500., 0.2, 0.1, 0.15, 800., 300.\n250."
         text = abaqus(self.mesh).replace("*ELASTIC\n2000., 0.1", constants)
         for orientation, is_about_z in (("\n0., 0., 0., 0., 0., 1.\n3, 0.", True), ("\n0., 0., 0., 1., 0., 0.", False)):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""No results are lost by concurrent runs in one folder, killed runs, full disks or read-only folders; user files stay."""
+"""Results and user files survive concurrent runs in one folder, killed runs, full disks and read-only folders."""
 
 import json
 import os

@@ -357,7 +357,7 @@ class Tetrahedra(ProgramTest):
                 process = self.dry_run(file=self.write_brake(mesh, "noted"))
                 self.assertEqual((process.returncode, process.stderr), (0, ""))
                 self.assertIn(note, process.stdout)
-                self.assertNotIn("warning", process.stdout)  # for example, that triangles are not round
+                self.assertNotIn("warning", process.stdout)  # in particular none about the roundness of triangulated faces
         script = BLOCKS + VOLUMES + SURFACES + "Mesh.Algorithm3D = 10;\n"
         self.write("blocks.geo", script)
         process = self.dry_run("Geometry/File=blocks.geo", "Mounts/Elastic mounts=")

@@ -38,7 +38,7 @@ class Studies(ProgramTest):
 
     scene = COARSE
 
-    # Overrides and names of plots, without the numbers of several plots of families
+    # Overrides and names of plots; sweep_families stands for one or several numbered plots
     STUDIES = {"stability": ([], {"complex_plane"}),
                "sweep": (["Study=sweep", "Operation/Radial dissipation=consistent", "Sweep/Last friction coefficient=0.45",
                           "Sweep/Number of friction coefficients=10", "Sweep/Complex plane at=0.4, 0.22", "Sweep/Map parameter=load",

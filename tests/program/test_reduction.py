@@ -52,7 +52,7 @@ class Friction(ProgramTest):
                 self.assertLess(float(row["orthonormality [-]"]), 1e-10)
 
     def test_charges(self):
-        """The build time of a basis includes its sets of modes, which exceed the required number by less than a multiplicity."""
+        """The build time of a basis includes its sets. Modes are computed up to the group that contains the last required mode."""
         costs = {row["set"]: row for row in read_table(self.results / "reduction_costs.csv")}
         for name, wanted in (("free modes of the disc", DISC), ("free modes of the pins", PINS_FREE),
                              ("sliding modes of the pins", PINS_SLIDING), ("real coupled modes", self.n_real)):

@@ -43,7 +43,7 @@ class SearchTest(ProgramTest):
         found = max(float(row["divergence rate [%]"]) for row in read_table(sweep / "branches.csv"))
         self.assertAlmostEqual(found, best, delta=1e-3 * best)
         rows = read_table(self.search / "full_order.csv")
-        # The last row is the friction coefficient with the largest rate in the sweep
+        # The last row is the solution at the friction coefficient with the largest rate
         self.assertAlmostEqual(float(rows[-1]["divergence rate [%]"]), best, delta=1e-3 * best)
         for row in rows:
             self.assertLess(float(row["residual [-]"]), 1e-8)

@@ -134,7 +134,7 @@ def move_nodes(still, path, motions):
 
 
 def steps_of(slopes, step, most):
-    """Relative changes of the parameters with similar effects: `step` times at most `most`; `step` for a single parameter."""
+    """Relative changes of parameters with similar effects: at most step * most, and `step` for a single parameter."""
     largest = {key: max(map(abs, of_key.values())) for key, of_key in slopes.items()}
     share = max(largest.values()) / len(largest)
     return {key: step * min(most, share / size) for key, size in largest.items()}
@@ -209,7 +209,7 @@ class Sensitivity(ProgramTest):
         self.check_orthotropic("disc", (210e9, 180e9, 150e9, 0.3, 0.25, 0.2, 80e9, 70e9, 60e9), 7850, "", ("E2", "nu12", "G23"))
 
     def check_orthotropic(self, volume, values, density, axes, checked=()):
-        """Compares derivatives by elastic constants with differences of complete runs; `E1` scales all moduli."""
+        """Compares derivatives for elastic constants with differences of complete runs; `E1` scales all moduli."""
         numbers = dict(zip(("E1", "E2", "E3", "nu12", "nu13", "nu23", "G12", "G13", "G23"), values))
 
         def scene(**changed):
@@ -316,13 +316,13 @@ class Sensitivity(ProgramTest):
             self.assertGreater(1e-3 * largest, 1e-5 * len(keys) * largest + THRESHOLD_STEP * RESOLUTION, key)
 
     def test_geometry(self):
-        """Derivatives by lengths and positions, compared with runs on meshes with moved nodes; gaps move with their pins."""
+        """Lengths and positions: derivatives agree with runs on meshes with moved nodes; gaps move with their pins."""
         of_all = ("Disc thickness", "Pin height", "Disc inner radius", "Disc outer radius", "Pin diameter")
         self.check_geometry([*RICH, STEADY, GAPS], [*((path, "") for path in of_all), ("Top pin radii", "pin_top_2"),
                                                     ("Bottom pin angles", "pin_bottom_1")])
 
     def test_curved_elements(self):
-        """Derivative by the pin diameter with quadratic elements, whose curved edges grow with the circle."""
+        """Pin diameter with quadratic elements, whose curved edges grow with the circle."""
         self.check_geometry([*RICH, "Discretization/Element=quadratic"], [("Pin diameter", "")], "sizes")
 
     def test_geometry_of_orthotropic_volumes(self):

@@ -282,7 +282,7 @@ class Flutter(SystemTest):
             self.assertAlmostEqual(2. * math.pi * row["frequency per unit [Hz]"], expected, delta=1e-6 * abs(expected))
 
     def test_complete_basis(self):
-        """A sweep finds all modes if all are in the band, where its basis spans the whole space."""
+        """If all modes are in the band, the basis of a sweep spans the whole space, and the sweep finds every mode."""
         n = 6
         K = [[200. if i == j else -90. if abs(i - j) == 1 else 0. for j in range(n)] for i in range(n)]
         F = [[40. if j == i + 1 else -25. if j == i - 2 else 0. for j in range(n)] for i in range(n)]
@@ -440,7 +440,7 @@ class Brake(SystemTest):
             self.assertLess(abs(found - expected), 1e-5 * max(abs(expected), 1e-2 * abs(at[j])))
 
     def test_units(self):
-        """Neither units of dofs that differ by up to 14 decades nor a massless dof on a spring change the eigenvalues."""
+        """Eigenvalues depend neither on the units of dofs, over 14 decades, nor on a massless dof on a spring."""
         reference = self.eigenvalues(2.)
         d = 10. ** np.linspace(-7., 7., self.N)
         scaled = [(power, coefficient, d[:, None] * A * d, symmetry) for power, coefficient, A, symmetry in self.terms]
@@ -452,7 +452,7 @@ class Brake(SystemTest):
 
 
 class RoundTrip(SystemTest):
-    """A system that a run on a mesh has written gives the same results as the mesh."""
+    """A system written by a run on a mesh gives the same results as the mesh."""
 
     def system_of(self, folder):
         self.write("again.prm", STUDY.format(study="stability", band=5000).replace("= system\n", f"= {folder}/system\n"))

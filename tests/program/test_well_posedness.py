@@ -16,7 +16,7 @@ try:
     import numpy as np
     from reproduction.sliding_layer import Layer
 except ImportError:
-    raise unittest.SkipTest("NumPy and SciPy are missing") from None
+    raise unittest.SkipTest("NumPy or SciPy is missing") from None
 
 PAD, RADIUS = Layer(0.012, 1.9e9, 0.25, 3070), 0.01935
 # Im c / Re c of the half-space at mu = 2 and Poisson's ratio 1/2: c^2 = c_s^2 (1 - s^2), s = (mu - i)^2 / (mu^2 + 1)

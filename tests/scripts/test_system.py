@@ -25,7 +25,7 @@ except ImportError:
 
 
 def flutter(**more):
-    """Two dofs of mass 1 with stiffness k1 and k2, coupled by friction: K = [[k1, mu k], [-mu k, k2]]."""
+    """Two dofs of mass 1, coupled by friction: K = [[1, mu k], [-mu k, 2]]."""
     return System({"mu": Parameter(0.2, 0, 1, "-", "friction coefficient"), "k": Parameter(np.float64(1.5), np.int64(1), 2)}, [
         Term("mass", 2, matrix=np.eye(2), symmetry="symmetric", kind="body"),
         Term("stiffness", 0, matrix=np.diag([1.0, 2.0]), symmetry="symmetric", kind="body"),
@@ -34,7 +34,7 @@ def flutter(**more):
 
 
 def closed_form(mu, k):
-    """λ² of flutter(): -(3 ± sqrt(1 - 4 mu² k²)) / 2."""
+    """λ of flutter(): λ² = -(3 ± sqrt(1 - 4 mu² k²)) / 2."""
     root = np.sqrt(complex(1 - 4 * (mu * k)**2))
     squares = np.array([-(3 + root) / 2, -(3 - root) / 2])
     return np.concatenate([np.sqrt(squares), -np.sqrt(squares)])

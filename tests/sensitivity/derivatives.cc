@@ -135,7 +135,7 @@ TEST(Sensitivities, OfEveryParameterAgreeWithDifferences)
 
 TEST(Sensitivities, DoNotChangeWithTheUnitOfForce)
 {
-  // λ is proportional to √(stiffness / density) for any friction: derivatives by ln p sum to λ/2 and −λ/2
+  // λ is proportional to √(stiffness / density) for any friction: dλ / d ln p sums to λ/2 over stiffnesses, −λ/2 over densities
   const Scene           s(mesh_of(skewed_pins), mounted(), operating());
   const BodyTerms       bodies = body_terms(s.model, mounted());
   const Eigentriples    modes  = triples(iterated(s.coupled, friction, 1e-13));

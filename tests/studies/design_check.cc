@@ -10,7 +10,7 @@ using namespace Squeal::Testing;
 
 namespace
 {
-  /// Error message of a study.
+  /// Error message of a design study, or `accepted`.
   std::string refusal(const std::string &variables, std::vector<std::string> settings = {})
   {
     settings.insert(settings.begin(), {"Study=geometry", "Designs/Variables=" + variables});
