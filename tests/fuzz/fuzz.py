@@ -175,7 +175,7 @@ def try_case(case, is_whole):
                 found += faults_of_results(folder / "results")
                 there = [name for name in there if not name.startswith("results")]
             if there != before or names_below(temporary):
-                found.append(f"left behind: {sorted(set(there) ^ set(before))[:5]}, temporary files {names_below(temporary)[:5]}")
+                found.append(f"files created or removed: {sorted(set(there) ^ set(before))[:5]}, temporary files left: {names_below(temporary)[:5]}")
             memory = EXPECTED.search(process.stdout.decode("utf-8", "replace"))
             if found or process.returncode != 0 or not memory or float(memory[1]) > 0.5:
                 return outcome, found
@@ -190,7 +190,7 @@ class Fuzzer:
     def __init__(self, seed, kinds=()):
         self.seed, self.kinds, self.rng = seed, kinds or self.kinds, None
         listing = subprocess.run([EXECUTABLE, "--print-parameters"], text=True, capture_output=True, check=True).stdout
-        self.parameters, sections = [], []  # Pairs of Section/Name and value
+        self.parameters, sections = [], []  # (sections, name, default value) of each parameter
         for line in listing.splitlines():
             if line.strip().startswith("subsection"):
                 sections.append(line.split(maxsplit=1)[1])

@@ -348,7 +348,7 @@ TEST(Fields, OfAnimationsWithGrowthAreLargestWhereTheModeIs)
       const auto folder = s.written(place, [&](FieldWriter &writer) {
         writer.write_animation("all", {s.mode({50., 1000.}, "grows"), s.mode({-50., 1000.}, "decays")}, {4, 3, grows});
       });
-      // Only an animation with growth has a final frame, because it would repeat the first frame without growth
+      // The final frame is written only with growth; otherwise it would repeat the first frame
       const auto frames = listed(folder / "animations" / "all.pvd");
       ASSERT_EQ(frames.size(), grows ? 13u : 12u);
       EXPECT_EQ(frames.back().first, (frames.size() - 1) / 4.);

@@ -295,7 +295,7 @@ TEST(ParameterChecks, RefuseWithNameAndReason)
                                                                        {"pad: 1, 0", "not the axes of a volume"}})
     expect_mentions(refusal("", {given, "Materials/Axes=" + axes}), {reason, "Materials/Axes"});
   EXPECT_EQ(refusal("", {given, "Materials/Axes=pad: 1, 2, 0, 0, 3, 1"}), "accepted");
-  // Zero is accepted without dissipation, which alone uses these parameters
+  // Both parameters may be zero without dissipation
   for (const std::string name : {"Operation/Rotation speed", "Operation/Load per side"})
     {
       expect_mentions(refusal("", {damped, name + "=0"}), {"parameter " + name});

@@ -33,7 +33,7 @@ class Installed(ProgramTest):
         self.assert_same_eigenvalues(eigenvalues(self.folder / "results"), eigenvalues(self.run_scene("built")))
 
     def test_takes_its_own_geometries(self):
-        """The installed program uses its own geometries, not those of the sources."""
+        """The installed program uses its own geometries instead of the source folder."""
         geometries = self.prefix / "share" / "squeal" / "geometry"
         shutil.copy(geometries / "disc_pins.geo", geometries / "of_the_house.geo")
         process = self.squeal("scene.prm", "--dry-run", "--set", "Geometry/File=of_the_house.geo")

@@ -97,7 +97,7 @@ class Contact(RenderTest):
     def test_arrow_follows_the_rotation(self):
         parameters = self.results / "parameters.prm"
         text = parameters.read_text(encoding="utf-8")
-        # Dark pixels are those of the arrow head
+        # Dark pixels belong to the arrow head
         centres = []
         for rotation, view in (("positive", "above"), ("negative", "above"), ("positive", "below")):
             parameters.write_text(text + f"subsection Operation\n  set Rotation = {rotation}\nend\n", encoding="utf-8")

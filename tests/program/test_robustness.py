@@ -298,7 +298,7 @@ class OfScene(ProgramTest):
         for row, point in zip(samples, system.reduction["points"]):
             system.values({name: float(row[column]) for name, column in names.items()})
             self.assertEqual(point["largest estimated error of lambda [-]"], float(row["largest estimated error of lambda [-]"]))
-        # The default values are those of sample 1; values in the table are rounded, which changes frequencies of doublets
+        # Defaults are the exact values of sample 1; rounded values of the table would change frequencies of doublets
         eigenvalues = system.solve().eigenvalues
         first = [row for row in modes if row["sample [-]"] == "1"]
         self.assertGreater(len(first), 30)

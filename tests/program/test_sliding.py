@@ -182,7 +182,7 @@ class Gaps(SlidingTest):
         offsets = [pin["pressure offset along t [m]"] for pin in table.values()]
         self.assertLess(offsets[3], min(offsets[1:3]))
         self.assertEqual([table["pin_top_1"][name] for name in ("load [N]", "largest pressure [Pa]", "c_b [N s/m]")], [0, 0, 0])
-        # The lowest bending modes of the open pin are those of a clamped-free pin
+        # The lowest bending modes of the open pin agree with a clamped-free pin
         free = [float(row["frequency [Hz]"]) for row in read_table(results / "component_modes.csv")
                 if row["component"] == "pins" and row["contact"] == "free" and row["label"] == "F1"]
         lowest = [frequency for frequency in real_frequencies(results) if abs(frequency - free[0]) < 1e-6 * free[0]]

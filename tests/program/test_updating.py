@@ -11,7 +11,7 @@ import numpy as np
 
 from program import COARSE, ProgramTest, read_table
 from squeal.vtu_file import VtuFile
-import test_systems  # imported as a module, so that its tests are not run again
+import test_systems  # as a module, because importing its classes would run their tests again
 
 BENDING = 3000.  # frequency of the bending modes of the pins [Hz]
 FOUND = 1e-6  # largest relative error of a recovered parameter

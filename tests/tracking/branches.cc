@@ -159,7 +159,7 @@ namespace
         EXPECT_EQ(one.enters, other.enters);
       }
 
-    // The order of the modes of a multiple λ at the first point is arbitrary, so that branches are compared as sets of curves
+    // Compare branches as sets of curves, because modes of a multiple λ have an arbitrary order at the first point
     const auto curves = [&coarse](const StabilityChart &chart) {
       std::vector<Eigen::VectorXcd> result;
       for (std::size_t b = 0; b < chart.branches.size(); ++b)
@@ -387,8 +387,7 @@ TEST(Branches, MultipleModesAreFollowedAcrossOthers)
 
 TEST(Branches, BandCrossingsInClosedForm)
 {
-  // ω = √(8 + 2μ) leaves the band ω < 3, and √(10.2 − 2μ) enters it; the list of modes ends 5 % above, where a fourth mode appears and
-  // disappears
+  // ω = √(8 + 2μ) leaves the band ω < 3, and √(10.2 − 2μ) enters it. A fourth mode is listed only near μ = 0.5, below ω = 3.15.
   Family family{[](const double mu) { return diagonal({8. + 2. * mu, 10.2 - 2. * mu, 4., 9.9 + 4. * (mu - 0.5) * (mu - 0.5)}); }};
   family.last = 3.15;
   // The first mode is overdamped for 0.7 < μ < 1.3, where c = 2.09 − (μ − 1)² > 2 √k = 2
