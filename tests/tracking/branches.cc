@@ -459,7 +459,7 @@ TEST(Branches, ManyModes)
       spread.weights.push_back(0.5);
     }
   spread.squares[20] = spread.squares[19] = spread.squares[18];
-  // 12 pin modes within 1 %, a disc doublet among them, and six equal modes above
+  // 12 pin modes within 1 %, a disc doublet among them, and above them six equal and two single modes
   for (int i = 0; i < 22; ++i)
     {
       pins.squares.push_back(i < 12 ? 25. * (1. + 0.02 * i / 12.) : i < 14 ? 25.2 : i < 20 ? 30. : 30. + i);
