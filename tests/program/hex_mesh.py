@@ -124,7 +124,6 @@ def disc_with_pads(n_parts=24, pad_parts=(0, 3), disc_layers=1):
     return mesh, faces
 
 
-# Parameter file for these meshes
 PARAMETERS = """
 subsection Geometry
   set File = {file}

@@ -75,7 +75,6 @@ class Starter:
         self.process.wait()
 
     def run(self, arguments, folder, timeout):
-        """Finished process of a call."""
         words = [folder, EXECUTABLE, *arguments]
         with tempfile.TemporaryFile() as output, tempfile.TemporaryFile() as errors:
             socket.send_fds(self.socket, [b"".join(os.fsencode(word) + b"\0" for word in words)], [output.fileno(), errors.fileno()])
@@ -203,7 +202,6 @@ class ProgramTest(unittest.TestCase):
 
 
 def read_table(path):
-    """Rows of a table as dictionaries."""
     with open(path, newline="", encoding="utf-8") as file:
         return list(csv.DictReader(file))
 
@@ -240,7 +238,6 @@ def distance(actual, expected):
 
 
 def numbers(path):
-    """All numbers in a table."""
     for row in read_table(path):
         for text in row.values():
             try:

@@ -31,7 +31,7 @@ class Accuracy(ProgramTest):
         return [row for row in self.modes if all(row[names[key]] == value for key, value in condition.items())]
 
     def test_rows(self):
-        """The table has a row for each mesh, element and method, with consistent numbers."""
+        """A row for each mesh, element and method, with consistent numbers."""
         self.assertEqual([(row["mesh factor [-]"], row["element"], row["method"]) for row in self.meshes],
                          [(factor, element, method) for factor in "12" for element in ("trilinear", "incompatible modes") for method in METHODS])
         for name in ("accuracy", "accuracy_modes", "accuracy_orders"):
@@ -41,7 +41,6 @@ class Accuracy(ProgramTest):
         self.assertIn("yes", [row["Pareto front"] for row in self.meshes])
 
     def test_frequencies_are_those_of_a_run_on_that_mesh(self):
-        """Frequencies agree with a stability run on the same mesh."""
         found = self.run_scene("twice", *TWICE, f"Band/Maximum frequency={1.1 * BAND}")
         expected = [float(row["frequency [Hz]"]) for row in read_table(found / "complex_modes.csv")]
         rows = self.of(element="trilinear", factor="2", method="full order")

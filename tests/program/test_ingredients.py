@@ -63,7 +63,6 @@ class Ingredients(ProgramTest):
         self.assertIn(promise[1:], process.stdout)
         found, promised = eigenvalues(self.folder / "cheapest"), tried_eigenvalues(study, "together")
         self.assert_same_eigenvalues(promised, found, 1e-7)
-        # Each mode is within the required accuracy
         reference = self.here
         self.assertEqual(len(found), len(reference))
         self.assertLess(distance(found, reference), 0.01)

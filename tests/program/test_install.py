@@ -44,7 +44,7 @@ class Installed(ProgramTest):
         self.assertIn(str(geometries), process.stderr)
 
     def test_python_module(self):
-        """The Python module finds the installed program, and the installed scripts find the module."""
+        """The Python module finds the installed program, and the scripts find the module."""
         share = self.prefix / "share" / "squeal"
         code = 'import squeal; results = squeal.run("scene.prm", output="by_module"); print(len(results.table("complex_modes")), squeal.__file__)'
         environment = {name: value for name, value in os.environ.items() if name != "SQUEAL"}
@@ -64,7 +64,7 @@ class Installed(ProgramTest):
         self.assertEqual((process.returncode, len(eigenvalues(self.folder / "of_matrices"))), (0, 2), process.stderr)
 
     def test_takes_its_own_mesher(self):
-        """Meshing uses the installed squeal_mesher: if it is not executable, the message names its path."""
+        """Gmsh runs in the installed squeal_mesher."""
         mesher = self.prefix / "libexec" / "squeal" / "squeal_mesher"
         mesher.chmod(0o644)
         self.addCleanup(mesher.chmod, 0o755)

@@ -8,7 +8,6 @@ import shutil
 from blocks import BLOCKS, HEXAHEDRA, SURFACES, VOLUMES
 from program import SOURCE, ProgramTest, settings
 
-# Two stacked boxes
 SCRIPT = BLOCKS + HEXAHEDRA + VOLUMES + SURFACES
 COARSE = ("Geometry/Disc layers=1", "Geometry/Pin layers=1", "Geometry/Element size=0.04")
 

@@ -38,7 +38,7 @@ class Solvers(ProgramTest):
                     self.assert_same_eigenvalues(real_frequencies(several), real_frequencies(one))
                     fields, others = (sorted(path.name for path in (folder / "modes").iterdir()) for folder in (one, several))
                     self.assertEqual(others, fields)
-                    # There may be fewer pieces than processes, because a process may own no cell of a component
+                    # A process may own no cell of a component
                     for kind in ("component_disc_", "component_pins_sliding_", "complex_"):
                         file = next(file for file in fields if file.startswith(kind))
                         alone, pieces = (VtuFile(folder / "modes" / file) for folder in (one, several))

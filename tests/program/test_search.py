@@ -70,7 +70,7 @@ class SearchTest(ProgramTest):
         self.assertFalse((self.folder / "killed.checkpoint").exists())
 
     def test_what_is_refused(self):
-        """Invalid settings of the search stop the run; tests/parameters covers invalid variables."""
+        """Invalid settings; tests/parameters covers invalid variables."""
         for overrides, what in ((["Designs/Variables=Geometry/Pin height = 0.03, 0.04"], "a search needs ranges"),
                                 ([VARIABLES, "Search/Samples=20", "Search/Evaluations=10"], "20 samples"),
                                 ([VARIABLES, "Search/Smallest step=0.2"], "larger than the first")):

@@ -135,7 +135,6 @@ def clutch():
     return mesh
 
 
-# Parameter file of brake()
 BRAKE = """
 subsection Geometry
   set File = {file}

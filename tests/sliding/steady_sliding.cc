@@ -68,7 +68,6 @@ namespace
     return std::count(state.closed.begin(), state.closed.end(), false);
   }
 
-  /// Checks for every state.
   void check(const SlidingScene &s, const SlidingState &state)
   {
     EXPECT_LT(state.certificate.residual, 1e-10);

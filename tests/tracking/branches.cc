@@ -74,7 +74,6 @@ namespace
     return as_column(values).asDiagonal();
   }
 
-  /// Normally distributed numbers.
   DenseMatrix random(std::mt19937 &generator, const int n_rows, const int n_columns)
   {
     std::normal_distribution<double> normal;
