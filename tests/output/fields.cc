@@ -264,6 +264,7 @@ TEST(Fields, OfMixedCellsAreThoseOfLinearParts)
         VtuPiece(bodies).write(into, "mixed.vtu", {}, MPI_COMM_WORLD);
         VtuPiece(surface).write(into, "surface.vtu", {}, MPI_COMM_WORLD);
       });
+      // Number of cells of each type
       const auto check_file = [&](const char *name, const FieldMesh &written, const std::map<int, unsigned int> &expected) {
         const std::string text  = content(folder / name);
         const auto        types = values_of<std::uint8_t>(text, "types");
