@@ -5,11 +5,10 @@
 
     SQUEAL=build/sanitizers/squeal tests/fuzz/fuzz.py [--cases N] [--first N] [--seed N] [--kind KIND]
 
-For any input, the program must either work, or end with exit status 1 and one message that says what happened, where,
-and what to change. It must not crash or exceed its time limit, and it must write only complete results. KIND is
-parameters (files), settings (of the command line), meshes or scripts. Some of the small models that pass the dry run
-are also run. Case N of a seed is always the same. If a case fails, its files are kept in build/fuzz, and the exit
-status is 1.
+For any input, the program must either succeed, or end with exit status 1 and one message that says what happened,
+where, and what to change. It must not crash or exceed its time limit, and it must write only complete results. KIND is
+parameters (files), settings (of the command line), meshes or scripts. Some small models that pass the dry run are also
+run. Case N of a seed is always the same. If a case fails, its files are kept in build/fuzz, and the exit status is 1.
 """
 
 import argparse
@@ -37,12 +36,12 @@ MEMORY = 16 << 30      # memory limit of a process without sanitizers [byte]
 PARTS = ("error: ", "  where:  ", "  change: ")
 EXPECTED = re.compile(r"expected: \S+ dofs, ([\d.e+-]+) GB of memory")
 
-# Limit meshing, so that cases are quick
+# Limits of meshing that keep cases short
 LIMITS = ["Geometry/Meshing time limit=10", "Geometry/Meshing memory limit=2"]
 
 NUMBER = re.compile(rb"(?<![\w.])[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?(?![\w.])")
 
-# Limits of number types, of ranges and of signs, and texts that are not numbers
+# Limits of number types and ranges, both signs, and texts that are not numbers
 NUMBERS = [b"0", b"-0", b"-1", b"1e308", b"-1e308", b"1e309", b"5e-324", b"1e18", b"nan", b"inf", b"-inf", b"2147483647", b"2147483648",
            b"-2147483649", b"4294967296", b"9223372036854775808", b"18446744073709551616", b"1" * 400, b"0x10", b"1e", b"1,5", b"one", b""]
 
@@ -100,7 +99,7 @@ def damaged(rng, data):
 
 
 def environment(folder):
-    """Environment with a separate folder for temporary files, so that remaining files are detected."""
+    """Environment with a separate folder for temporary files, to detect files that are left behind."""
     result = {**os.environ, "TMPDIR": str(folder), "HOME": str(folder)}
     if "sanitizers" in EXECUTABLE:
         result.setdefault("ASAN_OPTIONS", "abort_on_error=1:detect_leaks=0")
@@ -115,7 +114,7 @@ def limit_memory():
 
 
 def call(folder, temporary, arguments):
-    """The finished process. If it does not end in time, its process group is killed and None is returned."""
+    """Finished process. If the time limit is exceeded, the process group is killed and None is returned."""
     process = subprocess.Popen([EXECUTABLE, "case.prm", *arguments], cwd=folder, env=environment(temporary), stdin=subprocess.DEVNULL,
                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, preexec_fn=limit_memory, start_new_session=True)
     try:
@@ -132,21 +131,22 @@ def faults_of_message(process):
     """Faults in the message of a rejected run; a successful run must not print a message."""
     text = process.stderr.decode("utf-8", "replace")
     if process.returncode == 0:
-        return [f"success with a message: {text!r}"] if text.strip() else []
+        return [f"exit status 0 with a message: {text!r}"] if text.strip() else []
     if process.returncode != 1:
         return [f"exit status {process.returncode}: {text[-3000:]}"]
     lines = text.strip().split("\n")
-    faults = {"not one message": [sum(line.startswith(part) and len(line) > len(part) for line in lines) for part in PARTS] != [1, 1, 1],
-              "too long": len(text) > LARGEST_MESSAGE,
-              "control characters": any(ord(c) < 0x20 and c != "\n" or 0x7F <= ord(c) < 0xA0 for c in text),
-              "a defect": "defect of the program" in text}
+    faults = {"not one message in three parts": [sum(line.startswith(part) and len(line) > len(part) for line in lines)
+                                                 for part in PARTS] != [1, 1, 1],
+              "message too long": len(text) > LARGEST_MESSAGE,
+              "control characters in the message": any(ord(c) < 0x20 and c != "\n" or 0x7F <= ord(c) < 0xA0 for c in text),
+              "the message reports a defect": "defect of the program" in text}
     return [f"{fault}: {text[:3000]!r}" for fault, is_there in faults.items() if is_there]
 
 
 def faults_of_results(folder):
-    """Faults in the results, which must be complete and contain only finite numbers."""
+    """Faults in the results: no record of the run, or numbers that are not finite."""
     if not (folder / "run.json").exists():
-        return ["success without results"]
+        return ["exit status 0, but run.json is missing"]
     return [f"{text} in {path.name}" for path in folder.glob("*.csv") for row in read_table(path) for text in row.values()
             if isinstance(text, str) and text.strip().lower() in ("nan", "-nan", "inf", "-inf")]
 
@@ -167,7 +167,7 @@ def try_case(case, is_whole):
         for options in (["--dry-run"], []) if is_whole else (["--dry-run"],):
             process = call(folder, temporary, ["--output", "results", *case.arguments, *options])
             if process is None:
-                return "hangs", [f"no end within {TIME_LIMIT} s"]
+                return "hangs", [f"not finished within {TIME_LIMIT} s"]
             outcome = {0: "dry run" if options else "run", 1: "refused" if options else "refused late"}.get(process.returncode, "crash")
             found = faults_of_message(process)
             there = names_below(folder)
@@ -175,7 +175,7 @@ def try_case(case, is_whole):
                 found += faults_of_results(folder / "results")
                 there = [name for name in there if not name.startswith("results")]
             if there != before or names_below(temporary):
-                found.append(f"left behind: {sorted(set(there) ^ set(before))[:5]}, temporary files {names_below(temporary)[:5]}")
+                found.append(f"files created or removed: {sorted(set(there) ^ set(before))[:5]}, temporary files left: {names_below(temporary)[:5]}")
             memory = EXPECTED.search(process.stdout.decode("utf-8", "replace"))
             if found or process.returncode != 0 or not memory or float(memory[1]) > 0.5:
                 return outcome, found
@@ -183,14 +183,14 @@ def try_case(case, is_whole):
 
 
 class Fuzzer:
-    """Cases of all kinds of input, derived from the parameters, the files of the program and a mesh of two blocks."""
+    """Cases of all kinds of input, derived from the parameters and files of the program and a mesh of two blocks."""
 
     kinds = ["parameters", "settings", "meshes", "scripts"]
 
     def __init__(self, seed, kinds=()):
         self.seed, self.kinds, self.rng = seed, kinds or self.kinds, None
         listing = subprocess.run([EXECUTABLE, "--print-parameters"], text=True, capture_output=True, check=True).stdout
-        self.parameters, sections = [], []  # Pairs of Section/Name and value
+        self.parameters, sections = [], []  # (sections, name, default value) of each parameter
         for line in listing.splitlines():
             if line.strip().startswith("subsection"):
                 sections.append(line.split(maxsplit=1)[1])

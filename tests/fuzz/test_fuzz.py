@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""A small sample of the cases of fuzz.py."""
+"""The first cases of fuzz.py."""
 
 import unittest
 

@@ -22,7 +22,6 @@ namespace
 {
   using Vector3 = dealii::Tensor<1, 3>;
 
-  /// Corners of a cell.
   std::vector<Vector3> corners(const FieldMesh &mesh, const unsigned int cell)
   {
     std::vector<Vector3> result;
@@ -34,7 +33,7 @@ namespace
     return result;
   }
 
-  /// Normals of the triangle fan about the first corner of a polygon; their length is twice the area.
+  /// Normals of the triangles of a fan about the first corner of a polygon; each length is twice the area.
   std::vector<Vector3> fan(const std::vector<Vector3> &x)
   {
     std::vector<Vector3> result;
@@ -43,7 +42,7 @@ namespace
     return result;
   }
 
-  /// Volume of the cone from the origin to a polygon with outward normal.
+  /// Signed volume of the cone from the origin to a polygon, positive if its normal points away from the origin.
   double cone(const std::vector<Vector3> &x)
   {
     double result = 0.;
@@ -81,7 +80,7 @@ namespace
     return sum.norm();
   }
 
-  /// Area or volume for curved edges, approximated by two chords each: the error is a quarter of that with one chord.
+  /// Area or volume with two chords for each curved edge: the error is a quarter of the error with one chord.
   double of_half_edges(const double with_chords, const double with_parabolas)
   {
     return with_parabolas + (with_chords - with_parabolas) / 4.;
@@ -244,7 +243,7 @@ TEST(FieldMeshes, ContactFacesHaveTheAreaOfThePairs)
 
 TEST(Fields, OfMixedCellsAreThoseOfLinearParts)
 {
-  // A cube with a pyramid on top and a wedge next to it, with a tetrahedron of another volume between them
+  // A cube, a pyramid on top, a wedge next to it, and between pyramid and wedge a tetrahedron of another volume
   Mesh mesh;
   mesh.points         = {{0., 0., 0.}, {1., 0., 0.}, {1., 1., 0.}, {0., 1., 0.},  {0., 0., 1.},  {1., 0., 1.},
                          {1., 1., 1.}, {0., 1., 1.}, {.5, .5, 2.}, {2., .5, 1.5}, {1.5, .5, 0.}, {1.5, .5, 1.}};
@@ -302,7 +301,7 @@ TEST(Fields, HaveTheDisplacementsOfTheirPoints)
   const auto displacement = [](const std::array<double, 3> &x, const int d) {
     return std::sin(1. + d + 7. * x[0] - 5. * x[1] + 9. * x[2]);
   };
-  constexpr double      half_a_step = 0.5 / 65536. + 1e-7; // half a step of the displacements, and rounding of single precision
+  constexpr double      half_a_step = 0.5 / 65536. + 1e-7; // half a step of the displacements, and rounding to single precision
   const TemporaryFolder place;
   for (const Element element : {Element::trilinear, Element::quadratic})
     {
@@ -348,7 +347,7 @@ TEST(Fields, OfAnimationsWithGrowthAreLargestWhereTheModeIs)
       const auto folder = s.written(place, [&](FieldWriter &writer) {
         writer.write_animation("all", {s.mode({50., 1000.}, "grows"), s.mode({-50., 1000.}, "decays")}, {4, 3, grows});
       });
-      // With growth there is a final frame; without growth it would repeat the first frame
+      // The final frame is written only with growth; otherwise it would repeat the first frame
       const auto frames = listed(folder / "animations" / "all.pvd");
       ASSERT_EQ(frames.size(), grows ? 13u : 12u);
       EXPECT_EQ(frames.back().first, (frames.size() - 1) / 4.);
@@ -356,7 +355,7 @@ TEST(Fields, OfAnimationsWithGrowthAreLargestWhereTheModeIs)
                  last  = content(folder / "animations" / frames.back().second);
       if (!grows)
         without = values_of(first, "grows");
-      // The largest amplitude equals the amplitude without growth
+      // Growing modes end, and decaying modes begin, with the amplitude of an animation without growth
       EXPECT_EQ(values_of(first, "decays"), without);
       EXPECT_EQ(values_of(first, "grows") == without, !grows);
       EXPECT_EQ(values_of(last, "grows") == without, grows);

@@ -100,7 +100,7 @@ TEST_F(ResultFolders, KeepFilesOfTheUser)
                             "results/table.csv"}));
   EXPECT_EQ(content(results + "/notes.txt"), "mine");
   EXPECT_EQ(content(results + "/table.csv"), "two");
-  // The next run keeps the user's files as well
+  // A further run keeps the user's files as well
   make_results("three");
   EXPECT_EQ(content(results + "/modes/own.vtu"), "mine too");
 }
@@ -117,7 +117,7 @@ TEST_F(ResultFolders, RenameFilesOfTheUserThatAreInTheWay)
   EXPECT_EQ(content(results + "/modes/two.vtu"), "two");
   EXPECT_EQ(content(results + "/modes/two.vtu.kept"), "mine as well");
   EXPECT_EQ(content(results + "/modes/two.vtu.kept-2"), "mine");
-  // The user has a folder with the name of a result file
+  // A folder of the user with the name of a result file is renamed as well
   fs::remove(results + "/table.csv");
   put(results + "/table.csv/a", "a");
   EXPECT_EQ(make_results("two").size(), 1u);
@@ -131,7 +131,7 @@ TEST_F(ResultFolders, AreForOneRunAtATime)
   fs::create_symlink("results", place / "link");
   for (const std::string &name : {results, results + "/", (place / "link").string()})
     EXPECT_TRUE(contains(refusal([&] { ResultFolder(name, true); }), "another run")) << name;
-  // The first run continues
+  // The first run is not affected
   write(running, "table.csv", "here");
   EXPECT_EQ(content(results + "/.unfinished/table.csv"), "here");
 }
@@ -182,7 +182,7 @@ TEST_F(ResultFolders, LeaveFormerOnesWhereARunFails)
     write(running, "matrices", "a file where a folder is needed");
     const std::string message = refusal([&] { write(running, "matrices/K.mtx", "1"); });
     EXPECT_TRUE(contains(message, "file " + results + "/matrices/K.mtx")) << message;
-    // Files that failed or could not be generated are not listed.
+    // Files that could not be written are not listed
     EXPECT_TRUE(contains(refusal([&] { running.write("mesh.msh", [](std::ostream &s) { s.setstate(std::ios::badbit); }); }), "mesh.msh"));
     EXPECT_THROW(running.write("table.csv", [](std::ostream &) { throw FileError("a number is not finite", "column", "report"); }),
                  FileError);
@@ -196,7 +196,7 @@ TEST_F(ResultFolders, SettleWhatAKilledRunHasLeft)
 {
   put(results + "/.unfinished/half", "half");
   make_results("one");
-  // The run was killed while files were moved: no record may list files of two runs
+  // A run killed while it moved files leaves no record, because the record would list files of two runs
   put(results + "/.unfinished/half", "half");
   fs::remove(results + "/run.json");
   make_results("two");

@@ -49,7 +49,7 @@ TEST(AccuracyGoal, MeshesFollowTheScene)
 {
   const Parameters reference = with_goal(goal(AccuracyGoal::one_percent));
 
-  // The element size is proportional to the bending wavelength ∝ 1/√f, limited by the plate width
+  // The element size is proportional to the bending wavelength, that is, to 1/√f
   Parameters fast                       = goal(AccuracyGoal::one_percent);
   fast.discretization.maximum_frequency = 4. * reference.discretization.maximum_frequency;
   fast                                  = with_goal(fast);
@@ -60,7 +60,7 @@ TEST(AccuracyGoal, MeshesFollowTheScene)
   slow                                  = with_goal(slow);
   slow.check();
 
-  // The same model in other units of length and time
+  // A model that is 1000 times smaller, at 1000 times the frequency, has the same mesh
   Parameters small = goal(AccuracyGoal::one_percent);
   small.discretization.maximum_frequency *= 1000.;
   for (double *length : {&small.geometry.disc_inner_radius, &small.geometry.disc_outer_radius, &small.geometry.disc_thickness,
@@ -98,7 +98,7 @@ TEST(CoarserMesh, SetsParametersOfTheGeometry)
 
 TEST(MeshFamily, ScalesElementsLayersAndPinFaces)
 {
-  // The given mesh: 11.5 mm; 19 nodes, k = 2; 4 and 3 layers
+  // Default mesh: elements of 11.5 mm, 19 = 1 + 3 k (k + 1) nodes per pin face with k = 2, 4 and 3 layers
   for (const auto &[factor, size, nodes, of_pin, of_disc] :
        std::vector<std::tuple<double, double, unsigned int, unsigned int, unsigned int>>{{1., 0.0115, 19, 4, 3},
                                                                                          {2., 0.00575, 61, 8, 6},
@@ -114,7 +114,7 @@ TEST(MeshFamily, ScalesElementsLayersAndPinFaces)
       result.check();
     }
 
-  // Refinement does not change the bodies; volumes differ only because of the polygonal outlines
+  // Refinement keeps the bodies; volumes differ only because outlines are polygons
   const Mesh coarse = generate_mesh(one_pin()), fine = generate_mesh(refined(one_pin(), 2.));
   EXPECT_EQ(coarse.volume_names, fine.volume_names);
   EXPECT_GT(fine.cells.size(), 6 * coarse.cells.size());

@@ -28,7 +28,7 @@ namespace
     return design_plan(parameters);
   }
 
-  /// Samples of one variable, as numbers.
+  /// Values of one variable in all designs.
   std::vector<double> column(const DesignPlan &plan, const std::size_t variable)
   {
     std::vector<double> result;
@@ -37,7 +37,7 @@ namespace
     return result;
   }
 
-  /// Parameters that read the designs from a file.
+  /// Parameters of a study with designs from a file.
   Parameters reading(const File &file)
   {
     Parameters parameters;
@@ -91,7 +91,7 @@ TEST(DesignPlan, LatinHypercubeMeetsEveryPartOnce)
   EXPECT_EQ(parts_y.size(), n);
   EXPECT_EQ(std::count_if(plan.designs.begin(), plan.designs.end(), [](const Values &design) { return design[2] == "red"; }), n / 2);
 
-  // The same seed gives the same designs, another seed different ones
+  // Equal seeds give equal designs
   EXPECT_EQ(plan_of(DesignChoice::latin_hypercube, "A/x = 2 to 6", n, 7).designs,
             plan_of(DesignChoice::latin_hypercube, "A/x = 2 to 6", n, 7).designs);
   EXPECT_NE(plan_of(DesignChoice::latin_hypercube, "A/x = 2 to 6", n, 7).designs,

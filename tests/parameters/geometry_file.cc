@@ -75,7 +75,7 @@ TEST_F(GeometryFiles, CopiesHoldWhatIsIncluded)
     names += file.to + " ";
   EXPECT_EQ(names, "geometry/own.geo geometry/parts/part.geo geometry/shape.step ");
 
-  // The copy would not find files outside the folder
+  // A script that includes files outside its folder is not copied
   const std::string inner = write("inner/own.geo", "Include \"../parts/part.geo\";");
   EXPECT_EQ(copy_of(inner).name, inner);
   EXPECT_TRUE(copy_of(find_geometry("disc_pins.geo", "")).files.empty());

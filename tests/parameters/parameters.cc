@@ -97,7 +97,7 @@ TEST(ParameterFiles, UnknownNamesAreAnsweredWithTheNearest)
   expect_mentions(refusal(in_section("Operation", "set Rotaton speed = 3")),
                   {"unknown parameter `Operation/Rotaton speed`", "nearest known name is `Operation/Rotation speed`", "line 2"});
   expect_mentions(refusal(in_section("Opertion", "set Rotation speed = 3")), {"unknown section `Opertion/`", "`Operation/`"});
-  // The name is right, but the section is wrong
+  // Right name in the wrong section
   expect_mentions(refusal(in_section("Operation", "set Maximum frequency = 3000")), {"`Band/Maximum frequency`"});
 }
 
@@ -160,7 +160,7 @@ TEST(Declarations, SayWhatEveryKindAccepts)
   EXPECT_EQ(accepted, (std::vector<std::string>{"a number in m", "a number <= 2.5", "a number in 1e-14 ... 1e-04", "an integer",
                                                 "numbers in -2 ... 7, separated by commas", ""}));
 
-  // Check all parameters of the program; only texts with a custom format lack a description of accepted values
+  // Only texts with a custom format lack a description of accepted values
   Declarations             all;
   Parameters               parameters;
   std::vector<std::string> free_texts;
@@ -295,14 +295,14 @@ TEST(ParameterChecks, RefuseWithNameAndReason)
                                                                        {"pad: 1, 0", "not the axes of a volume"}})
     expect_mentions(refusal("", {given, "Materials/Axes=" + axes}), {reason, "Materials/Axes"});
   EXPECT_EQ(refusal("", {given, "Materials/Axes=pad: 1, 2, 0, 0, 3, 1"}), "accepted");
-  // Neither parameter is used without dissipation
+  // Both parameters may be zero without dissipation
   for (const std::string name : {"Operation/Rotation speed", "Operation/Load per side"})
     {
       expect_mentions(refusal("", {damped, name + "=0"}), {"parameter " + name});
       EXPECT_EQ(refusal("", {name + "=0"}), "accepted");
     }
   EXPECT_EQ(refusal("", {ratios + "=0: 0, 1000: 0.999"}), "accepted");
-  // Values that are set in code are checked as well
+  // check() also rejects values that were not read from a file
   MaterialParameters infinite, negative;
   infinite.disc.rayleigh_alpha = std::numeric_limits<double>::infinity();
   negative.pin.rayleigh_beta   = -1e-9;
@@ -312,7 +312,7 @@ TEST(ParameterChecks, RefuseWithNameAndReason)
 
 TEST(ModalDampingRatios, AreLinearBetweenTheEntries)
 {
-  using Ratios = std::vector<std::pair<double, double>>; // frequency and ratio of each entry
+  using Ratios = std::vector<std::pair<double, double>>; // frequencies and expected ratios
   for (const auto &[entries, ratios] : std::vector<std::pair<std::string, Ratios>>{
          {"", {{1000., 0.}}},
          {"800: 0.01", {{0., 0.01}, {800., 0.01}, {5000., 0.01}}},

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""A small geometry script to which tests add or in which they replace lines."""
+"""Parts of a small geometry script, which tests combine and change."""
 
-# Two stacked blocks without names, which tests add
+# Two stacked blocks without physical names
 BLOCKS = """
 SetFactory("OpenCASCADE");
 Box(1) = {0.1, 0, -0.05, 0.1, 0.1, 0.05};

@@ -4,7 +4,7 @@
 
 import math
 
-# Corners of a hexahedron in Gmsh's order, and the corners of its faces by their normal
+# Corners of a hexahedron in Gmsh's order, and corner numbers of its faces by outward normal
 CORNERS = ((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1))
 SIDES = {"-a": (0, 4, 7, 3), "+a": (1, 2, 6, 5), "-b": (0, 1, 5, 4), "+b": (3, 7, 6, 2), "-c": (0, 3, 2, 1), "+c": (4, 5, 6, 7)}
 
@@ -22,8 +22,7 @@ class HexMesh:
         self.faces = []  # (names, nodes)
 
     def block(self, body, a, b, c, place=cylindrical, is_ring=False):
-        """Adds a grid given by three lists of coordinates; a ring is closed along b. Returns its faces: side -> {cell:
-        nodes}."""
+        """Adds a grid given by three lists of coordinates; a ring is closed along b. Returns {side: {cell: nodes}}."""
         n_b = len(b) - is_ring
         first = len(self.points)
         self.points += [place(x, y, z) for x in a for y in b[:n_b] for z in c]
@@ -107,8 +106,8 @@ def angles(n, first=0, last=None):
 
 
 def disc_with_pads(n_parts=24, pad_parts=(0, 3), disc_layers=1):
-    """A ring with one matching pad on each side, small enough to be solved in a second. Returns the mesh and the faces of `disc`, `pin_top`
-    and `pin_bottom` by side: -a and +a are bore and rim, -c and +c bottom and top."""
+    """A ring with one matching pad on each side, solved within a second. Returns the mesh and the faces of `disc`, `pin_top` and `pin_bottom`
+    by side: -a and +a are bore and rim, -c and +c bottom and top."""
     mesh = HexMesh()
     radii, t = [0.15, 0.2, 0.25, 0.3], 0.02
     levels = [-t + 2 * t * layer / disc_layers for layer in range(disc_layers + 1)]
@@ -125,7 +124,6 @@ def disc_with_pads(n_parts=24, pad_parts=(0, 3), disc_layers=1):
     return mesh, faces
 
 
-# Parameter file for these meshes
 PARAMETERS = """
 subsection Geometry
   set File = {file}

@@ -9,13 +9,12 @@ import scipy.io
 import scipy.sparse as sparse
 import scipy.sparse.linalg
 
-# Travel from which d is measured, negative so that d >= 0 even if the disc recedes [m]
+# Reference of the travel d [m], negative to keep d >= 0 if the disc recedes
 START = -1e-4
 
 
 class SlidingContact:
-    """Contact of disc and pins condensed to the contact nodes, from the exported matrices of a run with all nodes
-    closed."""
+    """Contact condensed to the contact nodes, from the exported matrices of a run with all nodes closed."""
 
     def __init__(self, folder, friction_coefficient):
         K, P_n, P_t = (sparse.csc_matrix(scipy.io.mmread(folder / "matrices" / f"{name}.mtx")) for name in ("K", "P_n", "P_t"))
@@ -67,7 +66,7 @@ class SlidingContact:
             travel = -mean / np.linalg.norm(mean)
             closing[nodes, j] = -self.normals[nodes] @ travel
             balance[j, nodes] = (self.normals[nodes] + self.friction_coefficient * self.sliding[nodes]) @ travel
-        # Solve g = G r + B z = 0 at every node and L r = load of every body
+        # Solve G r + B z = 0 (no gap at any node) and L r = load (for each body)
         unit = np.mean(np.diag(self.flexibility))
         matrix = np.block([[self.flexibility / unit, closing], [balance, np.zeros((k, k))]])
         solution = np.linalg.solve(matrix, np.concatenate([np.zeros(n), np.full(k, load)]))
@@ -98,6 +97,6 @@ def lemke(matrix, vector):
         if len(positive) == 0:
             break
         ratios = tableau[positive, -1] / column[positive]
-        # In case of ties, the artificial variable leaves the basis
+        # In a tie, the artificial variable leaves the basis, which ends the iteration
         row = int(min(positive[ratios <= ratios.min() * (1 + 1e-12)], key=lambda i: basis[i] != 2 * n))
-    raise RuntimeError("Lemke's method ended on a ray.")
+    raise RuntimeError(f"Lemke's method found no solution: it ended on a ray or after {100 * n} pivots")

@@ -4,7 +4,7 @@
 
 
 class MeshFile:
-    """Nodes and elements of a .msh file by their tags; all other content is unchanged."""
+    """Nodes and elements of a .msh file by tag; all other lines are kept."""
 
     def __init__(self, path):
         self.lines = path.read_text(encoding="utf-8").splitlines()
@@ -36,7 +36,7 @@ class MeshFile:
         return range(first + 1, last)
 
     def entity(self, name):
-        """(dimension, tag) of a physical group; in meshes written by the program, its only entity has the same tag."""
+        """(dimension, tag) of a physical group. The program writes one entity per group, with the same tag."""
         return next(key for key, value in self.names.items() if value == name)
 
     def element_nodes(self, dimension, entity, element):
@@ -55,7 +55,7 @@ class MeshFile:
         self.lines[line] = " ".join(repr(x) for x in position)
 
     def mirror(self):
-        """Mirrors the mesh in y and reorders the nodes of elements, whose orientation would otherwise be reversed."""
+        """Mirrors the mesh in y and reorders the nodes of elements to preserve their orientation."""
         for tag, (_, (x, y, z)) in list(self.nodes.items()):
             self.move(tag, [x, -y, z])
         for (dimension, entity), block in self.elements.items():

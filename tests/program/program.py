@@ -24,8 +24,8 @@ MPIRUN = os.environ.get("MPIRUN", "mpirun")
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(SOURCE / "scripts"), str(SOURCE / "python")]
 
-# Two pins on each side with seven nodes each, and large elements: solved in less than a second, with 38 modes, some of
-# disc and pins unstable
+# Two pins on each side, seven contact nodes per pin, large elements: 38 modes, some of disc and pins unstable, in less
+# than a second
 SCENE = """
 subsection Geometry
   set Top pin radii = 0.2275, 0.2275
@@ -60,7 +60,7 @@ def settings(overrides):
 
 
 class Starter:
-    """A process of the program that has loaded all its libraries and forks for every call (starter.cc)."""
+    """Process of the program that has loaded its libraries and forks for every call (starter.cc)."""
 
     def __init__(self):
         self.socket, its_socket = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
@@ -75,7 +75,6 @@ class Starter:
         self.process.wait()
 
     def run(self, arguments, folder, timeout):
-        """The finished process of a call."""
         words = [folder, EXECUTABLE, *arguments]
         with tempfile.TemporaryFile() as output, tempfile.TemporaryFile() as errors:
             socket.send_fds(self.socket, [b"".join(os.fsencode(word) + b"\0" for word in words)], [output.fileno(), errors.fileno()])
@@ -83,7 +82,7 @@ class Starter:
             try:
                 status, = struct.unpack("i", self.socket.recv(struct.calcsize("i")))
             except TimeoutError:
-                self.process.kill()  # ends its child as well
+                self.process.kill()  # also ends the forked process
                 ProgramTest.starter = None
                 raise
             texts = []
@@ -108,7 +107,7 @@ class ProgramTest(unittest.TestCase):
 
     @classmethod
     def call(cls, *arguments, n_processes=1):
-        """The finished process of a call, without hwloc's messages on virtual machines."""
+        """Finished process of a call, without hwloc's messages on virtual machines."""
         if n_processes > 1 or "STARTER" not in os.environ:
             launcher = [MPIRUN, "-np", str(n_processes)] if n_processes > 1 else []
             process = subprocess.run([*launcher, EXECUTABLE, *arguments], cwd=cls.folder, text=True, errors="surrogateescape", capture_output=True,
@@ -121,7 +120,7 @@ class ProgramTest(unittest.TestCase):
 
     @classmethod
     def call_scene(cls, output, *overrides):
-        """The finished process for scene.prm with overrides "Section/Name=value"."""
+        """Finished process for scene.prm with overrides "Section/Name=value"."""
         return cls.call("scene.prm", "--output", output, *settings(overrides))
 
     @classmethod
@@ -134,7 +133,7 @@ class ProgramTest(unittest.TestCase):
 
     @classmethod
     def shared(cls, *overrides, file="scene.prm"):
-        """Result folder that no test changes, computed once for each combination of file and overrides."""
+        """Result folder computed once for each combination of file and overrides; tests must not change it."""
         runs = cls.__dict__.get("shared_runs")
         if runs is None:
             runs = cls.shared_runs = {}
@@ -143,7 +142,7 @@ class ProgramTest(unittest.TestCase):
         return runs[file, overrides]
 
     def write(self, name, content):
-        """Writes a file for the duration of a test."""
+        """Writes a file that is removed after the test; returns its name."""
         path = self.folder / name
         path.parent.mkdir(exist_ok=True)
         path.write_bytes(content if isinstance(content, bytes) else content.encode())
@@ -177,8 +176,8 @@ class ProgramTest(unittest.TestCase):
             self.assertIn(text, process.stderr)
 
     def interrupt(self, output, overrides, ends, kind="design"):
-        """Starts or resumes a study once for each (number, signal) in `ends`. The signal is sent as soon as this number
-        of files of finished designs, or of sets of samples, is stored; no results are written."""
+        """Starts or resumes a study once for each (number, signal) in `ends`, and sends the signal when `number` designs
+        or sets of samples are stored. The interrupted study must not write results."""
         for number, how in ends:
             with open(self.folder / "interrupted.log", "w+", encoding="utf-8") as log:
                 process = subprocess.Popen([EXECUTABLE, "scene.prm", "--output", output, *settings(overrides)], cwd=self.folder, stdout=log, stderr=log)
@@ -193,7 +192,7 @@ class ProgramTest(unittest.TestCase):
             self.assertFalse((self.folder / output / "run.json").exists())
 
     def stored(self, output, kind="design"):
-        """Files of the designs, or sets of samples, that an interrupted study has stored."""
+        """Files of the designs or sets of samples that an interrupted study has stored."""
         return sorted((self.folder / f"{output}.checkpoint").glob(f"{kind}-*.result"))
 
     def assert_same_eigenvalues(self, actual, expected, tolerance=SAME):
@@ -203,13 +202,12 @@ class ProgramTest(unittest.TestCase):
 
 
 def read_table(path):
-    """Rows of a table as dictionaries."""
     with open(path, newline="", encoding="utf-8") as file:
         return list(csv.DictReader(file))
 
 
 def design_tables(folder):
-    """All tables of a design study, without the times."""
+    """All tables of a design study, without computing times."""
     return {name: [{key: value for key, value in row.items() if key != "time [s]"} for row in read_table(folder / f"{name}.csv")]
             for name in ("designs", "design_thresholds", "design_modes")}
 
@@ -230,7 +228,7 @@ def real_frequencies(folder, table="real_modes.csv"):
 
 
 def distance(actual, expected):
-    """Largest relative difference of eigenvalues; each is compared with the nearest one not yet used."""
+    """Largest relative difference of eigenvalues, each compared with the nearest unused one."""
     left, largest = list(expected), 0.0
     for value in actual:
         nearest = min(left, key=lambda other: abs(other - value))
@@ -240,7 +238,6 @@ def distance(actual, expected):
 
 
 def numbers(path):
-    """All numbers in a table."""
     for row in read_table(path):
         for text in row.values():
             try:
@@ -250,5 +247,5 @@ def numbers(path):
 
 
 def contents(folder):
-    """The content of every file in a folder and its subfolders."""
+    """Content of every file in a folder and its subfolders."""
     return {str(path.relative_to(folder)): path.read_bytes() if path.is_file() else None for path in sorted(folder.rglob("*"))}

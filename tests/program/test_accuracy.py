@@ -41,7 +41,6 @@ class Accuracy(ProgramTest):
         self.assertIn("yes", [row["Pareto front"] for row in self.meshes])
 
     def test_frequencies_are_those_of_a_run_on_that_mesh(self):
-        """Frequencies agree with a stability run on the same mesh."""
         found = self.run_scene("twice", *TWICE, f"Band/Maximum frequency={1.1 * BAND}")
         expected = [float(row["frequency [Hz]"]) for row in read_table(found / "complex_modes.csv")]
         rows = self.of(element="trilinear", factor="2", method="full order")
@@ -100,7 +99,7 @@ class Goal(ProgramTest):
                 found, exact = ([float(mode[column]) for column in ("frequency [Hz]", "divergence rate [%]")] for mode in (row, by_label[row["label"]]))
                 self.assertLess(abs(found[0] / exact[0] - 1), 0.05, row["label"])
                 self.assertLess(abs(found[1] - exact[1]), 0.5, row["label"])
-                # Twice, because the estimate is not a bound: frequencies on two meshes may agree by chance
+                # Allow twice the estimate, which is not a bound: frequencies on two meshes may agree by chance
                 estimated = float(row["estimated frequency error by the mesh [%]"]) / 100
                 self.assertLess(abs(found[0] / exact[0] - 1), 2 * estimated + 0.005, row["label"])
                 n_compared += 1
@@ -113,7 +112,7 @@ class Goal(ProgramTest):
         self.assertNotIn("chooses it", process.stdout)
 
     def test_unstable_modes_that_are_not_converged_are_named(self):
-        """On coarse meshes with strong friction, errors of divergence rates exceed 0.1 percentage points."""
+        """The summary reports unstable modes that are not converged; strong friction on a coarse mesh may cause them."""
         process = self.call_scene("strong", "Accuracy=1 %", "Operation/Friction coefficient=1.5", f"Band/Maximum frequency={BAND}")
         self.assertEqual(process.returncode, 0, process.stderr)
         rows = read_table(self.folder / "strong" / "complex_modes.csv")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Design studies: compared with single runs, interrupted and resumed, and with invalid designs."""
+"""Design studies: agreement with single runs, resumption after interruptions, invalid designs."""
 
 import os
 import re
@@ -12,7 +12,7 @@ import time
 from program import COARSE, EXECUTABLE, ProgramTest, design_tables, read_table, settings
 
 STUDY = ["Study=geometry", "Sweep/Number of friction coefficients=8"]
-# Settings for tests that do not use the results of designs
+# Large tolerances for tests that ignore the results of designs
 QUICK = ["Study=geometry", "Sweep/Number of friction coefficients=3", "Sweep/Tolerance=1e-3", "Sweep/Threshold tolerance=1e-3"]
 VARIABLES = "Designs/Variables=Geometry/Pin height = 0.030, 0.034; Pin material/Young modulus = 1.7e9, 1.9e9, 1"
 
@@ -74,7 +74,7 @@ class DesignsTest(ProgramTest):
             self.assertGreater(len(of_disc), 8)
             for mode in of_disc:
                 self.assertIn(mode["label"], known | {"unnamed"})
-            # Changing modulus or height of some pins hardly affects most disc modes
+            # Height and modulus of the pins hardly affect most disc modes
             clear = [mode for mode in of_disc if float(mode["overlap with reference [-]"] or 0) > 0.9]
             self.assertGreater(len(clear), 0.7 * len(of_disc))
             self.assertEqual(len({mode["label"] for mode in clear}), len(clear))
@@ -94,7 +94,7 @@ class DesignsTest(ProgramTest):
             self.assertFalse((self.folder / "none").exists())
 
     def test_several_processes(self):
-        # Shapes of multiple eigenvalues (of equal pins), and hence overlaps, depend on rounding
+        # Ignore overlaps: vectors of the multiple eigenvalues of equal pins depend on rounding
         found, expected = (design_tables(folder) for folder in (self.run_scene("parallel", *STUDY, VARIABLES, n_processes=2), self.study))
         for rows in (*found.values(), *expected.values()):
             for row in rows:
@@ -103,7 +103,7 @@ class DesignsTest(ProgramTest):
 
     def test_killed_and_resumed(self):
         self.interrupt("killed", (*STUDY, VARIABLES), ((2, signal.SIGKILL), (3, signal.SIGTERM), (4, signal.SIGKILL)))
-        # The worker processes must end as well
+        # Worker processes must end with the killed study
         deadline = time.monotonic() + 60
         while self.processes_of("killed.checkpoint") and time.monotonic() < deadline:
             time.sleep(0.1)
@@ -111,7 +111,7 @@ class DesignsTest(ProgramTest):
         n_known = len(self.stored("killed"))
         self.assertGreaterEqual(n_known, 4)
 
-        # A study with other parameters must not resume it
+        # A study with other parameters must not resume the interrupted one
         other = self.call("scene.prm", "--output", "killed", *settings((*STUDY, VARIABLES, "Sweep/Tolerance=1e-5")))
         self.assert_message(other, ["an unfinished study with other parameters"])
 
@@ -123,7 +123,7 @@ class DesignsTest(ProgramTest):
 
     @staticmethod
     def processes_of(words):
-        """Processes whose command line contains these words."""
+        """Ids of the processes whose command line contains `words`."""
         found = []
         for entry in os.listdir("/proc"):
             if entry.isdigit():
@@ -136,7 +136,7 @@ class DesignsTest(ProgramTest):
         return found
 
     def test_crashes_are_rows(self):
-        """Killing a worker process affects only its design."""
+        """If a worker process is killed, only its design fails."""
         words = settings((*QUICK, "Designs/Variables=Geometry/Pin height = 0.030, 0.034, 0.032", "Designs/Processes=1"))
         process = subprocess.Popen([EXECUTABLE, "scene.prm", "--output", "crash", *words], cwd=self.folder, stdout=subprocess.DEVNULL,
                                    stderr=subprocess.PIPE, text=True)
@@ -175,7 +175,7 @@ class DesignsTest(ProgramTest):
             shutil.rmtree(folder)
 
     def test_designs_that_their_parameters_refuse_need_no_process(self):
-        """Values that are invalid only in combination: contact damping without load."""
+        """Contact damping without load is invalid although both values are valid individually."""
         variables = "Designs/Variables=Operation/Load per side = 0, 1000; Operation/Radial dissipation = none, consistent"
         folder = self.run_scene("refused", *QUICK, variables)
         rows = read_table(folder / "designs.csv")

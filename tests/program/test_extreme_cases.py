@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""A representative part of the cases of doc/extremes.md, and the reference solution that judges them."""
+"""The quick cases of doc/extremes.md, and the reference solution with which they are compared."""
 
 import os
 import pathlib
@@ -20,7 +20,7 @@ try:
     import scipy.sparse as sparse
     from squeal import quadratic
 except ImportError:
-    raise unittest.SkipTest("NumPy and SciPy are missing") from None
+    raise unittest.SkipTest("NumPy or SciPy is missing") from None
 
 
 class Cases(unittest.TestCase):
@@ -34,7 +34,7 @@ class Cases(unittest.TestCase):
 
 class Oracle(unittest.TestCase):
     def test_finds_known_eigenvalues(self):
-        """Uncoupled oscillators: two are close together, one is overdamped."""
+        """Uncoupled oscillators: two close together, one overdamped inside and one outside the search radius."""
         squares, rates = np.array([1e2, 1e4, 1e4 * (1 + 1e-9), 4e4, 1e9]), np.array([0.0, 1.0, 1.0, 1e3, 1e6])
         none, unit = sparse.csr_matrix((0, len(squares))), sparse.identity(len(squares), format="csr")
         matrices = {"M": unit, "K": sparse.diags(squares).tocsr(), "C": sparse.diags(rates).tocsr(), "G": 0 * unit, "C_b": 0 * unit, "P_n": none, "P_t": none,

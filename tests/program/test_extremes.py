@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Extreme parameters: the spectrum is correct and complete, or the run stops early with a reason.
+"""Extreme parameters: the spectrum is correct and complete, or the run stops and states the reason.
 
 References are eigenvalues of the exported matrices, refined with a 64-bit mantissa by scripts/extremes/oracle.py.
 """
@@ -21,7 +21,7 @@ try:
     from extremes import oracle
     from squeal import exported_matrices
 except ImportError:
-    raise unittest.SkipTest("NumPy and SciPy are missing") from None
+    raise unittest.SkipTest("NumPy or SciPy is missing") from None
 
 BAND = 2 * np.pi * 5000
 RADIUS = 1.01**0.5 * BAND
@@ -47,8 +47,6 @@ def real_values(folder):
 
 
 class Extremes(ProgramTest):
-    """Runs of the model in program.py, unless stated otherwise."""
-
     def succeed(self, output, *overrides):
         process = self.call("scene.prm", "--output", output, *settings(overrides))
         self.assertEqual(process.returncode, 0, process.stderr)
@@ -59,7 +57,7 @@ class Extremes(ProgramTest):
         self.assertFalse((self.folder / "refused").exists())
 
     def assert_spectrum(self, folder, friction_coefficient=0.4, slowest=0.0, tolerance=1e-6):
-        """Checks that the tables contain exactly the eigenvalues between `slowest` and the radius."""
+        """Checks that the tables contain exactly the eigenvalues with slowest < |lambda| <= RADIUS."""
         solution = oracle.Oracle(exported_matrices.read_matrices(folder), friction_coefficient, BAND / (2 * np.pi)).solve(RADIUS)
         self.assertLess(solution.error, 0.01 * tolerance)
         inside = [root for root in solution.values if slowest < abs(root) <= RADIUS and root.imag <= BAND]
@@ -70,8 +68,7 @@ class Extremes(ProgramTest):
     # ------------------------------------------------------------ real eigenvalues
 
     def test_large_friction(self):
-        """Static divergence is listed, counted and reported; both solvers omit eigenvalues outside the search radius.
-        """
+        """Static divergence is listed, counted and reported; both solvers omit eigenvalues beyond the search radius."""
         n_real = set()
         for friction_coefficient in (3, 10):
             folder, screen = self.succeed("friction", *SMALL, f"{FRICTION}={friction_coefficient}", MATRICES)
@@ -103,7 +100,7 @@ class Extremes(ProgramTest):
     # ------------------------------------------------------------ wide bands
 
     def test_small_pins_in_a_wide_band(self):
-        """The solver uses large blocks compared with the number of dofs of the pins."""
+        """All modes are found with blocks that are large compared with the number of dofs of the pins."""
         folder, screen = self.succeed("wide", "Band/Maximum frequency=10000")
         found, counted = map(int, re.search(r"Real modes .* (\d+) found, (\d+) counted", screen).groups())
         self.assertEqual(found, counted)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Designs that share a mesh and a basis: compared with the same designs solved individually, interrupted and resumed."""
+"""Designs that share a mesh and a basis: agreement with individually solved designs, resumption after interruptions."""
 
 import signal
 
@@ -42,7 +42,7 @@ class FamiliesTest(ProgramTest):
             self.assertLessEqual(abs(float(one["mu [-]"]) - float(other["mu [-]"])),
                                  float(one["uncertainty [-]"]) + float(other["uncertainty [-]"]))
 
-        # Each mode agrees within the estimated errors of both solutions
+        # The estimated error of each of the two solutions is at most 1e-6
         frequencies = [[float(mode["frequency at smallest mu [Hz]"]) for mode in table if mode["design [-]"] == number]
                        for table in (modes, read_table(single / "design_modes.csv"))]
         self.assertEqual(len(frequencies[0]), len(frequencies[1]))
@@ -57,7 +57,7 @@ class FamiliesTest(ProgramTest):
 
     def test_damped_designs(self):
         damped = ["Study=geometry", "Sweep/Number of friction coefficients=4", "Operation/Radial dissipation=consistent",
-                  "Pin material/Rayleigh beta=1e-6", "Geometry/Element size=0.04"]  # all designs are unstable
+                  "Pin material/Rayleigh beta=1e-6", "Geometry/Element size=0.04"]  # all designs are unstable on this mesh
         variables = "Designs/Variables=Pin material/Rayleigh beta = 1e-6, 2e-6; Operation/Load per side = 500, 1000"
         study = self.run_scene("damped", *damped, variables)
         single = self.run_design("damped_single", "3", *damped, variables)
@@ -70,7 +70,7 @@ class FamiliesTest(ProgramTest):
                                delta=1e-3 * float(alone["largest divergence rate [%]"]))
 
     def test_orthotropic_designs(self):
-        """Designs that scale all moduli by one factor, and densities."""
+        """Designs that differ in a common factor of all moduli and in density."""
         moduli = ((2e9, 1.5e9, 1e9), (0.8e9, 0.4e9, 0.3e9))
         values = [", ".join(str(factor * E) for E in moduli[0]) + ", 0.25, 0.4, 0.3, " + ", ".join(str(factor * G) for G in moduli[1]) + f", {density}"
                   for factor in (1, 1.1) for density in (2900, 3070)]

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""scripts/import_mesh.py: the same mesh from several pre-processors gives the same modes; everything that is omitted is
-reported."""
+"""scripts/import_mesh.py: the same mesh from several pre-processors gives the same modes; omitted parts are reported."""
 
 import itertools
 import json
@@ -58,8 +57,8 @@ def abaqus(mesh):
 
 
 def bulk(mesh, elements, groups):
-    """Nastran cards in free format, in millimetres. `elements`: (card, name of the group, nodes); the property of an
-    element is the number of its group."""
+    """Nastran cards in free format, in millimetres. `elements`: (card, name of the group, nodes). Property ids are
+    numbers of groups."""
     numbers = {name: i for i, name in enumerate(groups, 1)}
     lines = ["BEGIN BULK"] + [f"GRID,{i},," + ",".join(repr(1e3 * x) for x in point) for i, point in enumerate(mesh.points, 1)]
     for i, (card, name, nodes) in enumerate(elements, 1):
@@ -103,7 +102,7 @@ def nastran_tetrahedra(mesh):
     return bulk(mesh, cells + [("CTRIA6", *face) for face in mesh.faces], [*mesh.volumes(), *mesh.surfaces()])
 
 
-# In N, mm, t, s; the same materials as BRAKE
+# Materials of BRAKE in units of N, mm, t and s
 TETRAHEDRA = {"disc": ("110000.", "0.28", "7.2e-9"), **{f"pad_{side}_{part}": material for side in ("outer", "inner") for part, material in (
     ("lining", ("5000.", "0.25", "2.6e-9")), ("backplate", ("210000.", "0.3", "7.85e-9")))}}
 PAIRS = ("disc_top / pad_outer_face", "disc_bottom / pad_inner_face")
@@ -160,7 +159,7 @@ class Import(ProgramTest):
             self.assertEqual(len(meshio.read(self.folder / "variant.msh").cells[0].data), len(self.mesh.faces))
 
     def test_engineering_constants(self):
-        """Constants refer to the axes of an orientation or, without one, to x, y and z; other axes are omitted."""
+        """Constants refer to cylindrical axes about z or, without orientation, to x, y and z; materials with other axes are omitted."""
         constants = "*ELASTIC, TYPE=ENGINEERING CONSTANTS\n2000., 1500., 500., 0.2, 0.1, 0.15, 800., 300.\n250."
         text = abaqus(self.mesh).replace("*ELASTIC\n2000., 0.1", constants)
         for orientation, is_about_z in (("\n0., 0., 0., 0., 0., 1.\n3, 0.", True), ("\n0., 0., 0., 1., 0., 0.", False)):
@@ -184,7 +183,7 @@ class Import(ProgramTest):
             self.assertEqual(meshio.read(self.folder / f"{name}.msh").cells[0].data.shape, (len(self.mesh.faces), 4))
 
     def test_commands_of_the_page(self):
-        """Runs the commands of the page, from an Abaqus mesh to the chart."""
+        """The commands in doc/own_geometry.md run, from an Abaqus mesh to the chart."""
         (self.folder / "build").mkdir()
         for link, target in (("scripts", SOURCE / "scripts"), ("build/release", pathlib.Path(EXECUTABLE).parent)):
             (self.folder / link).symlink_to(target)
@@ -206,7 +205,7 @@ class Import(ProgramTest):
                 self.assert_same_eigenvalues(eigenvalues(self.run_mesh(name)), self.baseline)
 
     def test_brake_of_quadratic_tetrahedra(self):
-        """Two nonmatching pads with two volumes each: the parameter file written with the mesh can be run."""
+        """Two nonmatching pads with two volumes each: mesh and parameter file of the import reproduce the modes."""
         mesh = brake()
         mesh.write_msh(self.folder / "tet.msh")
         mesh.write_msh(self.folder / "tet_4.msh", "4.1")
@@ -231,7 +230,7 @@ class Import(ProgramTest):
                 self.imported(source, f"{name}.msh", "--unit", unit, *words, *rubs)
                 overrides = ["Operation/Friction coefficient=0.5", "Output/Mode shapes=none", *materials]
                 self.assert_same_eigenvalues(eigenvalues(self.run_scene(f"out_{name}", *overrides, file=f"{name}.prm")), baseline)
-        # Without contact and mounts, the parameter file has comments to be completed
+        # Without --contact and --mount, the parameter file has commented lines to be completed
         self.imported("tet.inp", "blank.msh", "--unit", "mm", *words)
         stub = (self.folder / "blank.prm").read_text(encoding="utf-8")
         for line in ("# Surfaces of the disc: disc_bottom, disc_hub, disc_top; of other bodies: pad_outer_face, ", "# set Pairs", "# set Elastic mounts",

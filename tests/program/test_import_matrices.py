@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""From matrices of other programs to a study: results are compared with SciPy's for the original matrices."""
+"""Studies of imported matrices, compared with SciPy's eigenvalues of the original matrices."""
 
 import math
 import subprocess
@@ -59,7 +59,7 @@ class ImportedBrake(SystemTest):
         assert process.returncode == 0, process.stderr
 
     def expected(self, omega):
-        """λ with 0 < Im λ up to the end of the band, computed by SciPy from the matrices in memory."""
+        """λ in the band with Im λ > 0, computed by SciPy from the matrices in memory."""
         D, K, none = self.D1 / 1000 + self.DR / omega + omega * self.DG, self.K1 + self.KR + omega**2 * self.K_geo, np.zeros((self.N, self.N))
         values = scipy.linalg.eigvals(np.block([[none, np.eye(self.N)], [-K, -D]]), scipy.linalg.block_diag(np.eye(self.N), self.M))
         return values[(values.imag > 1e-6) & (values.imag <= 2 * math.pi * BAND)]

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""`Study = ingredients`: all parts of the model, their effects compared with separate runs, and the cheapest model."""
+"""`Study = ingredients`: effects of variants compared with separate runs, and the cheapest model."""
 
 import math
 import unittest
@@ -34,7 +34,6 @@ class Ingredients(ProgramTest):
         return {(row["ingredient"], row["variant"]): row for row in read_table(folder / "ingredients.csv")}
 
     def test_effects_are_those_of_single_runs(self):
-        """The effects of variants agree with separate runs."""
         study, here, modes = self.study, self.here, read_table(self.study / "ingredients_modes.csv")
         for (ingredient, tried), override in {("radial dissipation", "none"): "Operation/Radial dissipation=none",
                                               ("contact state", "equal load"): "Steady sliding/Contact state=equal load",
@@ -47,7 +46,7 @@ class Ingredients(ProgramTest):
                 unstable = [sum(table_row["unstable [-]"] == "1" for table_row in read_table(folder / "complex_modes.csv"))
                             for folder in (self.folder / "here", alone)]
                 self.assertEqual([int(row["unstable modes in reference [-]"]), int(row["unstable modes in variant [-]"])], unstable)
-        # Every variant lists all modes of the reference
+        # Every variant that was tried lists all modes of the reference
         for variant, row in self.rows(study).items():
             listed = [mode["reference frequency [Hz]"] for mode in modes if (mode["ingredient"], mode["variant"]) == variant]
             self.assertEqual(sum(frequency != "" for frequency in listed), 0 if row["reason not tried"] else len(here), variant)
@@ -64,7 +63,6 @@ class Ingredients(ProgramTest):
         self.assertIn(promise[1:], process.stdout)
         found, promised = eigenvalues(self.folder / "cheapest"), tried_eigenvalues(study, "together")
         self.assert_same_eigenvalues(promised, found, 1e-7)
-        # Each mode is within the required accuracy
         reference = self.here
         self.assertEqual(len(found), len(reference))
         self.assertLess(distance(found, reference), 0.01)
@@ -80,7 +78,7 @@ class Ingredients(ProgramTest):
         self.assertIn("Ingredients/Trial friction slope", why["friction slope"])
         self.assertEqual(why["radial dissipation"], "")
         self.assertIn("no feature of it can be removed", (study / "cheapest.prm").read_text(encoding="utf-8"))
-        # Rotation of a free disc is not supported in the fixed frame
+        # In the fixed frame, gyroscopic forces are not supported for a disc with rigid-body modes
         free = self.run_scene("free", "Study=ingredients", "Mounts/Elastic mounts=", "Band/Maximum frequency=2000")
         self.assertIn("rigid body", self.rows(free)["rotation of the disc", "on"]["reason not tried"])
 

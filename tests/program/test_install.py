@@ -33,7 +33,7 @@ class Installed(ProgramTest):
         self.assert_same_eigenvalues(eigenvalues(self.folder / "results"), eigenvalues(self.run_scene("built")))
 
     def test_takes_its_own_geometries(self):
-        """The installed program uses its own geometries, not those of the sources."""
+        """The installed program uses its own geometries instead of the source folder."""
         geometries = self.prefix / "share" / "squeal" / "geometry"
         shutil.copy(geometries / "disc_pins.geo", geometries / "of_the_house.geo")
         process = self.squeal("scene.prm", "--dry-run", "--set", "Geometry/File=of_the_house.geo")
@@ -44,7 +44,7 @@ class Installed(ProgramTest):
         self.assertIn(str(geometries), process.stderr)
 
     def test_python_module(self):
-        """The module finds the program next to it; the commands find the module."""
+        """The Python module finds the installed program, and the scripts find the module."""
         share = self.prefix / "share" / "squeal"
         code = 'import squeal; results = squeal.run("scene.prm", output="by_module"); print(len(results.table("complex_modes")), squeal.__file__)'
         environment = {name: value for name, value in os.environ.items() if name != "SQUEAL"}
@@ -64,7 +64,7 @@ class Installed(ProgramTest):
         self.assertEqual((process.returncode, len(eigenvalues(self.folder / "of_matrices"))), (0, 2), process.stderr)
 
     def test_takes_its_own_mesher(self):
-        """Gmsh runs in the installed mesher."""
+        """Gmsh runs in the installed squeal_mesher."""
         mesher = self.prefix / "libexec" / "squeal" / "squeal_mesher"
         mesher.chmod(0o644)
         self.addCleanup(mesher.chmod, 0o755)

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Results are never lost: concurrent runs in one folder, files of the user, killed runs, full disks, read-only folders.
-"""
+"""Results and user files survive concurrent runs in one folder, killed runs, full disks and read-only folders."""
 
 import json
 import os
@@ -16,12 +15,12 @@ from program import EXECUTABLE, ProgramTest, contents, settings
 
 TABLES = ["component_modes.csv", "real_modes.csv", "complex_modes.csv"]
 
-# Write all mode shapes, so that writing takes half of the time
+# All mode shapes are written, which takes half of the run time
 LONG = ["Output/Mode shapes=all", "Output/Animation frames=3"]
 
 
 def limit_files(size):
-    """Limits the size of files that a process writes [byte]."""
+    """Function for preexec_fn that limits the size of the files that a process writes [byte]."""
     return lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
 
 
@@ -59,19 +58,19 @@ class LostResults(ProgramTest):
     def wait_for(self, condition, process):
         deadline = time.monotonic() + 60
         while not condition():
-            self.assertIsNone(process.poll(), "the run ended too early")
+            self.assertIsNone(process.poll(), "the run ended before the expected state was reached")
             self.assertLess(time.monotonic(), deadline)
             time.sleep(0.005)
 
     def assert_complete(self, folder):
-        """Checks that every file in the record exists and has its size."""
+        """Checks that every file in the record exists with the recorded size."""
         record = json.loads((folder / "run.json").read_text(encoding="utf-8"))
         sizes = record["files [byte]"]
         self.assertLessEqual({*TABLES, "parameters.prm", "mesh.msh"}, set(sizes))
         self.assertEqual({name: (folder / name).stat().st_size for name in sizes}, sizes)
 
     def refused(self, mentions, *words):
-        """Checks that the run is rejected before meshing."""
+        """Checks that the run is rejected before meshing and changes no files."""
         before = contents(self.folder)
         process = self.call(*words)
         self.assertEqual(contents(self.folder), before)

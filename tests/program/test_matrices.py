@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The exported matrices: format, structure, and eigenvalues by independent solvers."""
+"""Exported matrices: format, structure, and eigenvalues by SciPy."""
 
 import csv
 import importlib.util
@@ -14,7 +14,7 @@ from program import COARSE, SOURCE, ProgramTest
 MATRICES = ["M", "C", "K", "C_b", "P_n", "P_t", "P_b", "K_n", "T_c"]
 DISSIPATION = "Operation/Radial dissipation=consistent"
 
-# A model with open contact nodes, radial and tangential contact damping, material damping, and friction
+# Model with open contact nodes, radial and tangential contact damping, material damping, and friction
 DAMPED = ["Steady sliding/Contact state=steady sliding", "Steady sliding/Gaps=pin_top_1: 1e-4", DISSIPATION,
           "Operation/Friction slope=-0.02", "Pin material/Rayleigh beta=1e-7", "Disc material/Rayleigh alpha=2"]
 

@@ -13,13 +13,13 @@ from tet_mesh import BRAKE, brake, clutch
 
 
 def renamed(mesh, old, *new, where=lambda nodes: True):
-    """Renames all faces with the name `old`, or those for which `where` is true."""
+    """Replaces the name `old` of faces by `new`, if `where` is true for their nodes."""
     mesh.faces = [(tuple(n for name in names for n in (new if name == old and where(nodes) else [name])), nodes) for names, nodes in mesh.faces]
     return mesh
 
 
 def left_handed(mesh, where):
-    """Swaps the bottom and top nodes of some cells; returns the number of these cells."""
+    """Makes the cells for which `where` is true left-handed by swapping bottom and top; returns their number."""
     chosen = [where(body, nodes) for body, nodes in mesh.cells]
     mesh.cells = [(body, nodes[4:] + nodes[:4] if left else nodes) for left, (body, nodes) in zip(chosen, mesh.cells)]
     return sum(chosen)
@@ -79,13 +79,13 @@ class Meshes(ProgramTest):
         for elementary in (0, 1):
             with self.subTest(elementary):
                 self.assert_baseline(self.run_mesh(disc_with_pads()[0], f"tag_{elementary}", version=2, elementary=elementary))
-        # The mount is only on the bore, although the rim has the same entity
+        # The mount acts only on the bore, although the rim has the same elementary tag
         mesh, faces = disc_with_pads()
         mesh.name(faces["disc"]["+a"].values(), "disc_rim")
         self.assert_baseline(self.run_mesh(mesh, "tag_rim", version=2, elementary=1))
 
     def edited_refused(self, mentions, change, **options):
-        """Changes the text of a mesh file and checks that it is rejected."""
+        """Checks that a mesh file is rejected after `change` has edited its text."""
         prm = self.write_mesh(disc_with_pads()[0], "edited", **options)
         path = self.folder / "edited.msh"
         path.write_text(change(path.read_text(encoding="utf-8")), encoding="utf-8")
@@ -175,7 +175,7 @@ def part_pad(mesh, pad, of_nodes=slice(0, 10)):
 
 
 def bonded_brake(pad_parts=None):
-    """A brake whose backplates are meshed separately, optionally with different divisions, and have faces to tie."""
+    """Brake with separately meshed backplates and named faces for ties. `pad_parts`: divisions of nonmatching backplates."""
     mesh = brake(backplate_parts=pad_parts, has_bond=True)
     if pad_parts is None:
         for pad in ("pad_outer", "pad_inner"):
@@ -187,7 +187,7 @@ TIED = "Contact/Tied=pad_outer_lining_back / pad_outer_front; pad_inner_lining_b
 
 
 class Tetrahedra(ProgramTest):
-    """A brake of quadratic tetrahedra in which pads and disc have nonmatching meshes."""
+    """Brake of quadratic tetrahedra; the meshes of pads and disc do not match."""
 
     def write_brake(self, mesh, name="brake"):
         mesh.write_msh(self.folder / f"{name}.msh")
@@ -212,13 +212,13 @@ class Tetrahedra(ProgramTest):
             with self.subTest(n_processes=n_processes):
                 tied = self.run_scene(f"out_tied_{n_processes}", TIED, "Output/Mode shapes=unstable", file=file, n_processes=n_processes)
                 self.assert_same_eigenvalues(eigenvalues(tied), expected)
-        # Pads supported in the plane of their backs and pressed along the axis
+        # Pads guided in the plane of their backs and pressed along the axis
         pressed = ("Steady sliding/Contact state=steady sliding", "Steady sliding/Control=pressure", "Operation/Radial dissipation=consistent",
                    "Steady sliding/Pressed faces=pad_outer_back, pad_inner_back",
                    "Mounts/Elastic mounts=disc_hub: 1e12, 1e12, 1e12; pad_outer_back: 2e10, 2e10, 0; pad_inner_back: 2e10, 2e10, 0")
         self.assert_same_eigenvalues(*(eigenvalues(self.run_scene(f"out_pressed_{name}", *pressed, *tied, file=f"{name}.prm"))
                                        for name, tied in (("brake", ()), ("bonded", (TIED,)))))
-        # Nonmatching faces give similar, not equal eigenvalues, because both meshes are coarse
+        # Nonmatching faces give only similar eigenvalues, because both meshes are coarse
         other = eigenvalues(self.run_scene("out_other", TIED, file=self.write_brake(bonded_brake(5), "bonded_5")))
         self.assertEqual(len(other), len(expected))
         self.assert_same_eigenvalues(other, expected, 0.02)
@@ -229,7 +229,7 @@ class Tetrahedra(ProgramTest):
         volumes = "Materials/Volumes="
         file = self.write_brake(clutch(), "clutch")
         values = eigenvalues(self.run_scene("out_clutch", pairs, held("1e12"), volumes, file=file))
-        # The result does not change if the model is mirrored in the plane between the discs
+        # Mirroring the model in the plane between the discs does not change the eigenvalues
         mirrored = self.write_brake(clutch().moved(lambda x, y, z: (x, y, -z)), "mirrored")
         self.assert_same_eigenvalues(eigenvalues(self.run_scene("out_mirrored", pairs, held("1e12"), volumes, file=mirrored)), values)
         other = eigenvalues(self.run_scene("out_soft", pairs, held("1e11"), volumes, file=file))
@@ -258,7 +258,7 @@ class Tetrahedra(ProgramTest):
             return mesh
 
         def middle_at(part, beside=0.0):
-            """Moves the mid-side node of the first edge of the last element along the edge and off it."""
+            """Moves the mid-side node of the last element's first edge to the fraction `part`, and by `beside` off the edge."""
             def change(mesh):
                 nodes = mesh.cells[-1][1]
                 first, last = mesh.points[nodes[0]], mesh.points[nodes[1]]
@@ -332,7 +332,7 @@ class Tetrahedra(ProgramTest):
             self.assertAlmostEqual(float(other["frequency [Hz]"]) / float(row["frequency [Hz]"]) - 1, share * change / 2, delta=1e-3 * change)
 
     def test_difference_from_a_coarser_mesh(self):
-        """For isolated counterparts, estimated errors equal the differences between two runs."""
+        """If a counterpart is found by shape, the estimated error is the difference between two runs."""
         coarse, fine = (self.write_brake(brake(n_parts), f"brake_{n_parts}") for n_parts in (12, 16))
         found, expected = (read_table(self.run_scene(f"out_{file}", *overrides, file=file) / "complex_modes.csv")
                            for file, overrides in ((fine, ["Discretization/Coarser mesh=brake_12.msh"]), (coarse, ["Band/Maximum frequency=5250"])))
@@ -357,7 +357,7 @@ class Tetrahedra(ProgramTest):
                 process = self.dry_run(file=self.write_brake(mesh, "noted"))
                 self.assertEqual((process.returncode, process.stderr), (0, ""))
                 self.assertIn(note, process.stdout)
-                self.assertNotIn("warning", process.stdout)  # for example, of triangles as not round
+                self.assertNotIn("warning", process.stdout)  # in particular none about the roundness of triangulated faces
         script = BLOCKS + VOLUMES + SURFACES + "Mesh.Algorithm3D = 10;\n"
         self.write("blocks.geo", script)
         process = self.dry_run("Geometry/File=blocks.geo", "Mounts/Elastic mounts=")

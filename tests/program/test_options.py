@@ -7,7 +7,7 @@ from program import SOURCE, ProgramTest, contents
 
 class Options(ProgramTest):
     def printed(self, *arguments):
-        """The output of a call, which must succeed and write no files."""
+        """Output of a call that must succeed and write no files."""
         before = contents(self.folder)
         process = self.call(*arguments)
         self.assertEqual((process.returncode, process.stderr), (0, ""))

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Custom geometries: permissions, variables, the summary, and rejected geometries."""
+"""Custom geometries: permissions, variables, summary, and rejected geometries."""
 
 import re
 import shutil
@@ -8,7 +8,6 @@ import shutil
 from blocks import BLOCKS, HEXAHEDRA, SURFACES, VOLUMES
 from program import SOURCE, ProgramTest, settings
 
-# Two stacked boxes
 SCRIPT = BLOCKS + HEXAHEDRA + VOLUMES + SURFACES
 COARSE = ("Geometry/Disc layers=1", "Geometry/Pin layers=1", "Geometry/Element size=0.04")
 
@@ -93,8 +92,7 @@ class OwnGeometry(ProgramTest):
         self.assertRegex(text, r"pin_top_2: 0\.0318 m high.*; bar waves 556\.3 m/s")
 
     def doubted(self, mentions, *overrides, refused):
-        """Checks that the summary has warnings, also if the run is then rejected because shear waves are not resolved.
-        """
+        """Checks that the summary has warnings, even if the run is rejected because shear waves are not resolved."""
         process = self.dry_run(*overrides)
         for word in ["disc: radii", "warning: ", *mentions]:
             self.assertIn(word, process.stdout)

@@ -25,7 +25,7 @@ class Paper(ProgramTest):
         """Every number of the paper has a counterpart; growing modes are compared with growing modes."""
         for row in read_table(self.results / "table1.csv"):
             if row["label"][:4] in ("A0-6", "A1-3"):
-                continue  # beyond the band for the coarse mesh
+                continue  # above the band on the coarse mesh
             for column in ("component", "coupled", "without C_b", "with C_b"):
                 self.assertEqual(row[f"{column} paper [Hz]"] == "", row[f"{column} [Hz]"] == "", f"{row['label']}, {column}")
             for column in ("without C_b", "with C_b"):
@@ -39,8 +39,8 @@ class Paper(ProgramTest):
         self.assertEqual(statements["bending modes F1 per pin below 5 kHz"]["verdict"], "holds")
 
     def test_readings(self):
-        """Without the factor mu = 0.4, the damping coefficient damps T1 about 2.5 times as much; equal load and steady
-        sliding differ."""
+        """The published coefficient lacks the factor mu = 0.4 and damps T1 about 2.5 times as much; equal load and
+        steady sliding differ."""
         most = min((row for row in read_table(self.results / "dissipation.csv") if row["label"] == "T1"),
                    key=lambda row: float(row["steady sliding consistent [%]"]))
         self.assertAlmostEqual(float(most["no C_b [%]"]), 0, delta=1e-6)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The plots of every study: their number, labels and files, and that they can be drawn again."""
+"""Plots of every study: names, labels and files; repeated plotting."""
 
 import json
 import os
@@ -27,18 +27,18 @@ except ModuleNotFoundError as missing:
 
 
 def draw(folder, *options, environment=None):
-    """The finished process of the script."""
+    """Finished process of plot_results.py."""
     return subprocess.run([sys.executable, SCRIPTS / "plot_results.py", folder, *options], text=True, capture_output=True, check=False,
                           timeout=120, env={**os.environ, **(environment or {})})
 
 
 @unittest.skipIf(figures is None, "python3-matplotlib is not installed")
 class Studies(ProgramTest):
-    """The plots of every study; tests/scripts/test_plot_results.py checks their content for small tables."""
+    """Plots of every study; tests/scripts/test_plot_results.py checks their content for small tables."""
 
     scene = COARSE
 
-    # Overrides and names of plots; there may be several plots of families
+    # Overrides and names of plots; sweep_families stands for one or several numbered plots
     STUDIES = {"stability": ([], {"complex_plane"}),
                "sweep": (["Study=sweep", "Operation/Radial dissipation=consistent", "Sweep/Last friction coefficient=0.45",
                           "Sweep/Number of friction coefficients=10", "Sweep/Complex plane at=0.4, 0.22", "Sweep/Map parameter=load",
@@ -48,7 +48,7 @@ class Studies(ProgramTest):
                              {"reduction_errors", "reduction_cost"}),
                "ingredients": (["Study=ingredients", "Ingredients/Divergence tolerance=0.2"], {"ingredients"}),
                "sensitivity": (["Study=sensitivity", "Sensitivity/Thresholds=false"], {"sensitivity"})}
-    WITH_NAMES_ABOVE = ("ingredients", "sensitivity")  # bar charts in which each row has a name
+    WITH_NAMES_ABOVE = ("ingredients", "sensitivity")  # bar charts with a name for each row
 
     def test_pictures(self):
         for name, (overrides, expected) in self.STUDIES.items():
@@ -200,7 +200,7 @@ class WithoutMatplotlib(ProgramTest):
             encoding="utf-8")
         (cls.checkout / "build" / "release").mkdir(parents=True)
         (cls.checkout / "build" / "release" / "squeal").symlink_to(pathlib.Path(EXECUTABLE).resolve())
-        # A folder that replaces the package
+        # A module on the path that hides matplotlib
         (cls.folder / "nothing").mkdir()
         (cls.folder / "nothing" / "matplotlib.py").write_text("raise ModuleNotFoundError('none', name='matplotlib')\n", encoding="utf-8")
 
@@ -211,7 +211,7 @@ class WithoutMatplotlib(ProgramTest):
         return process
 
     def test_what_is_missing_is_said(self):
-        # Hide the package, or override the command by a shell function
+        # Hide matplotlib from Python, or make the shell's `command` fail
         for environment in ({"PYTHONPATH": str(self.folder / "nothing")}, {"BASH_FUNC_command%%": "() { return 1; }"}):
             process = self.run_script(**environment)
             line, = [line for line in process.stderr.splitlines() if "No plots" in line]

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Results on several processes agree with results on one: solvers, steady sliding, damping, and a sweep.
+"""Runs on several processes agree with runs on one: solvers, steady sliding, damping, and a sweep.
 
-These tests are separate because they need exclusive cores: processes that share cores with other programs wait for each other.
+These tests are separate because they need free cores: MPI processes on shared cores wait for each other.
 """
 
 import json
@@ -18,7 +18,7 @@ COMPONENT_SHAPES = "Output/Component mode shapes=true"
 
 
 def cells_of(file):
-    """Body and corners [um] of each cell, sorted."""
+    """Body and corners [um] of each cell, in sorted order."""
     return sorted((body, *(tuple(round(1e6 * x) for x in point) for point in (file.points[corner] for corner in file.cells[cell])))
                   for cell, body in enumerate(file.cell_fields["component"]))
 

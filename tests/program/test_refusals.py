@@ -20,7 +20,7 @@ class Refusals(ProgramTest):
         cls.results = cls.run_scene("results")
 
     def refused(self, mentions, *arguments, n_processes=1):
-        """Checks that a call of the program fails with a message that contains the words."""
+        """Checks that a call writes nothing and fails with a message that contains `mentions`."""
         before = contents(self.folder)
         process = self.call(*arguments, n_processes=n_processes)
         self.assertEqual(contents(self.folder), before)
@@ -44,13 +44,13 @@ class Refusals(ProgramTest):
         """If the stack size exceeds the address space, no thread can be started, and the run uses one thread."""
         stack, (_, most) = 1 << 47, resource.getrlimit(resource.RLIMIT_STACK)
         if most != resource.RLIM_INFINITY:
-            self.skipTest("the size of stacks is limited")
+            self.skipTest("the hard limit of the stack size is finite")
         process = subprocess.run([EXECUTABLE, "scene.prm", "--output", "limited", "--set", "Linear algebra/Threads=2"], cwd=self.folder,
                                  env={**os.environ, "OPENBLAS_NUM_THREADS": "1"}, capture_output=True, text=True,
                                  preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_STACK, (stack, most)), timeout=60)
         self.addCleanup(shutil.rmtree, self.folder / "limited", ignore_errors=True)
         if "PMIX ERROR" in process.stderr:
-            self.skipTest("this version of MPI cannot start without a thread")
+            self.skipTest("this version of MPI requires a thread")
         self.assertEqual(process.returncode, 0, process.stderr)
         self.assertNotIn("defect", process.stderr)
 
@@ -106,7 +106,7 @@ class Refusals(ProgramTest):
                              "Steady sliding/Gaps=pin_top_1: 1e-5; pin_top_2: 2e-6")
 
     def test_disc_that_nothing_holds(self):
-        # Friction pushes the disc in its plane; this is detected only after a factorisation
+        # sliding_refused() does not apply, because this case is detected only after a factorisation
         self.scene_refused(["nothing holds the disc in its plane", "Mounts/Elastic mounts"], "Steady sliding/Contact state=steady sliding",
                            "Mounts/Elastic mounts=", output="new")
 

@@ -34,7 +34,7 @@ class RenderTest(ProgramTest):
         return subprocess.run([sys.executable, SOURCE / "scripts" / self.SCRIPT, *arguments], capture_output=True, text=True, check=False)
 
     def picture(self, size, *arguments):
-        """Pixels of a picture: rows from the lower edge, columns, and red, green and blue."""
+        """Pixels of a picture: rows from below, columns, and RGB values from 0 to 255."""
         file = self.folder / "picture.png"
         result = self.render(*arguments, "-o", file)
         self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
@@ -56,13 +56,13 @@ class Mode(RenderTest):
 
     def test_draws_several_side_by_side(self):
         pixels = self.picture((800, 565), *self.modes[:3], "--width", "800")
-        # Rows from below: the colour bar is below two rows of modes, and the last of the four panels is empty
+        # The colour bar is below two rows of two panels; with three modes, the lower right panel is empty
         for row, column, is_there in ((1, 0, True), (1, 1, True), (0, 0, True), (0, 1, False)):
             place = pixels[70 + 250 * row:300 + 250 * row, 400 * column:400 * (column + 1)]
             self.assertEqual(coloured(place).mean() > 0.1, is_there, (row, column))
 
     def test_bodies_at_rest_are_left_out(self):
-        """The disc is omitted in a mode of the pins in which it hardly moves."""
+        """The disc, which hardly moves in a bending mode of the pins, is omitted."""
         mode = [path for path in self.modes if "_F1" in path.name][-1]
         shares = [(self.picture((1600, 1000), mode, "--bodies", bodies).min(axis=-1) < 250).mean() for bodies in ("all", "moving")]
         self.assertLess(shares[1], 0.8 * shares[0])
@@ -85,7 +85,7 @@ class Contact(RenderTest):
         return self.picture((1600, 1000), self.results / "sliding_state_contact.vtu", *arguments)
 
     def test_pressure_is_largest_where_the_disc_enters(self):
-        # Seen from above, the disc slides to the left at its upper edge, where upwards is radially outwards
+        # Outwards is up and the disc slides to the left: the largest pressures (blue) are on the right
         blue, yellow = [], []
         faces = self.faces()[200:]
         for y, x in zip(*coloured(faces).nonzero()):
@@ -97,7 +97,7 @@ class Contact(RenderTest):
     def test_arrow_follows_the_rotation(self):
         parameters = self.results / "parameters.prm"
         text = parameters.read_text(encoding="utf-8")
-        # The head of the arrow is dark
+        # Dark pixels belong to the arrow head
         centres = []
         for rotation, view in (("positive", "above"), ("negative", "above"), ("positive", "below")):
             parameters.write_text(text + f"subsection Operation\n  set Rotation = {rotation}\nend\n", encoding="utf-8")

@@ -26,19 +26,19 @@ RATE, LARGEST, ONSET, CHANGE = "divergence rate [%]", "largest divergence rate [
 QUICK = ("Sweep/Tolerance=1e-3", "Sweep/Threshold tolerance=1e-3", "Sweep/Number of friction coefficients=3")
 SCENES = {"stability": ("Output/Mode shapes=unstable",),
           "sweep": ("Study=sweep", "Sweep/Last friction coefficient=0.4", "Sweep/Number of friction coefficients=5"),
-          # With cells that are stable, unstable and undecided
+          # Map with stable, unstable and undecided cells
           "map": ("Study=sweep", "Operation/Radial dissipation=consistent", "Sweep/Compare dissipation=false", "Sweep/Map parameter=load",
                   "Sweep/Number of map values=3", "Sweep/Map friction coefficients=4", *QUICK),
-          # With solved and rejected designs
+          # Solved and rejected designs
           "designs": ("Study=geometry", "Designs/Variables=Geometry/Pin height = 0.030, 0.034; Pin material/Young modulus = 1.9e9, 1", *QUICK),
           "search": ("Study=search", "Designs/Variables=Geometry/Pin diameter = 0.05 to 0.09; Geometry/Pin height = 0.03 to 0.034",
                      "Search/Samples=3", "Search/Evaluations=5", *QUICK),
-          # With thresholds that have derivatives, and thresholds that have none
+          # Thresholds with and without derivatives
           "sensitivity": ("Study=sensitivity", "Sensitivity/Largest number of modes=2", "Sensitivity/Tolerance=1e-2", *QUICK)}
 # A table of each page, and a column by which the test sorts it
 SORTED = {"stability": ("complex_modes", "frequency [Hz]"), "sweep": ("thresholds", "frequency [Hz]"), "map": ("map", "growth rate [1/s]"),
           "designs": ("design_modes", "frequency [Hz]"), "search": ("search", LARGEST), "sensitivity": ("sensitivities", CHANGE)}
-# Script that returns the titles and legends of a chart that overlap or extend beyond it
+# Script that returns titles and legends that overlap or extend beyond their chart
 CROWDED = """
 return [...document.querySelectorAll('.chart')].flatMap(chart => {
   const frame = chart.getBoundingClientRect();
@@ -103,7 +103,7 @@ class Reports(ProgramTest):
         return html.unescape(re.search(r'<h1 id="verdict">(.*?)</h1>', self.page(name))[1])
 
     def section(self, name, which):
-        """The text of a section of a page, without tags."""
+        """Text of a section of a page, without tags."""
         return html.unescape(re.sub("<[^>]*>", " ", re.search(rf'<section id="{which}">(.*?)</section>', self.page(name), re.S)[1]))
 
     def test_verdicts_name_what_the_tables_say(self):
@@ -125,7 +125,7 @@ class Reports(ProgramTest):
         self.assertIn('<header class="unstable">', self.page("stability"))
 
     def test_charts(self):
-        """Charts have a curve for each branch and a mark for each mode."""
+        """Charts have a curve for each branch and a marker for each mode."""
         rows = self.rows("stability", "complex_modes")
         damping = self.charts("stability")["damping"]
         self.assertEqual([len(trace["x"]) for trace in damping["data"]],
@@ -139,7 +139,7 @@ class Reports(ProgramTest):
         self.assertEqual(sum(len(trace["x"]) for trace in curves), len(rows))
         events = self.rows("sweep", "thresholds")
         self.assertEqual(sum(len(trace["x"]) for trace in charts["branches"]["data"][-2:]), len(events))
-        # Two coalescing modes have the frequency of the threshold at this friction coefficient
+        # At a coalescence, both modes have the frequency of the threshold
         first, second = charts["bifurcations"]["data"][:2]
         event = next(row for row in events if first["name"].startswith(f"{row['label']} and {row['partner label']}, "
                                                                        f"{float(row['frequency [Hz]']):.1f} Hz"))
@@ -280,7 +280,7 @@ class Reports(ProgramTest):
             time.sleep(0.1)
         self.assertEqual([entry for entry in driver.get_log("browser") if entry["level"] == "SEVERE"], [])
         self.assertEqual(driver.find_element("id", "verdict").text, self.verdict(name))
-        # Nothing is wider than the screen, and nothing overlaps
+        # The page fits the width of the screen, and its sections do not overlap
         self.assertLessEqual(driver.execute_script("return document.documentElement.scrollWidth"), width)
         places = driver.execute_script("return [...document.querySelectorAll('main > *')].map(e => { const r = e.getBoundingClientRect();"
                                        " return [r.top, r.bottom]; })")
@@ -293,7 +293,7 @@ class Reports(ProgramTest):
             self.assertEqual(shown, len(traces))
 
     def use(self, driver, name):
-        """Checks in the browser that do not depend on its width."""
+        """Checks that do not depend on the width of the screen."""
         self.assert_tables(driver, name)
         self.assert_sorts(driver, self.folder / name / f"{SORTED[name][0]}.csv", SORTED[name][1])
         if name == "stability":

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The files of a run, and the repetition of the run from these files."""
+"""Files of a run, and repetition of the run from these files."""
 
 import json
 import math
@@ -67,7 +67,7 @@ class Results(ProgramTest):
             self.assertAlmostEqual(damping, -2 * rate, delta=1e-9 * abs(rate))
             self.assertLessEqual(float(row["residual [-]"]), 1e-9)
             self.assertTrue(0 < float(row["share [-]"]) <= 1)
-        # Without dissipation, modes form pairs of growing and decaying modes
+        # Without dissipation, every growing mode has a decaying partner with the same frequency
         values = eigenvalues(self.results)
         self.assertLess(distance([-value.conjugate() for value in values], values), 1e-9)
 
@@ -107,8 +107,7 @@ class Results(ProgramTest):
             self.assertEqual(set(VtuFile(picture).cell_types), {9})
 
     def test_energy(self):
-        """The contributions of all bodies add up to the divergence rate of a growing mode; friction is attributed to
-        the pins."""
+        """Contributions of all bodies add up to the divergence rate; work of friction is attributed to the pins."""
         rows = read_table(self.results / "energy.csv")
         modes = read_table(self.results / "complex_modes.csv")
         growing = [number for number, row in enumerate(modes, start=1) if row["unstable [-]"] == "1"]
@@ -198,12 +197,11 @@ class Repetition(ProgramTest):
 
 
 class Shapes(ProgramTest):
-    """Fields of modes without friction."""
+    """Files of mode shapes: fields, .pvd lists and pictures by ParaView."""
 
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
-        # Trilinear elements on a coarse mesh
         cls.results = cls.run_scene("results", *SHAPES)
 
     def fields_of(self, pattern):
@@ -212,7 +210,7 @@ class Shapes(ProgramTest):
     def assert_normalised(self, fields):
         self.assertAlmostEqual(max(abs(u) for vector in fields["displacement"] for u in vector), 1, delta=STEP)
         for displacement, amplitude in zip(fields["displacement"], fields["amplitude"]):
-            self.assertAlmostEqual(math.hypot(*displacement), amplitude, delta=1.4 * STEP)  # four rounded numbers
+            self.assertAlmostEqual(math.hypot(*displacement), amplitude, delta=1.4 * STEP)  # amplitude and components are rounded
 
     def test_real_modes(self):
         rows = read_table(self.results / "real_modes.csv")
@@ -263,7 +261,7 @@ class Shapes(ProgramTest):
 
     @unittest.skipUnless(shutil.which("pvpython") and shutil.which("xvfb-run"), "ParaView is not installed")
     def test_paraview(self):
-        """A picture, a film and a session of the leading mode; the session can be opened again with its times."""
+        """Pictures, a film and a session file of the leading mode, and energy pictures of all unstable modes."""
         rows = read_table(self.results / "complex_modes.csv")
         leader = max(range(len(rows)), key=lambda i: float(rows[i]["growth rate [1/s]"]))
         picture, film, session = (self.folder / name for name in ("pictures", "mode.gif", "mode.pvsm"))
@@ -284,5 +282,5 @@ class Shapes(ProgramTest):
         self.assertIn("ProgrammableFilter", session.read_text(encoding="utf-8"))
 
 def file_text(label):
-    """A label in the form used in file names."""
+    """Label in the form used in file names."""
     return label.replace(" -", "_minus").replace(" +", "_plus")

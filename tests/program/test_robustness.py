@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Samples of uncertain parameters, compared with closed forms and runs at full order."""
+"""Samples of uncertain parameters, compared with closed forms and with runs at full order."""
 
 import json
 import math
@@ -12,7 +12,7 @@ from squeal.plotting import draw
 from squeal.reporting import content
 from squeal.results import Results
 import squeal
-import test_systems  # as a module, so that its tests are not run again
+import test_systems  # as a module, because importing its classes would run their tests again
 from test_systems import FLUTTER, flutter_terms
 
 BOX = ("Operation/Friction coefficient = uniform 0.1 to 0.6; Pin material/Young modulus = normal 100 %, 5 % for each pin; "
@@ -20,7 +20,7 @@ BOX = ("Operation/Friction coefficient = uniform 0.1 to 0.6; Pin material/Young 
 
 
 def quantile(values, part, n):
-    """Quantile of n values, of which `values` may lack the largest ones; None if the quantile is among these."""
+    """Quantile of n values, given the smallest of them; None if the quantile exceeds the given values."""
     place = part * (n - 1)
     number = int(place)
     values = sorted(values)
@@ -63,7 +63,7 @@ class OfSystem(test_systems.SystemTest):
         self.assertEqual(list(draw.figures(Results(results))), ["robustness"])
 
     def test_onsets_are_those_of_the_closed_form(self):
-        """Growth begins at mu kappa = c; either of the two is the parameter of the sweep."""
+        """Growth begins at mu kappa = c, whether the sweep varies mu or kappa."""
         c = test_systems.Flutter.MU_C
         for other, uncertain, swept in (("kappa", "kappa = uniform 0.5 to 2", "mu, 0, 1, 11"), ("mu", "mu = uniform 0.1 to 1", "kappa, 0.5, 2, 11")):
             name, first, last = swept.split(", ")[0], float(swept.split(", ")[1]), float(swept.split(", ")[2])
@@ -119,8 +119,7 @@ class OfSystem(test_systems.SystemTest):
 
 
 class SearchOfSystem(test_systems.SystemTest):
-    """Search for a system that is unstable for mu g > c, with mu uniform in (0, 1) and g = 0.8 + 4 (x - 0.3)^2, or g =
-    kappa."""
+    """System that is unstable for mu kappa g > c, with mu uniform in (0, 1) and g = 0.8 + 4 (x - 0.3)^2."""
 
     SEARCH = ("Robustness/Number of samples=300", "Search/Samples=5", "Search/Evaluations=30")
 
@@ -149,13 +148,13 @@ class SearchOfSystem(test_systems.SystemTest):
             said = content.content(Results(results))
             self.assertIn(f"number {int(best['design [-]'])} is the best", json.dumps(said, ensure_ascii=False))
 
-            # A repetition with the same samples
+            # A robustness study of best.prm has the same samples
             again = self.run_scene("again", "Robustness/Sobol indices=false", file=str(results / "best.prm"))
             squeal = self.rows(again, "probabilities")[0]
             self.assertEqual(squeal["probability of squeal [%]"], best["probability of squeal [%]"])
             rates = [row["divergence rate [%]"] or 0. for row in self.rows(again, "samples")]
             self.assertAlmostEqual(best["divergence rate at 90 % of the samples [%]"], quantile(rates, 0.9, 300), delta=1e-6)
-            # Compare with other samples, and with the worst of them at full order
+            # Seed 2 gives other samples; the worst of them is also solved at full order
             checked = self.rows(results, "best_design")
             self.assertEqual([row["seed [-]"] for row in checked], [1., 2.])
             self.assertEqual(checked[0][column], best[column])
@@ -165,8 +164,7 @@ class SearchOfSystem(test_systems.SystemTest):
             self.assertAlmostEqual(self.rows(results, "full_order")[0]["divergence rate [%]"], worst, delta=1e-6)
 
     def test_numbers_in_percent_follow_the_design(self):
-        """P(mu kappa r g > c) = 1 - c/(g kappa) E(1/r) with r uniform in (0.9, 1.1) is smallest for the smallest kappa.
-        """
+        """P(mu kappa r g > c) = 1 - c/(g kappa) E(1/r), with r uniform in (0.9, 1.1), increases with kappa."""
         c = test_systems.Flutter.MU_C
         results = self.study("search", "Robustness/Distributions=mu = uniform 0 to 1; kappa = uniform 90 % to 110 %", "Designs/Variables=kappa = 0.9 to 1.8",
                              "Search/Goal=probability", *self.SEARCH)
@@ -202,7 +200,7 @@ class OfScene(ProgramTest):
         self.assertEqual(len(again), 700)
         for row, other in zip(again, whole):
             self.assertEqual(row["Operation/Friction coefficient"], other["Operation/Friction coefficient"])
-            # Both bases have the tolerance 1e-4
+            # The reduced bases of both runs have the tolerance 1e-4
             rates = [float(r["divergence rate [%]"] or 0.) for r in (row, other)]
             self.assertAlmostEqual(*rates, delta=0.02)
 
@@ -249,7 +247,7 @@ class OfScene(ProgramTest):
         best = min(rows, key=lambda row: float(row[column]))
         for seed, row in zip((1, 2), read_table(results / "best_design.csv")):
             again = self.run_scene(f"again_{seed}", "Robustness/Sobol indices=false", f"Robustness/Seed={seed}", file=str(results / "best.prm"))
-            # The counts agree, except for samples that one of the two bases leaves undecided
+            # Probabilities agree except for samples that are undecided in one of the two bases
             squeal = read_table(again / "probabilities.csv")[0]
             for one, other in ((row, squeal), (squeal, row)):
                 doubt = float(other["undecided samples [%]"]) + 1e-6
@@ -288,7 +286,7 @@ class OfScene(ProgramTest):
 
     @unittest.skipUnless(test_systems.HAS_NUMPY, "needs NumPy")
     def test_reduced_model_of_the_box(self):
-        """NumPy on the written model finds the modes of the samples, and the ranges contain all samples of the table."""
+        """The written model gives the modes of sample 1 in NumPy, and its parameter ranges contain all samples."""
         results = self.run_scene("written", "Study=robustness", f"Robustness/Distributions={BOX}", "Robustness/Number of samples=24",
                                  "Robustness/Sobol indices=false", "Output/Write system=reduced")
         system = squeal.System.read(results / "system")
@@ -300,7 +298,7 @@ class OfScene(ProgramTest):
         for row, point in zip(samples, system.reduction["points"]):
             system.values({name: float(row[column]) for name, column in names.items()})
             self.assertEqual(point["largest estimated error of lambda [-]"], float(row["largest estimated error of lambda [-]"]))
-        # Exact values of the first sample: those in the table are rounded, which changes frequencies of doublets
+        # Defaults are the exact values of sample 1; rounded values of the table would change frequencies of doublets
         eigenvalues = system.solve().eigenvalues
         first = [row for row in modes if row["sample [-]"] == "1"]
         self.assertGreater(len(first), 30)

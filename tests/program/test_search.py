@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Searches for quiet designs: budget and report, compared with single runs and full order; interrupted and resumed."""
+"""Searches for quiet designs: budget, report, agreement with single runs and full order, resumption."""
 
 import re
 import signal
@@ -43,7 +43,7 @@ class SearchTest(ProgramTest):
         found = max(float(row["divergence rate [%]"]) for row in read_table(sweep / "branches.csv"))
         self.assertAlmostEqual(found, best, delta=1e-3 * best)
         rows = read_table(self.search / "full_order.csv")
-        # The last row is for the worst point of the sweep
+        # The last row is the solution at the friction coefficient with the largest rate
         self.assertAlmostEqual(float(rows[-1]["divergence rate [%]"]), best, delta=1e-3 * best)
         for row in rows:
             self.assertLess(float(row["residual [-]"]), 1e-8)
@@ -63,14 +63,14 @@ class SearchTest(ProgramTest):
         n_known = len(self.stored("killed"))
         process = self.call("scene.prm", "--output", "killed", *settings(SEARCH))
         self.assertEqual(process.returncode, 0, process.stderr)
-        # Continuing is reported once, not in every repeated round
+        # The resumption is reported once, not in every repeated round
         self.assertEqual(re.findall("continuing an .*", process.stdout), [f"continuing an interrupted search: {n_known} designs are finished"])
         resumed = self.folder / "killed"
         self.assertEqual(read_table(resumed / "search.csv"), read_table(self.search / "search.csv"))
         self.assertFalse((self.folder / "killed.checkpoint").exists())
 
     def test_what_is_refused(self):
-        """tests/parameters covers invalid variables."""
+        """Invalid settings; tests/parameters covers invalid variables."""
         for overrides, what in ((["Designs/Variables=Geometry/Pin height = 0.03, 0.04"], "a search needs ranges"),
                                 ([VARIABLES, "Search/Samples=20", "Search/Evaluations=10"], "20 samples"),
                                 ([VARIABLES, "Search/Smallest step=0.2"], "larger than the first")):

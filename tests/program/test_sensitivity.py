@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""`Study = sensitivity`: its tables, and derivatives compared with differences between runs."""
+"""`Study = sensitivity`: tables, and derivatives compared with finite differences between runs."""
 
 import functools
 import math
@@ -11,7 +11,7 @@ from program import COARSE, ProgramTest, read_table
 STUDY = "Study=sensitivity"
 NO_THRESHOLDS, NO_GEOMETRY = "Sensitivity/Thresholds=false", "Sensitivity/Geometry=none"
 ITERATED = ["Complex modes/Solver=residual iteration", "Complex modes/Iteration tolerance=1e-12"]
-# A model in which all parameters are nonzero
+# Model in which all parameters are nonzero
 RICH = ["Operation/Radial dissipation=consistent", "Operation/Friction slope=-0.002", "Operation/Gyroscopic forces=true",
         "Operation/Rotation speed=20", "Operation/Load per side=2000", "Disc material/Rayleigh alpha=2", "Disc material/Rayleigh beta=1e-8",
         "Pin material/Rayleigh alpha=3", "Pin material/Rayleigh beta=2e-8", "Mounts/Elastic mounts=disc_bore: 3e10, 7.8e10, 1.88e10"]
@@ -21,7 +21,7 @@ THRESHOLDS = ["Sweep/First friction coefficient=0.05", "Sweep/Last friction coef
               "Sweep/Tolerance=1e-8", "Sweep/Threshold tolerance=1e-10"]
 
 STEADY = "Steady sliding/Contact state=steady sliding"
-# The travel is about 1e-5 m; two of 28 nodes are open
+# Gaps that leave two of 28 contact nodes open at a backplate travel of about 1e-5 m
 GAPS = "Steady sliding/Gaps=pin_top_2: 1e-6, 5e-4, -3e-4; pin_bottom_1: 0, -2e-4, 4e-4"
 
 # Relative rounding error of the difference of two frequencies printed with twelve digits [-]
@@ -33,7 +33,7 @@ STEP = 3e-5
 # Relative step of a parameter for thresholds [-]
 THRESHOLD_STEP = 2e-5
 
-# Uncertainty of thresholds in differences with respect to ln p [-]
+# Error of difference quotients of thresholds with respect to ln p [-]
 RESOLUTION = 2e-6
 
 
@@ -42,7 +42,7 @@ def eigenvalue(row):
 
 
 def derivative(row):
-    """Derivative in a row, with respect to the parameter."""
+    """Derivative of lambda with respect to the parameter, from a row of a table."""
     return complex(float(row["growth rate per unit [1/s]"]), 2 * math.pi * float(row["frequency per unit [Hz]"]))
 
 
@@ -51,7 +51,7 @@ def modal(ratios):
 
 
 def override(path, value):
-    """Override that sets the parameter `path` to another value."""
+    """Override that sets the parameter `path` to `value`."""
     if path.startswith("Mounts/"):
         direction = path.rsplit(" ", 1)[1]
         return "Mounts/Elastic mounts=disc_bore: " + ", ".join(repr(value if name == direction else stiffness)
@@ -65,7 +65,7 @@ def override(path, value):
 # ---------------------------------------------------------------- moving nodes
 
 THICKNESS, HEIGHT, INNER, OUTER, DIAMETER = 0.0463, 0.0318, 0.1505, 0.3155, 0.052
-# Side and angle [degree] of each component; all pins have the same distance from the axis
+# Side and angle [degree] of each pin; all pins have the same distance from the axis
 PINS = {"pin_top_1": (1, -10), "pin_top_2": (1, 10), "pin_bottom_1": (-1, -10), "pin_bottom_2": (-1, 10)}
 PIN_RADIUS = 0.2275
 
@@ -90,7 +90,8 @@ def share(pin, x, y, z, component):
 
 
 def motion(path, pin):
-    """Velocity of a node as a function of position and component, as in include/squeal/sensitivity/mesh_motions.h."""
+    """Derivative of the position of a node with respect to a parameter, as a function of position and component: see
+    include/squeal/sensitivity/mesh_motions.h."""
     def radial(x, y, component, rim, nearest):
         r = math.hypot(x, y)
         s = max(0.0, (r - nearest) / (rim - nearest)) if component == "disc" else 0.0
@@ -123,7 +124,7 @@ def motion(path, pin):
 
 
 def move_nodes(still, path, motions):
-    """Writes the mesh of a run with displaced nodes; `motions`: (velocity, change) of each motion."""
+    """Writes the mesh of a run with displaced nodes; `motions`: (motion, change of the parameter) for each parameter."""
     mesh = MeshFile(still / "mesh.msh")
     for component in ("disc", *PINS):
         for node in mesh.nodes_of(component):
@@ -134,7 +135,7 @@ def move_nodes(still, path, motions):
 
 
 def steps_of(slopes, step, most):
-    """Relative changes of up to `most` parameters with similar effects; a single parameter would have `step`."""
+    """Relative changes of parameters with similar effects: at most step * most, and `step` for a single parameter."""
     largest = {key: max(map(abs, of_key.values())) for key, of_key in slopes.items()}
     share = max(largest.values()) / len(largest)
     return {key: step * min(most, share / size) for key, size in largest.items()}
@@ -151,15 +152,15 @@ class Sensitivity(ProgramTest):
 
     @classmethod
     def mesh_of_scene(cls, *overrides):
-        """Result folder of a minimal run, for its mesh."""
+        """Result folder of a minimal run that writes the mesh."""
         return cls.shared("Band/Maximum frequency=1000", "Operation/Friction coefficient=0", *overrides)
 
     def eigenvalues_at(self, *overrides):
         return [eigenvalue(row) for row in read_table(self.run_scene("single", *ITERATED, *overrides) / "complex_modes.csv")]
 
     def check_modes(self, rows, keys, eigenvalues_at, most=100):
-        """Compares derivatives, also of the growth rate alone, with central differences along a direction that depends
-        on all parameters in `keys`, (path, pin). `eigenvalues_at` takes changes of the parameters."""
+        """Compares derivatives of lambda and of its real part with central differences along one direction that changes
+        all parameters in `keys`, (path, pin). `eigenvalues_at` maps these changes to eigenvalues."""
         slopes, here, values = {}, {}, {}
         for key in keys:
             of_key = [row for row in rows if (row["parameter"], row["body"]) == key]
@@ -195,7 +196,7 @@ class Sensitivity(ProgramTest):
         self.assertTrue(agrees(plain) or agrees((4 * plain - difference(2)) / 3), plain)
 
     def check_parameters(self, scene, paths):
-        """Compares derivatives with complete runs; returns the names of all parameters."""
+        """Compares derivatives with differences of complete runs; returns the names of all parameters."""
         folder = self.run_scene("rich", STUDY, NO_THRESHOLDS, NO_GEOMETRY, "Sensitivity/Tolerance=1e-7",
                                 "Sensitivity/Largest number of modes=4", *scene)
         rows = read_table(folder / "sensitivities.csv")
@@ -214,7 +215,7 @@ class Sensitivity(ProgramTest):
         self.assertEqual(len(self.check_parameters([*RICH, STEADY, GAPS], paths)), 17)
 
     def test_modal_damping(self):
-        """Damped modes change with the bodies; their damping ratios change with their frequencies."""
+        """Derivatives include the changes of the damped modes and of their damping ratios, which depend on frequency."""
         ratios = [f"Damping/Modal damping ratio: {frequency} Hz" for frequency in RATIOS]
         paths = ["Disc material/Density", "Operation/Friction coefficient", "Operation/Load per side",
                  "Mounts/Elastic mounts: disc_bore tangential", ratios[1]]
@@ -230,7 +231,7 @@ class Sensitivity(ProgramTest):
         self.check_orthotropic("disc", (210e9, 180e9, 150e9, 0.3, 0.25, 0.2, 80e9, 70e9, 60e9), 7850, "", ("E2", "nu12", "G23"))
 
     def check_orthotropic(self, volume, values, density, axes, checked=()):
-        """Compares derivatives with respect to the constants with complete runs; E1 changes all moduli."""
+        """Compares derivatives for elastic constants with differences of complete runs; `E1` scales all moduli."""
         numbers = dict(zip(("E1", "E2", "E3", "nu12", "nu13", "nu23", "G12", "G13", "G23"), values))
 
         def scene(**changed):
@@ -256,8 +257,8 @@ class Sensitivity(ProgramTest):
         self.check_modes(rows, names, eigenvalues_at)
 
     def test_identities(self):
-        """Results do not depend on the unit of force, derivatives for all pins are sums over the pins, and percentages
-        are consistent."""
+        """Because lambda ~ sqrt(stiffness / density), p dlambda/dp sums to lambda / 2 for stiffnesses and to -lambda / 2
+        for densities. Derivatives for all pins are sums over the pins."""
         folder = self.run_scene("plain", STUDY, NO_THRESHOLDS, "Sensitivity/Tolerance=1e-8")
         rows = read_table(folder / "sensitivities.csv")
         for mode in {row["mode [-]"] for row in rows}:
@@ -284,8 +285,7 @@ class Sensitivity(ProgramTest):
         self.assertEqual(ranking, sorted(ranking, key=abs, reverse=True))
 
     def test_thresholds(self):
-        """Compares dmu_c/dp with differences of thresholds; for lengths and positions, the test moves the nodes of
-        meshes."""
+        """Compares dmu_c/dp with differences of thresholds; lengths and positions are changed by moving nodes."""
         folder = self.run_scene("thresholds", STUDY, *THRESHOLDS, "Sensitivity/Geometry=sizes and places")
         rows = [row for row in read_table(folder / "sensitivities_thresholds.csv") if row["derivative of"] != "none"]
         self.assertEqual({row["derivative of"] for row in rows}, {"squared difference of the pair"})
@@ -313,8 +313,8 @@ class Sensitivity(ProgramTest):
         self.check_thresholds(rows, [(load, ""), (ratio, "")], overrides, most=100)
 
     def check_thresholds(self, rows, keys, overrides, most):
-        """Compares derivatives of thresholds along one direction, as check_modes() does; `overrides` takes changes of
-        the parameters."""
+        """Compares derivatives of thresholds with central differences along one direction, as check_modes() does.
+        `overrides` maps changes of the parameters to settings."""
         of_keys = {key: [row for row in rows if (row["parameter"], row["body"]) == key] for key in keys}
         slopes = {key: {float(row["mu [-]"]): float(row["mu per unit [-]"]) * float(row["value"]) for row in of_key} for key, of_key in of_keys.items()}
         steps = steps_of(slopes, THRESHOLD_STEP, most)
@@ -329,7 +329,6 @@ class Sensitivity(ProgramTest):
         for row in of_keys[keys[0]]:
             here = float(row["mu [-]"])
             parts = {key: step * slopes[key][here] for key, step in steps.items()}
-            # Thresholds have an accuracy of 1e-10; that of A0-0, whose growth rate has a small slope, only 4e-8
             tolerance = 1e-5 * sum(map(abs, parts.values())) + THRESHOLD_STEP * RESOLUTION
 
             def agrees(difference, parts=parts, tolerance=tolerance):
@@ -340,19 +339,19 @@ class Sensitivity(ProgramTest):
 
             with self.subTest(mu=here, label=row["label"]):
                 self.check_difference(agrees, pair, nearest)
-        # The tolerance is small enough to detect an error of a thousandth of the largest slope of each parameter
+        # The tolerance must detect an error of 0.1 % in the largest slope of each parameter
         for key in keys:
             largest = max(map(abs, slopes[key].values())) * steps[key]
             self.assertGreater(1e-3 * largest, 1e-5 * len(keys) * largest + THRESHOLD_STEP * RESOLUTION, key)
 
     def test_geometry(self):
-        """Lengths and positions, compared with runs on meshes whose nodes the test moves; gaps move with their pins."""
+        """Lengths and positions: derivatives agree with runs on meshes with moved nodes; gaps move with their pins."""
         of_all = ("Disc thickness", "Pin height", "Disc inner radius", "Disc outer radius", "Pin diameter")
         self.check_geometry([*RICH, STEADY, GAPS], [*((path, "") for path in of_all), ("Top pin radii", "pin_top_2"),
                                                     ("Bottom pin angles", "pin_bottom_1")])
 
     def test_curved_elements(self):
-        """The same comparison with curved elements on a circle that grows."""
+        """Pin diameter with quadratic elements, whose curved edges grow with the circle."""
         self.check_geometry([*RICH, "Discretization/Element=quadratic"], [("Pin diameter", "")], "sizes")
 
     def test_geometry_of_orthotropic_volumes(self):
@@ -372,7 +371,7 @@ class Sensitivity(ProgramTest):
                          lambda changes: self.eigenvalues_at(*scene, *self.moved(changes, *element)), most=10)
 
     def moved(self, changes, *overrides):
-        """Override that sets the mesh of the model with displaced nodes."""
+        """Override that selects a mesh whose nodes are displaced by `changes`."""
         motions = [(motion(path.removeprefix("Geometry/"), pin), change) for (path, pin), change in changes.items()]
         move_nodes(self.mesh_of_scene(*overrides), self.folder / "moved.msh", motions)
         return ["Geometry/File=moved.msh"]

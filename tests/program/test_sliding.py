@@ -42,7 +42,7 @@ def growth_rates(folder):
 
 
 class ContactFaces:
-    """Fields of a _contact.vtu file at the nodes of each pin's face, with each node once."""
+    """Fields of a _contact.vtu file at the distinct nodes of each pin's face."""
 
     def __init__(self, path):
         file = VtuFile(path)
@@ -56,7 +56,7 @@ class ContactFaces:
                 raise AssertionError(f"{path} has several values at {point}")
 
     def of_pin(self, pin):
-        """Pairs of a point and its fields by name, for one pin."""
+        """(point, fields by name) of the nodes of one pin."""
         return list(self.nodes[pin].values())
 
     def all(self):
@@ -173,7 +173,7 @@ class Gaps(SlidingTest):
         return [int(pin["open nodes [-]"]) for pin in pins(folder).values()]
 
     def test_short_and_worn_pins(self):
-        # A pin is worn at its trailing edge, where friction reduces the pressure
+        # pin_bottom_2 is worn at its trailing edge, where friction reduces the pressure
         results = self.run_scene("results", STEADY, CONSISTENT, "Steady sliding/Gaps=pin_top_1: 2e-5; pin_bottom_2: 0, 4e-4, 0", *SHAPES)
         n_open = self.assert_open_nodes(results)
         self.assertEqual(n_open[:3], [7, 0, 0])
@@ -182,7 +182,7 @@ class Gaps(SlidingTest):
         offsets = [pin["pressure offset along t [m]"] for pin in table.values()]
         self.assertLess(offsets[3], min(offsets[1:3]))
         self.assertEqual([table["pin_top_1"][name] for name in ("load [N]", "largest pressure [Pa]", "c_b [N s/m]")], [0, 0, 0])
-        # The lowest bending modes of the open pin are those of a clamped-free pin
+        # The lowest bending modes of the open pin agree with a clamped-free pin
         free = [float(row["frequency [Hz]"]) for row in read_table(results / "component_modes.csv")
                 if row["component"] == "pins" and row["contact"] == "free" and row["label"] == "F1"]
         lowest = [frequency for frequency in real_frequencies(results) if abs(frequency - free[0]) < 1e-6 * free[0]]
@@ -191,7 +191,7 @@ class Gaps(SlidingTest):
 
 @unittest.skipUnless(importlib.util.find_spec("scipy"), "needs SciPy")
 class Independent(SlidingTest):
-    """The state and the modes, computed independently from the exported matrices."""
+    """The contact state, computed independently from the exported matrices."""
 
     CASES = {"even": (0.4, {}), "strong friction": (1.0, {}), "hardly touching": (0.4, {"pin_top_1": (1e-5, 0, 0)}),
              "short": (0.4, {"pin_top_1": (2e-5, 0, 0)}), "worn": (0.4, {"pin_bottom_2": (0, 4e-4, 0), "pin_top_1": (-1e-6, 0, -1e-4)}),
@@ -200,7 +200,7 @@ class Independent(SlidingTest):
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
-        # With equal load, all contact nodes are kept; all runs have the same mesh
+        # With equal load, the matrices contain all contact nodes; all runs have the same mesh
         cls.matrices = cls.run_scene("matrices", "Output/Write matrices=true")
 
     def run_case(self, friction, gaps, *overrides):
@@ -209,8 +209,7 @@ class Independent(SlidingTest):
                               "Output/Write matrices=true", *overrides)
 
     def assert_same_state(self, results, contact, friction, compressions, ways):
-        """Compares loads, travel and open nodes in the table, and the reactions, to which the dissipation is
-        proportional."""
+        """Compares loads, travel and open nodes with the table, and reactions with C_b, which is proportional to them."""
         import scipy.io
         table = pins(results)
         compression = {name: [p for p, pin in zip(compressions, contact.pins) if pin == name] for name in PINS}
@@ -257,7 +256,7 @@ class Independent(SlidingTest):
 
 
 class Damping(SlidingTest):
-    """Damping of materials, modal damping, and damping by the friction slope."""
+    """Material damping, modal damping, and damping by the friction slope."""
 
     @classmethod
     def setUpClass(cls):
@@ -266,7 +265,7 @@ class Damping(SlidingTest):
         cls.values = eigenvalues(cls.results)
 
     def test_damping_of_the_mass(self):
-        # Also with friction: lambda^2 + alpha lambda replaces lambda^2
+        # Damping proportional to mass replaces lambda^2 by lambda^2 + alpha lambda, also with friction
         alpha = 20.0
         expected = []
         for value in self.values:
@@ -277,7 +276,7 @@ class Damping(SlidingTest):
 
     def test_damping_of_the_pins(self):
         beta = 1e-8
-        # Without friction, it damps all modes: pin modes by beta omega / 2, because the disc hardly moves
+        # Without friction, the growth rate is -beta omega^2 / 2 if only the pins move, and closer to zero otherwise
         still = self.run_scene("still", "Operation/Friction coefficient=0", f"Pin material/Rayleigh beta={beta}")
         for value in eigenvalues(still):
             self.assertLessEqual(value.real, 1e-9)
@@ -288,7 +287,7 @@ class Damping(SlidingTest):
             self.assertAlmostEqual(value.real, -beta * abs(value) ** 2 / 2, delta=1e-3 * beta * abs(value) ** 2 / 2)
 
     def test_friction_slope(self):
-        # Friction that rises with speed stabilises, friction that falls destabilises
+        # Friction that increases with speed stabilises; friction that decreases with speed destabilises
         for state in ([], [STEADY]):
             without = self.run_scene("without", *state) if state else self.results
             sums = {}
@@ -317,8 +316,7 @@ class Shoes(SlidingTest):
 
     @classmethod
     def write_shoes(cls, name, *parts, n_parts=24):
-        """Writes a ring with shoes as NAME.msh and NAME.prm; each shoe extends from one part of the circle to another.
-        """
+        """Writes a ring with shoes as NAME.msh and NAME.prm. `parts`: first and last sector of each shoe."""
         mesh, levels = HexMesh(), [-0.02, 0, 0.02]
         disc = mesh.block("disc", [0.15, 0.2, 0.25, 0.3], angles(n_parts), levels, is_ring=True)
         mesh.name(disc["-a"].values(), "disc_bore")

@@ -39,7 +39,7 @@ class Solvers(ProgramTest):
     def test_residual_iteration(self):
         self.assert_same_eigenvalues(eigenvalues(self.run_scene("results", *RESIDUAL_ITERATION)), self.values)
 
-        # With the default tolerance, errors are below it
+        # Errors are below the default tolerance
         results = self.run_scene("results", RESIDUAL_ITERATION[0])
         estimates = [float(row["estimated error of lambda [-]"]) for row in read_table(results / "complex_modes.csv")]
         self.assertLessEqual(max(estimates), 1e-7)
@@ -103,7 +103,7 @@ class Mounts(ProgramTest):
     scene = COARSE
 
     def test_free_disc(self):
-        # Pins support the disc only axially: it has three rigid-body modes in its plane
+        # The pins support the disc only axially, which leaves three rigid-body modes in its plane
         for overrides in (["Mounts/Elastic mounts=", DISSIPATION], ["Mounts/Elastic mounts=disc_bore: 0, 0, 1.88e10"]):
             values = []
             for solver in ([], RESIDUAL_ITERATION):

@@ -21,7 +21,7 @@ SPEED, LOAD, TOLERANCE, THRESHOLD_TOLERANCE = 4.0, 1000.0, 1e-6, 1e-6
 # Twice the tolerance, because estimates are not bounds [-]
 DEFAULT_ACCURACY = 2 * TOLERANCE
 
-# Smallest growth per radian of a growing mode, and rounding error of numbers in tables [-]
+# Smallest R / omega of a growing mode, and rounding error of numbers in tables [-]
 GROWING, PRINTED = 1e-8, 1e-10
 
 
@@ -30,7 +30,7 @@ def eigenvalue(row):
 
 
 def divergence(value):
-    """Growth per radian of an eigenvalue."""
+    """Divergence rate R / omega of an eigenvalue [-]."""
     return value.real / value.imag
 
 
@@ -71,7 +71,7 @@ class SweepTest(ProgramTest):
         return eigenvalues(cls.alone(mu, *overrides))
 
     def assert_same_modes(self, actual, expected, tolerance):
-        """Compares lambda and growth per radian with the results of another run."""
+        """Compares lambda and divergence rates with the results of another run."""
         self.assert_same_eigenvalues(actual, expected, tolerance)
         left = list(expected)
         for value in actual:
@@ -80,7 +80,7 @@ class SweepTest(ProgramTest):
             self.assertAlmostEqual(divergence(value), divergence(nearest), delta=tolerance)
 
     def assert_complete(self, folder, suffix=""):
-        """Checks that the branches contain the numbers of modes in counts.csv, each branch once for each friction
+        """Checks that the branches have the numbers of modes in counts.csv, and no branch twice at one friction
         coefficient."""
         rows = by_mu(read_table(folder / f"branches{suffix}.csv"))
         counts = read_table(folder / f"counts{suffix}.csv")
@@ -102,7 +102,7 @@ class SweepTest(ProgramTest):
         return self.call_scene(output, SWEEP, *GRID, *overrides)
 
     def screen_of(self, output, *overrides):
-        """The output of a successful sweep."""
+        """Output of a successful sweep."""
         process = self.call_sweep(output, *overrides)
         self.assertEqual(process.returncode, 0, process.stderr)
         return process.stdout + process.stderr
@@ -188,7 +188,7 @@ class Sweep(SweepTest):
                 self.assertIn(row["event"], ("onset", "restabilisation"))
                 self.assertTrue(0 < row["uncertainty [-]"] < 1e-4, row)
                 self.assertEqual(row["partner [-]"] != "", mechanism == "coalescence")
-            # A threshold far from the others; several pin modes begin to grow at nearly the same value
+            # Use an isolated threshold: several pin modes begin to grow at nearly the same value
             row, = [row for row in found if row["label"] == "A1-2 +"]
             step = max(1e-5, row["uncertainty [-]"])
             below, above = (sum(divergence(value) > GROWING for value in self.modes_at(row["mu [-]"] + sign * step, *overrides)) for sign in (-1, 1))
@@ -208,14 +208,14 @@ class Sweep(SweepTest):
 
     def test_mode_shapes(self):
         modes = sorted(path.name for path in (self.results / "modes").iterdir())
-        # Labelled like the mode at this friction coefficient, not like the start of the branch
+        # The label is that of the mode at this friction coefficient, not at the start of the branch
         leader = max(read_table(self.alone(0.4, CONSISTENT) / "complex_modes.csv"), key=lambda row: float(row["divergence rate [%]"]))
         name = f"mu_0.4_{leader['label'].replace(' ', '_')}"
         self.assertEqual(modes, [f"{name}.vtu", f"{name}_contact.vtu"])
         self.assertEqual(sorted(path.name for path in (self.results / "animations").iterdir()), [f"{name}.pvd", f"{name}_frames"])
 
     def test_no_mode_shape_where_none_grows(self):
-        """If mode shapes but no complex plane are requested, the plane is written at the same friction coefficient."""
+        """If only mode shapes are requested, the complex plane is written at their friction coefficient."""
         screen = self.screen_of("quiet", "Sweep/Last friction coefficient=0.1", "Sweep/Number of friction coefficients=2", CONSISTENT,
                                 "Sweep/Compare dissipation=false", "Sweep/Mode shapes at=0.1", "Output/Mode shapes=unstable")
         self.assertIn("no mode grows at mu = 0.1", screen)
@@ -252,7 +252,7 @@ class Sweep(SweepTest):
         self.assertTrue(any(one["unstable modes [-]"] != "0" for one, _ in places.values()))
         for (mu, _), (one, other) in places.items():
             self.assertEqual(one["unstable modes [-]"], other["unstable modes [-]"])
-            # Among modes that do not grow, it depends on rounding which is the least damped
+            # If no mode grows, the leading mode depends on rounding
             if one["unstable modes [-]"] != "0":
                 self.assertLessEqual(distance([eigenvalue(one)], [eigenvalue(other)]), DEFAULT_ACCURACY, mu)
                 self.assertEqual(one["label"], other["label"])
@@ -326,7 +326,7 @@ class OtherSweeps(SweepTest):
     def test_small_basis(self):
         screen = self.screen_of("small", CONSISTENT, "Sweep/Compare dissipation=false", "Sweep/Maximum basis=40", "Sweep/Tolerance=1e-9",
                                 "Sweep/Count modes at=0.4", "Sweep/Mode shapes at=0.4", "Output/Mode shapes=unstable")
-        # Reported once, although it affects three outputs
+        # The message appears once, although three outputs are affected
         self.assertEqual(screen.count("at mu = 0.4 the modes miss the tolerance"), 1)
         self.assertIn("operating points miss the tolerance", screen)
         self.assertIn("Sweep/Maximum basis", screen)

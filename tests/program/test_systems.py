@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Systems of matrices instead of a mesh: compared with dense eigenvalues and closed forms; written and read back."""
+"""Systems of matrices without a mesh: comparison with dense eigenvalues and closed forms; writing and reading."""
 
 import csv
 import importlib.util
@@ -78,7 +78,7 @@ def flutter_squares(mu):
 
 
 class Flutter(SystemTest):
-    """A system with two degrees of freedom that has closed-form solutions."""
+    """System with two degrees of freedom and closed-form eigenvalues."""
 
     MU_C = (((FLUTTER[0] - FLUTTER[1]) / 2.) ** 2 + FLUTTER[2] ** 2) / (-FLUTTER[2] * FLUTTER[3])
 
@@ -122,7 +122,7 @@ class Flutter(SystemTest):
             self.assertAlmostEqual(2. * math.pi * row["frequency per unit [Hz]"], expected.imag, delta=1e-5 * abs(expected))
 
     def test_refusals(self):
-        """Each mistake gives one message with file and entry."""
+        """Each mistake stops the run with one message that names its location."""
         singular = [(2, "1", [[1., 0.], [0., 0.]], "symmetric"), (0, "1", [[1., 0.], [0., 0.]], "symmetric")]
         mass, stiffness, friction = flutter_terms()
         cases = [([mass, stiffness, (0, "1", [[1.]], "none")], ["1 rows", "A2.mtx", "terms[3].matrix"]),
@@ -156,8 +156,8 @@ class Flutter(SystemTest):
             self.assert_message(self.call("study.prm", "--output", "refused", "--set", override), mentions)
 
     def test_maximum_rate(self):
-        """Lightly and heavily damped modes, with and without a definite part: the modes and their number agree with the
-        QZ algorithm."""
+        """Modes with |Re lambda| below the maximum rate and their count agree with the QZ algorithm, with and without a
+        definite part."""
         n, end = 16, 2. * math.pi * BAND
         chain = 200. * np.eye(n) - 90. * (np.eye(n, k=1) + np.eye(n, k=-1))
         damping = np.diag(np.where(np.arange(n) % 4 == 1, 24., 0.06 + 0.02 * np.arange(n)))
@@ -176,7 +176,7 @@ class Flutter(SystemTest):
                     self.assertEqual(counts["complex modes counted by the argument principle"], len(expected))
 
     def test_growth_beyond_the_maximum_rate(self):
-        """Modes that grow faster are listed but not counted; a contour through an eigenvalue is rejected."""
+        """Modes that grow faster than the maximum rate are listed; a contour through an eigenvalue stops the run."""
         identity = np.eye(3)
         self.write_system({}, [(2, "1", identity, "symmetric"), (1, "1", np.diag([-3., 0.5, 1.]), "symmetric"), (0, "1", np.diag([90., 100., 110.]), "symmetric")])
         found = self.lambdas(self.study("stability", "Band/Maximum rate=0.3"))
@@ -219,7 +219,7 @@ class Flutter(SystemTest):
         self.assert_message(self.call("study.prm", "--output", "refused", "--set", "Reduction/Bases=real"), ["no definite part", "POD"])
 
     def check_reduction(self, n):
-        """Compares POD and a written reduced model with full-order modes, for a system without a definite part."""
+        """Compares POD and a written reduced model with full order, for a system without a definite part."""
         results = self.study("reduction", "Band/Maximum frequency=1.5", "Reduction/Snapshots=0.6, 1.5", "Reduction/POD tolerance=1e-9")
         for row in self.rows(results, "reduction_modes"):
             self.assertLess(row["error of lambda [-]"], 1e-5)
@@ -241,8 +241,8 @@ class Flutter(SystemTest):
                 self.assertLess(min(abs(value - other) for other in expected), 2e-8 * abs(value))
 
     def test_flutter_with_multiplier(self):
-        """Flutter of two dofs, with a third dof fixed by a Lagrange multiplier: threshold, map and samples at full
-        order."""
+        """A third dof fixed by a Lagrange multiplier does not change the flutter of the others: threshold, map and
+        samples at full order."""
         padded = [(power, coefficient, [[*row, 0., 0.] for row in A] + [[0.] * 4] * 2, symmetry) for power, coefficient, A, symmetry in flutter_terms()]
         mass, stiffness, friction = ([list(row) for row in term[2]] for term in padded)
         mass[2][2] = 1.
@@ -271,7 +271,7 @@ class Flutter(SystemTest):
         self.assertAlmostEqual(squeal_probability, 100. * (1. - self.MU_C), delta=5.)
 
     def test_derivatives_of_expressions(self):
-        """Rapidly varying, huge and tiny values: the difference step adapts to the expression."""
+        """The difference step adapts to expressions with rapidly varying, huge or tiny values."""
         for expression, value, theta, rate in (("exp(-t/1e-3)", 1e-3, 1. / math.e, -1e3 / math.e), ("sqrt(t)", 1e12, 1e6, 0.5e-6),
                                                ("1e-6/(t+1e-6)", 1e-6, 0.5, -0.25e6), ("t^1.5", 1e-5, 1e-5 ** 1.5, 1.5 * 1e-5 ** 0.5)):
             self.write_system({"t": (value, 0.5 * value, 2. * value)},
@@ -282,7 +282,7 @@ class Flutter(SystemTest):
             self.assertAlmostEqual(2. * math.pi * row["frequency per unit [Hz]"], expected, delta=1e-6 * abs(expected))
 
     def test_complete_basis(self):
-        """If all modes are in the band, a sweep uses no more vectors than dofs."""
+        """If all modes are in the band, the basis of a sweep spans the whole space."""
         n = 6
         K = [[200. if i == j else -90. if abs(i - j) == 1 else 0. for j in range(n)] for i in range(n)]
         F = [[40. if j == i + 1 else -25. if j == i - 2 else 0. for j in range(n)] for i in range(n)]
@@ -297,7 +297,7 @@ class Flutter(SystemTest):
         self.assert_message(self.call("study.prm", "--output", "refused"), ["no parameters", "system.json"])
 
     def test_strict_files(self):
-        """Numbers that a lenient reader would misread."""
+        """Matrix files with entries that a lenient reader would misread are rejected."""
         self.write("study.prm", STUDY.format(study="stability", band=BAND))
         head = "%%MatrixMarket matrix coordinate real "
         for text, mentions in ((head + "general\n2 2 2\n1 1 1.5D2\n2 2 1\n", ["line 3", "1.5D2"]), (head + "general\n2 2 1\n1 1 3,5\n", ["3,5"]),
@@ -363,7 +363,7 @@ class Brake(SystemTest):
                       (0, "omega^2", K_geo + K_geo.T, "symmetric")]
 
     def eigenvalues(self, omega, scale=None, band=BAND):
-        """λ with 0 < Im λ up to the end of the band, from the dense companion form."""
+        """λ in the band with Im λ > 0, from the dense companion form."""
         matrices = [np.zeros((self.N, self.N)) for _ in range(3)]
         for power, coefficient, A, _ in self.terms:
             matrices[power] += eval(coefficient.replace("^", "**"), {"omega": omega}) * A  # trusted input from setUp()
@@ -386,7 +386,7 @@ class Brake(SystemTest):
                 self.assert_same(found, self.eigenvalues(omega), 1e-8)
 
     def test_accuracy(self):
-        """Backward errors and condition numbers are also given for definite systems."""
+        """Definite systems have backward errors, condition numbers, and errors of λ that are at most 10 times too small."""
         self.write_system({"omega": (2., 1., 4.)}, self.terms)
         results, exact = self.study("stability"), self.eigenvalues(2.)
         for row, value in zip(self.rows(results, "complex_modes"), self.lambdas(results)):
@@ -396,7 +396,7 @@ class Brake(SystemTest):
             self.assertLess(min(abs(value - other) for other in exact), (10. * row["error of lambda [-]"] + 1e-10) * abs(value))
 
     def test_reduction(self):
-        """Errors of bases of modes and their responses are within the estimated errors."""
+        """First-order responses and responses to damping each reduce the error of a basis by a factor of 1000."""
         self.write_system({"omega": (2., 1., 4.)}, self.terms)
         results = self.study("reduction", "Reduction/Snapshots=1, 2.5, 4", "Reduction/Grown tolerances=1e-4, 1e-7")
         bases = {row["basis"]: row for row in self.rows(results, "reduction_bases")}
@@ -440,7 +440,7 @@ class Brake(SystemTest):
             self.assertLess(abs(found - expected), 1e-5 * max(abs(expected), 1e-2 * abs(at[j])))
 
     def test_units(self):
-        """Eigenvalues do not change if units of dofs differ by up to 14 decades, or with a massless dof on a spring."""
+        """Eigenvalues depend neither on the units of dofs, over 14 decades, nor on a massless dof on a spring."""
         reference = self.eigenvalues(2.)
         d = 10. ** np.linspace(-7., 7., self.N)
         scaled = [(power, coefficient, d[:, None] * A * d, symmetry) for power, coefficient, A, symmetry in self.terms]
@@ -452,14 +452,14 @@ class Brake(SystemTest):
 
 
 class RoundTrip(SystemTest):
-    """Systems that are written by runs on a mesh and read back give the same tables."""
+    """A system written by a run on a mesh gives the same results as the mesh."""
 
     def system_of(self, folder):
         self.write("again.prm", STUDY.format(study="stability", band=5000).replace("= system\n", f"= {folder}/system\n"))
         return self.run_scene("again", file="again.prm")
 
     def assert_read_back(self, folder, expected, tolerance=SAME):
-        """A stability run of the system in a folder of results has these eigenvalues."""
+        """Checks the eigenvalues of a stability run of the system in a result folder."""
         again = self.lambdas(self.system_of(folder))
         self.assertEqual(len(again), len(expected))
         for value, other in zip(again, expected):
@@ -474,7 +474,7 @@ class RoundTrip(SystemTest):
                 self.assert_read_back("mesh", self.lambdas(results))
 
     def test_shapes(self):
-        """There is a point with its displacement for each free node; bodies become groups."""
+        """Free nodes become points with displacements, and bodies become groups."""
         results = self.run_scene("mesh", "Output/Write system=full", "Output/Mode shapes=all", "Output/Real mode shapes=true")
         again = self.run_scene("again", "Output/Mode shapes=all", "Output/Real mode shapes=true", "System=mesh/system")
         for name, field in (("complex_*", "displacement_real"), ("complex_*", "amplitude"), ("real_*", "amplitude")):
@@ -515,7 +515,7 @@ class RoundTrip(SystemTest):
         self.assertEqual(set(points), set(others))
 
     def test_derivatives(self):
-        """Derivatives with respect to factors of terms agree for the mesh and its system."""
+        """Derivatives with respect to coefficients of terms agree for the mesh and its system."""
         damping = ["Pin material/Rayleigh beta=1e-7", "Disc material/Rayleigh alpha=2", "Materials/Volumes=pin_top_1: 2e9, 0.25, 3000",
                    "Operation/Gyroscopic forces=true", "Mounts/Dashpots=disc_bore: 0, 1e4, 1e4"]
         study = ["Study=sensitivity", "Sensitivity/Thresholds=false", "Sensitivity/Geometry=none", "Sensitivity/Tolerance=1e-10", "Sensitivity/Largest number of modes=3"]
@@ -564,7 +564,7 @@ class RoundTrip(SystemTest):
             self.assert_read_back("written", expected)
 
     def test_reduced_bases(self):
-        """The reduced model of each basis has the modes in the table of the study."""
+        """The reduced model written for each basis has the modes in the table of the study."""
         results = self.run_scene("bases", "Study=reduction", "Reduction/Bases=free, real, residual-grown", "Output/Write system=reduced")
         modes = self.rows(results, "reduction_modes")
         for number, basis in enumerate(self.rows(results, "reduction_bases"), 1):
@@ -578,7 +578,7 @@ class RoundTrip(SystemTest):
 
     @unittest.skipUnless(importlib.util.find_spec("scipy"), "needs SciPy")
     def test_independent_solver(self):
-        """Eigenvalues by SciPy for the system of a mesh, read by the Python module."""
+        """SciPy finds the eigenvalues of the run in the system read by the Python module."""
         results = self.run_scene("mesh", "Output/Write system=full", "Operation/Radial dissipation=consistent")
         system = squeal.System.read(results / "system")
         for value in self.lambdas(results)[::9]:

@@ -11,7 +11,7 @@ import numpy as np
 
 from program import COARSE, ProgramTest, read_table
 from squeal.vtu_file import VtuFile
-import test_systems  # imported as a module, so that its tests are not run again
+import test_systems  # as a module, because importing its classes would run their tests again
 
 BENDING = 3000.  # frequency of the bending modes of the pins [Hz]
 FOUND = 1e-6  # largest relative error of a recovered parameter
@@ -22,8 +22,8 @@ def csv_text(rows, columns=("state", "label", "frequency [Hz]")):
 
 
 def unique_modes(results, state):
-    """State, label and frequency of modes with a unique label, and their rows. Only modes below the bending modes of
-    the pins are used, because these mix with disc modes, whose labels then change."""
+    """(state, label, frequency) and row of each mode with a unique label. Bending modes of the pins mix with disc modes
+    and change their labels: only modes at lower frequencies are used."""
     rows = [row for row in read_table(results / f"{'real' if state == 'coupled' else state}_modes.csv")
             if (row.get("component"), row.get("contact")) in ((None, None), ("disc", "free"), ("pins", "sliding"))]
     number = collections.Counter(row["label"] for row in rows)
@@ -63,7 +63,7 @@ class OfScene(ProgramTest):
         self.assertEqual(len(fit), len(modes))
         self.assertLess(max(abs(float(row["residual after the fit [-]"])) for row in fit), 1e-6)
         self.assertGreater(max(abs(float(row["residual at start [-]"])) for row in fit), 1.)
-        # The written parameter file has the fitted values, and its run the measured modes
+        # A run of the written parameter file reproduces the measured modes
         again = self.run_scene("again", file=str(results / "updated.prm"))
         found = {label: float(frequency) for (_, label, frequency), _ in unique_modes(again, "coupled")}
         for (state, label, frequency), _ in modes:
@@ -200,7 +200,7 @@ class OfScene(ProgramTest):
 
 
 class OfSystem(test_systems.SystemTest):
-    """Updating of a system of two masses with stiffnesses a and b and damping c."""
+    """System of two masses with stiffnesses a and b and damping c."""
 
     A, B = [[2., -1.], [-1., 2.]], [[1., 0.], [0., 3.]]
 

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Growing waves of a sliding pad, compared with a solution of the continuum by Chebyshev polynomials:
-doc/well_posedness.md."""
+"""Growing waves of a sliding pad, compared with a Chebyshev solution of the continuum (doc/well_posedness.md)."""
 
 import math
 import os
@@ -17,7 +16,7 @@ try:
     import numpy as np
     from reproduction.sliding_layer import Layer
 except ImportError:
-    raise unittest.SkipTest("NumPy and SciPy are missing") from None
+    raise unittest.SkipTest("NumPy or SciPy is missing") from None
 
 PAD, RADIUS = Layer(0.012, 1.9e9, 0.25, 3070), 0.01935
 # Im c / Re c of the half-space at mu = 2 and Poisson's ratio 1/2: c^2 = c_s^2 (1 - s^2), s = (mu - i)^2 / (mu^2 + 1)
@@ -35,7 +34,7 @@ class Continuum(unittest.TestCase):
 
 class Ring(ProgramTest):
     def test_growth_rates_converge_to_those_of_the_layer(self):
-        """The three fastest growing waves, on a ring with several waves, so that its curvature has little effect."""
+        """Growth rates of the three fastest-growing waves; with several waves around the ring, curvature has little effect."""
         exact = np.sort([max(values.real[abs(values.imag) < 2 * math.pi * 46e3])
                          for values in (PAD.eigenvalues(n / RADIUS, 1.5, 50) for n in (5, 6, 7))])[::-1]
         errors = []

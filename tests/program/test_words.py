@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Messages of the program about wrong values, unused parameters and results."""
+"""Messages of the program about invalid values, unused parameters and results."""
 
 import os
 import pathlib
@@ -75,7 +75,7 @@ class Words(ProgramTest):
         self.assertEqual(sorted(tables.replace("  tables: ", "").split(", ")), sorted(path.name for path in results.glob("*.csv")))
 
     def test_growing_modes_of_the_disc_are_waves(self):
-        """The two modes of a pair travel in opposite directions, which depend on the rotation of the disc."""
+        """The two modes of a doublet are waves in opposite directions; the growing A0-4 travels with the rotation."""
         self.write("default.prm", "")
         for rotation in ("positive", "negative"):
             results = self.shared(*COARSE, f"Operation/Rotation={rotation}", file="default.prm")
@@ -88,7 +88,7 @@ class Words(ProgramTest):
             self.assertGreater(float(rows["A0-4 +"]["wave with rotation [-]"]), 0.8, rotation)
 
     def test_growing_modes_have_one_name(self):
-        """The growing mode of a doublet is `+` in every study."""
+        """The growing mode of a doublet has the label `+` in every study."""
         self.write("default.prm", "")
         sweep = ["Study=sweep", "Sweep/First friction coefficient=0.3", "Sweep/Last friction coefficient=0.4",
                    "Sweep/Number of friction coefficients=3"]

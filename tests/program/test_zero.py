@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The threshold for zero is independent of the band, and verdicts account for the digits of an eigenvalue."""
+"""The limit below which eigenvalues count as zero does not depend on the band; verdicts account for correct digits."""
 
 import json
 import math
@@ -42,8 +42,8 @@ def warnings(folder):
 
 
 def of_a_rigid_disc(folder, stiffness):
-    """Frequencies [Hz] of a rigid disc with a mount on its polygonal bore: along x and y, ω² = k A / m; about z, ω² = k
-    ∫r² dA / J."""
+    """Frequencies [Hz] of a rigid disc with a mount on its polygonal bore: ω² = k A / m along x and y, ω² = k ∫r² dA / J
+    about z."""
     nodes = [row for row in read_table(folder / "matrices" / "nodes.csv") if row["component"] == "disc"]
     points = np.array([[float(row[f"{axis} [m]"]) for axis in "xyz"] for row in nodes])
     radii, height = np.hypot(points[:, 0], points[:, 1]), np.ptp(points[:, 2])
@@ -89,7 +89,7 @@ class SoftMount(ProgramTest):
         for folder in self.runs.values():
             with self.subTest(folder.name):
                 rows = read_table(folder / "complex_modes.csv")
-                # One warning for all modes, and one for slow modes
+                # The warnings give one limit for all modes and one for low frequencies
                 limits = [float(text) for text in re.findall(r"below ([-+.e0-9]+) %", warnings(folder))]
                 self.assertEqual(len(limits), 2, warnings(folder))
                 for row in rows:
@@ -100,7 +100,7 @@ class SoftMount(ProgramTest):
                 counts = record(folder)["counts"]
                 for verdict in ("unstable", "undecided"):
                     self.assertEqual(counts[f"{verdict} modes"], sum(row["verdict"] == verdict for row in rows))
-                # The two modes along x and y have equal frequencies, so that their growth is undecided
+                # Growth of the modes along x and y is undecided, because their frequencies are equal
                 self.assertGreater(counts["undecided modes"], 0)
 
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""A small brake of quadratic tetrahedra with nonmatching faces, which tests modify and write in several formats."""
+"""Small brake of quadratic tetrahedra with nonmatching faces, which tests modify and write in several formats."""
 
 import itertools
 import math
@@ -22,7 +22,7 @@ for axes in itertools.permutations(range(3)):
 
 
 class TetMesh:
-    """A mesh of volumes of ten-node tetrahedra and of named faces with six nodes."""
+    """Mesh of ten-node tetrahedra in named volumes, with named six-node faces."""
 
     def __init__(self):
         self.points = []
@@ -135,7 +135,6 @@ def clutch():
     return mesh
 
 
-# Parameter file of brake()
 BRAKE = """
 subsection Geometry
   set File = {file}

@@ -41,7 +41,7 @@ TEST(ReducedModel, FullBasisGivesTheFullSpectrum)
       const Scene s = tiny_scene(dissipation, materials);
       const auto &M = *s.coupled.mass;
 
-      // A random full basis, extended in uneven parts
+      // A random full basis, added in parts of different sizes
       const int         n = s.coupled.map().n();
       const MultiVector T = orthonormalize(M, nullptr, random_vectors(s.coupled.map(), n), 1e-13);
       ASSERT_EQ(T.n_columns(), n);
@@ -51,7 +51,7 @@ TEST(ReducedModel, FullBasisGivesTheFullSpectrum)
       reduced.extend(view(T, n - 15, 15));
       ASSERT_EQ(reduced.size(), n);
 
-      // In a random basis, the upper end of the spectrum is less accurate
+      // Limit the comparison, because a random basis is less accurate at the upper end of the spectrum
       const double limit = 2. * M_PI * 20000.;
       for (const double mu : {0., 0.6})
         {
@@ -130,7 +130,7 @@ TEST(ReducedModel, ModalDamping)
 
 TEST(ReducedModel, LessThanAFullBasisIsNotExact)
 {
-  // Check that the first test detects a missing direction
+  // Verify that FullBasisGivesTheFullSpectrum would detect a missing direction
   const Scene       s     = tiny_scene(RadialDissipation::none);
   const int         n     = s.coupled.map().n();
   const MultiVector T     = unit_vectors(s.coupled.map());

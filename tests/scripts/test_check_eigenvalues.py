@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Tests of scripts/check_eigenvalues.py on a small run whose eigenvalues come from a dense solver."""
+"""scripts/check_eigenvalues.py on a small run with eigenvalues from a dense solver."""
 
 import pathlib
 import re
@@ -43,7 +43,7 @@ class CheckEigenvalues(unittest.TestCase):
         self.assertRegex(result.stdout + result.stderr, words)
 
     def change_a_mode(self, error=None):
-        """Changes a frequency by a relative 1e-6; `error`: estimated error to be written for all modes."""
+        """Multiplies one frequency by 1 + 1e-6; `error`: estimated error to be written for all modes."""
         header, *lines = (self.folder / "original" / "complex_modes.csv").read_text(encoding="utf-8").splitlines()
         cells = lines[2].split(",")
         lines[2] = ",".join([*cells[:2], repr(float(cells[2]) * (1 + 1e-6)), *cells[3:]])
@@ -57,7 +57,7 @@ class CheckEigenvalues(unittest.TestCase):
         self.assertGreater(max(growth_rates), 0.5)
 
     def test_system(self):
-        """Half of the stiffness has a coefficient that is given on the command line."""
+        """The stiffness (0.5 + part) K agrees with the table only if the command line sets part = 0.5."""
         problem = exported_matrices.couple(exported_matrices.read_matrices(self.run_directory), two_blocks.FRICTION_COEFFICIENT)
         shutil.rmtree(self.run_directory / "matrices")
         system = squeal.System({"part": squeal.Parameter(0.3, 0, 1)}, [

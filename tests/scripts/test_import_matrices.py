@@ -76,7 +76,7 @@ class ImportMatrices(unittest.TestCase):
         (self.folder / name).write_text(text, encoding="utf-8")
 
     def call(self, files, more=None, **of_terms):
-        """The process of an import in which the terms have these entries."""
+        """Finished process of an import; `of_terms`: additional entries of the terms."""
         terms = [{"name": name, **TERMS[name], **source, **of_terms.get(name, {})} for name, source in files.items()]
         config = {"parameters": {"omega": {"value": "4*_pi", "lower": "2*_pi", "upper": "8*_pi", "unit": "rad/s"}, "mu": {"value": 0.5}}, "terms": terms,
                   **(more or {})}
@@ -123,7 +123,7 @@ class ImportMatrices(unittest.TestCase):
         self.assert_rejected(files, *words, **of_terms)
 
     def test_matlab_7_3(self):
-        """Dense matrices are stored by columns; sparse matrices are stored by columns in a group."""
+        """Version 7.3 stores dense matrices by columns, and sparse matrices by columns in a group."""
         if h5py is None:
             self.write("all.mat", "MATLAB 7.3 MAT-file, Platform: GLNXA64".ljust(124) + "\0\2IM" + 400 * " ")
             self.assert_rejected({"M": {"file": "all.mat"}}, "version 7.3", "h5py")
@@ -135,7 +135,7 @@ class ImportMatrices(unittest.TestCase):
             group["data"], group["ir"], group["jc"] = columns.data, columns.indices.astype("u8"), columns.indptr.astype("u8")
             group.attrs["MATLAB_sparse"] = np.uint64(9)
         head = b"MATLAB 7.3 MAT-file, Platform: GLNXA64".ljust(124) + b"\0\2IM"
-        # In these files, HDF5 data begin after a block of 512 bytes
+        # HDF5 data begin after a block of 512 bytes
         (self.folder / "all.mat").write_bytes(head.ljust(512, b"\0") + (self.folder / "all.h5").read_bytes())
         self.assert_imported({name: {"file": "all.mat", "variable": name} for name in ("M", "R")})
 
@@ -157,7 +157,7 @@ class ImportMatrices(unittest.TestCase):
         self.assert_rejected_again({**files, "R": {"file": "R.rua"}}, "cannot be read", "R.rua")
 
     def test_abaqus(self):
-        """Files with one triangle of symmetric matrices, rows given by node and dof, without fixed dofs."""
+        """Files with one triangle of symmetric matrices and rows given by node and dof; fixed dofs are removed."""
         for name, matrix in self.matrices.items():
             self.write(f"{name}.mtx", "** a comment\n" + abaqus(matrix, half=name in ("M", "K")))
         files = {name: {"file": f"{name}.mtx"} for name in self.matrices}
@@ -166,7 +166,7 @@ class ImportMatrices(unittest.TestCase):
         rows = (self.folder / "system" / "rows.csv").read_text(encoding="utf-8").splitlines()
         self.assertEqual(rows[:3] + rows[-1:], ["row,node,dof", "1,11,1", "2,11,2", "9,20,3"])
         self.assert_rejected_again(files, "one triangle", "K.mtx", K={"symmetry": "none"})
-        # Add a fixed dof
+        # A fixed dof has the stiffness 1e36
         self.write("K.mtx", abaqus(self.matrices["K"], half=True) + "11,2,11,2,1e36\n")
         process = self.call({**files, "K": {"file": "K.mtx", "scale": 1e-3}})
         self.assertIn("1 dofs are fixed", process.stdout)

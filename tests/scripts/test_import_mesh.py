@@ -49,7 +49,7 @@ class ImportMesh(unittest.TestCase):
         return subprocess.run([sys.executable, "-B", SCRIPTS / "import_mesh.py", *arguments], cwd=self.folder, text=True, capture_output=True, timeout=60)
 
     def imported(self, file, volumes, surfaces=None):
-        """The imported .msh file, and (name, nodes) of its elements."""
+        """The imported mesh, and (name, nodes) of its elements."""
         words = [word for option, names in (("--volume", volumes), ("--surface", surfaces or {})) for name, given in names.items()
                  for word in (option, f"{name}={given}")]
         process = self.imports(file, "imported.msh", "--unit", "m", *words)
@@ -103,7 +103,7 @@ class ImportMesh(unittest.TestCase):
         self.assert_is_mesh("brake.med", BODIES, {**SURFACES, "pin_clamp": "NODES"})
 
     def test_vtk(self):
-        """VTK: integer cell data with a set for each value."""
+        """VTK: each value of integer cell data defines a set."""
         numbers = {name: i for i, name in enumerate([*BODIES, *SURFACES], 1)}
         blocks = [("hexahedron", name, nodes) for name, nodes in self.cells.items()] + [("quad", name, nodes) for name, nodes in self.faces.items()]
         mesh = meshio.Mesh(self.points, [(shape, nodes) for shape, _, nodes in blocks],

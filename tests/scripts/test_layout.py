@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Checks includes: a folder of the code includes only from its own row of the table in doc/structure.md, or from rows
-above."""
+"""A folder of the code includes only from its own row of the table in doc/structure.md, or from rows above."""
 
 import pathlib
 import re
@@ -30,7 +29,7 @@ class Layout(unittest.TestCase):
                 room = path.relative_to(base).parts[0]
                 for other in re.findall(r"#include <squeal/(\w+)/", path.read_text(encoding="utf-8")):
                     n_includes += 1
-                    self.assertLessEqual(order[other], order[room], f"{path} includes from {other}/")
+                    self.assertLessEqual(order[other], order[room], f"{path} includes from {other}/, a row below {room}/ in doc/structure.md")
         self.assertGreater(n_includes, 100)
 
 

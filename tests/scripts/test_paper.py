@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Tests of scripts/paper.py on small tables; tests/program/test_paper.py runs the script."""
+"""scripts/paper.py on small tables; tests/program/test_paper.py runs the script."""
 
 import csv
 import json
@@ -67,7 +67,7 @@ class TableOne(PaperTest):
         self.assertIsNone(row["with C_b [Hz]"])
 
     def test_groups_of_pin_modes(self):
-        """24 F1 modes with divergence rates -12, -11, ... 11 % in random order."""
+        """24 F1 modes with divergence rates -12, -11, ... 11 %, sorted by magnitude."""
         modes = [("F1", 3600 + rate, rate, None) for rate in sorted(range(-12, 12), key=abs)]
         run = self.results("run", modes)
         for label, column, rate in (("F1 damped lowest", "with C_b", -12), ("F1 damped highest", "with C_b", -1),
@@ -88,8 +88,7 @@ class Statements(PaperTest):
     COUPLED = [("A0-4 -", 2290), ("A0-4 +", 2310), ("F1", 3500), ("F1", 3507)]
 
     def statements(self, expected, undamped=None, damped=None):
-        """Number and verdict of the statements in `expected`, found by their first words; None if there is no such
-        statement."""
+        """Checks number and verdict of statements, identified by their first words; None: no such statement."""
         without = self.results("without", undamped or self.UNDAMPED, self.COUPLED)
         rows = paper.statements(without, self.results("with", damped or self.DAMPED, self.COUPLED))
         for words, what in expected.items():

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Tests of squeal.plotting on small tables with known figures; skipped without matplotlib."""
+"""squeal.plotting on small tables with known figures; skipped without matplotlib."""
 
 import math
 import pathlib
@@ -97,7 +97,7 @@ class Charts(PlotTest):
         self.assertAlmostEqual(growing[2][1], math.sqrt(0.15))
         # The threshold above the band is omitted
         self.assertEqual(line_of(upper, "onset"), [(0.25, 10)])
-        # Families with growing modes
+        # Only families with growing modes are drawn
         figures = branches.family_figures(self.charts())
         self.assertEqual(list(figures), ["sweep_families"])
         upper, lower = figures["sweep_families"].axes
@@ -132,7 +132,7 @@ class ComplexPlane(PlotTest):
             self.assertEqual([text.get_text() for text in axes.texts], ["A0-4 -"] if growing else [])
 
     def test_values_that_are_asked_for(self):
-        """Friction coefficients in the table complex_plane need not be values of the chart."""
+        """Friction coefficients in the table complex_plane need not be values of the sweep."""
         self.write_chart()
         self.write("complex_plane", self.COLUMNS, [(0.33, "published", "A0-4 +", 20, 0.5, "unstable"),
                                                    (0.33, "none", "A0-4 +", 21, 0.7, "unstable"),
@@ -167,7 +167,7 @@ class Maps(PlotTest):
                "open contact nodes [-]")
 
     def read(self, change=lambda mu, load, row: row):
-        """Reads a map that is unstable from 0.2 for the larger load only, and undecided at 0.1."""
+        """Reads a map that, for the larger load only, is unstable for mu >= 0.2 and undecided at 0.1."""
         rows = []
         for load in (100, 1000):
             for mu in (0, 0.1, 0.2, 0.3):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""scripts/reproduce.sh: its list, the comparison of numbers, and that quoted numbers occur in the pages."""
+"""scripts/reproduce.sh: list of pages, comparison of numbers, and quoted numbers that must occur in the pages."""
 
 import importlib
 import pathlib
@@ -18,7 +18,7 @@ from reproduction.numbers import ENTRIES, Number
 
 
 def text_of(page):
-    """Text of a page in which all numbers have an exponential form such as 1e-6."""
+    """Text of a page with powers of ten in the form 1e-6."""
     path = SOURCE / "README.md" if page == "README" else SOURCE / "doc" / f"{page}.md"
     text = path.read_text(encoding="utf-8").replace("−", "-")
     for power, digits in ((power, str(power).translate(str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹"))) for power in range(1, 20)):
@@ -51,7 +51,7 @@ class Pages(unittest.TestCase):
             self.assertTrue(quoted)
             for number in sorted(quoted):
                 with self.subTest(page=module.name, number=number):
-                    self.assertTrue(re.search(rf"(?<![\d.]){re.escape(number)}(?!\d)", text), f"doc/{module.name}.md does not say {number}")
+                    self.assertTrue(re.search(rf"(?<![\d.]){re.escape(number)}(?!\d)", text), f"doc/{module.name}.md does not contain {number}")
 
     def test_are_listed_without_running(self):
         listed = subprocess.run([SOURCE / "scripts" / "reproduce.sh", "--list"], text=True, capture_output=True, check=True).stdout

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Tests of scripts/slepc_modes.py: its formulations compared with a dense solver, and their applicability."""
+"""scripts/slepc_modes.py: formulations compared with a dense solver, and their applicability."""
 
 import math
 import pathlib

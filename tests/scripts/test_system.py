@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""squeal.System: reads, writes and solves systems, and rejects invalid ones with file and entry."""
+"""squeal.System: reading, writing and solving systems; errors name file and entry of invalid systems."""
 
 import json
 import math
@@ -25,7 +25,7 @@ except ImportError:
 
 
 def flutter(**more):
-    """Two dofs of mass 1 with stiffness k1 and k2, coupled by friction: K = [[k1, mu k], [-mu k, k2]]."""
+    """Two dofs of mass 1, coupled by friction: K = [[1, mu k], [-mu k, 2]]."""
     return System({"mu": Parameter(0.2, 0, 1, "-", "friction coefficient"), "k": Parameter(np.float64(1.5), np.int64(1), 2)}, [
         Term("mass", 2, matrix=np.eye(2), symmetry="symmetric", kind="body"),
         Term("stiffness", 0, matrix=np.diag([1.0, 2.0]), symmetry="symmetric", kind="body"),
@@ -34,7 +34,7 @@ def flutter(**more):
 
 
 def closed_form(mu, k):
-    """λ² of flutter(): -(3 ± sqrt(1 - 4 mu² k²)) / 2."""
+    """λ of flutter(): λ² = -(3 ± sqrt(1 - 4 mu² k²)) / 2."""
     root = np.sqrt(complex(1 - 4 * (mu * k)**2))
     squares = np.array([-(3 + root) / 2, -(3 - root) / 2])
     return np.concatenate([np.sqrt(squares), -np.sqrt(squares)])
@@ -122,7 +122,7 @@ class Files(InFolder):
             self.assertEqual(again.reduction["points"], system.reduction["points"])
 
     def test_points_without_a_speed(self):
-        """Points that the program writes for a sweep without speed."""
+        """An undefined speed (NaN) is written as an empty cell and read back as NaN."""
         flutter(reduction={"points": [{"mu": 0.1, "speed": math.nan}]}).write(self.folder)
         self.assertEqual((self.folder / "points.csv").read_text(encoding="utf-8"), "mu,speed\n0.1,\n")
         self.assertTrue(math.isnan(System.read(self.folder).reduction["points"][0]["speed"]))
@@ -241,7 +241,7 @@ class Solutions(InFolder):
         self.assertEqual(np.linalg.matrix_rank(found.vectors, tol=1e-6), 10)
 
     def test_singular_mass(self):
-        """A massless dof is condensed: K = [[2, -1], [-1, 1]] with mass only on the first dof gives ω² = 1."""
+        """A massless dof is condensed: K = [[2, -1], [-1, 1]] and mass 1 at the first dof give ω² = 1."""
         system = System({}, [Term("M", 2, matrix=np.diag([1.0, 0.0])), Term("K", 0, matrix=np.array([[2.0, -1.0], [-1.0, 1.0]]))])
         np.testing.assert_allclose(np.sort_complex(system.solve().eigenvalues), [-1j, 1j], atol=1e-14)
 
@@ -262,7 +262,7 @@ class Solutions(InFolder):
         self.assert_rejected(lambda: flutter().solve(number=1, largest=2.0), "exclude each other")
 
     def test_time_integration_shows_the_growth_rate(self):
-        """M, C and K integrated in time by scipy.integrate: the envelope of a growing oscillation."""
+        """In a time integration of M, C and K by SciPy, the amplitude grows with the rate Re λ."""
         system, p = flutter(), {"mu": 0.4}
         M, C, K = system.M(p), system.C(p), system.K(p)
         rate = closed_form(0.4, 1.5).real.max()

@@ -45,7 +45,7 @@ class WriteRevision(unittest.TestCase):
         self.git("commit", "-m", "first")
         first = self.revision()
         self.assertTrue(self.git("rev-parse", "HEAD").startswith(first))
-        # If nothing changes, the file is not written, so that nothing is recompiled
+        # An unchanged file is not rewritten, to avoid recompilation
         time = self.file.stat().st_mtime_ns
         self.assertEqual(self.revision(), first)
         self.assertEqual(self.file.stat().st_mtime_ns, time)

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Files like those of a run, generated without squeal: a plate on springs in frictional contact with a block that is
-clamped at its top.
+"""Result files generated without squeal, for a plate on springs in frictional contact with a block clamped at its top.
 
 Both bodies are lattices of point masses with springs along edges and diagonals. The contact normal is z and the plate
-slides along x, hence b = n x t = y.
+slides along x, so that b = n x t = y.
 """
 
 import csv
@@ -90,7 +89,7 @@ def write_run(directory, band=20000.0):
 def dense_eigenvalues(M, C_b, K, P_n, P_t, T_c, band):
     """Eigenvalues in the band, from dense matrices.
 
-    They are computed as reciprocals of the eigenvalues of a standard problem, so that small eigenvalues are accurate.
+    Small eigenvalues are accurate, because they are reciprocals of the large eigenvalues of a standard problem.
     """
     M, C_b, K, P_n, P_t, T_c = (matrix.toarray() for matrix in (M, C_b, K, P_n, P_t, T_c))
     friction = np.eye(K.shape[0]) - FRICTION_COEFFICIENT / 2 * P_t.T @ P_n

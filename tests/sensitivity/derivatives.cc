@@ -70,7 +70,7 @@ namespace
     return result;
   }
 
-  /// Compares derivatives with tolerance 1e-5; for insensitive modes, the resolution of the differences is the limit.
+  /// Compares derivatives with the tolerance 1e-5, plus the resolution 1e-9 |λ| of the differences.
   void expect_alike(const std::vector<Complex> &derivatives, const std::vector<Complex> &others, const std::vector<Complex> &lambda)
   {
     for (std::size_t j = 0; j < lambda.size(); ++j)
@@ -95,7 +95,7 @@ TEST(Sensitivities, OfEveryParameterAgreeWithDifferences)
   const ParameterValues values = system.at(friction);
   const auto            D = of_contact.by_lambda(values), Q = of_contact.pencil(values);
 
-  // Right and left vectors satisfy the pencil and are biorthogonal
+  // Right and left vectors are biorthogonal eigenvectors
   for (Eigen::Index i = 0; i < Q.rows(); ++i)
     for (Eigen::Index j = 0; j < Q.cols(); ++j)
       {
@@ -135,7 +135,7 @@ TEST(Sensitivities, OfEveryParameterAgreeWithDifferences)
 
 TEST(Sensitivities, DoNotChangeWithTheUnitOfForce)
 {
-  // Scaling all stiffnesses by a factor scales ω by its square root, for any friction
+  // λ is proportional to √(stiffness / density) for any friction: dλ / d ln p sums to λ/2 over stiffnesses, −λ/2 over densities
   const Scene           s(mesh_of(skewed_pins), mounted(), operating());
   const BodyTerms       bodies = body_terms(s.model, mounted());
   const Eigentriples    modes  = triples(iterated(s.coupled, friction, 1e-13));
@@ -175,7 +175,7 @@ namespace
 
 TEST(Sensitivities, OfACoalescence)
 {
-  // Threshold from 1 + 2.8 (0.7 − s μ_c) = 0
+  // The coalescence satisfies 1 + 2.8 (0.7 − s μ_c) = 0
   const double           s = 1.3, mu_c = Flutter{s}.coalescence();
   const CoupledSystem    system = Flutter{s}.system();
   std::array<Complex, 3> by_friction{}, by_stiffness{};

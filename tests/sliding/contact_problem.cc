@@ -68,7 +68,7 @@ namespace
     std::vector<DenseMatrix> result;
     for (unsigned int set = 0; set < 1u << n; ++set)
       {
-        // One equation for each node, g = 0 or r = 0, in all unknowns r, z
+        // One equation for each node, g = 0 or r = 0, in the unknowns r and z
         DenseMatrix A = DenseMatrix::Zero(n + n_z, n + n_z), b = DenseMatrix::Zero(n + n_z, 1);
         for (int i = 0; i < n; ++i)
           if (set >> i & 1)
@@ -118,8 +118,7 @@ TEST(ContactProblem, TwoSpringsClosedForm)
 
 TEST(ContactProblem, FrictionTiltsABlock)
 {
-  // A rigid block that may tilt, on two springs at ±a, pushed at height h: moment balance about this height gives r_{1,2} = −½ (1 ± μ h/a);
-  // beyond μ h = a, the block topples.
+  // A rigid block on two springs at ±a, pushed at height h: moment balance gives r_{1,2} = −½ (1 ± μ h/a). For μ h > a, the block topples.
   const double      a = 1., h = 2.;
   const DenseMatrix F = DenseMatrix::Identity(2, 2), zero = DenseMatrix::Zero(2, 2), motions{{1., a}, {1., -a}};
   for (const double mu : {0., 0.2, 0.4, 0.6})
@@ -179,7 +178,7 @@ TEST(ContactProblem, BoundOfUniquenessIsWhereTheSymmetricPartLosesDefiniteness)
 
 TEST(FloatingDisc, IsHeldWhateverRoundingLeaves)
 {
-  // Only the axial travel of the disc is undetermined; reactions equal those of a disc that is held
+  // Only the axial travel of the disc is undetermined: holding the disc does not change the reactions
   for (const double unit : {1e-6, 0.07, 1., 1e6})
     {
       for (unsigned int seed = 0; seed < 50; ++seed)
@@ -190,7 +189,7 @@ TEST(FloatingDisc, IsHeldWhateverRoundingLeaves)
           for (const double r : solve_contact(problem).reactions)
             EXPECT_NEAR(r, -200., 1e-9);
         }
-      // Gaps determine the travel
+      // The travel of a tilted disc changes the gaps and is therefore determined
       ContactProblem tilted = floating(unit, 1e-3, 1, {600., 600.});
       hold_undetermined_motion(tilted, 2);
       EXPECT_TRUE(tilted.held.empty());

@@ -12,7 +12,7 @@
 using namespace Squeal;
 using namespace Squeal::Testing;
 
-// A pad guided by springs in the plane of its back: only the pressure pushes it against the disc, and it may tilt.
+// A pad guided by springs in the plane of its back. Only the pressure presses the pad against the disc; the pad may tilt.
 
 namespace
 {
@@ -134,7 +134,7 @@ TEST(PressedFaces, OfTiedNodesPressTheNodesThatTheyFollow)
       for (const char *pressed_face : {"lining_back", "pad_back"})
         {
           if (plate_length < length && pressed_face == std::string("pad_back"))
-            continue; // a longer lining would bend
+            continue; // a lining longer than the plate would bend
           SCOPED_TRACE(pressed_face);
           Mesh mesh;
           add_box(mesh, {cut, {{4, 3, 1}}, {1., 0., -0.05}, {1. + length, width, 0.}, 0.}, "disc", {{"disc_bore", "disc_contact"}});
@@ -181,7 +181,7 @@ TEST(PressedFaces, FrictionShiftsThePressureToTheLeadingEdge)
 
 TEST(PressedFaces, SpringsTakeTheirShareOfTheLoad)
 {
-  // Add springs along the load: there is no free motion, and the state is proved to be unique
+  // Springs along the load remove the free motion, so that uniqueness can be proved
   std::vector<Mount> mounts = guided;
   mounts[1].axial           = 1e9;
   const PadScene     s(pad_cases[2], 0.3, materials(mounts));

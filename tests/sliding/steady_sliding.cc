@@ -68,7 +68,6 @@ namespace
     return std::count(state.closed.begin(), state.closed.end(), false);
   }
 
-  /// Checks that apply to every state
   void check(const SlidingScene &s, const SlidingState &state)
   {
     EXPECT_LT(state.certificate.residual, 1e-10);
@@ -86,7 +85,7 @@ namespace
         EXPECT_EQ(state.closed[c], state.reactions[c] < 0. || state.gaps[c] == 0.);
       }
 
-    // Check K u = P_nᵀ r + μ P_tᵀ r from the definitions
+    // Check the equilibrium K u = P_nᵀ r + μ P_tᵀ r
     const MultiVector r    = distribute(as_column(state.reactions), s.contact.normal->rows());
     const MultiVector rest = *s.system.stiffness * *state.displacement - transpose_times(*s.contact.normal, r) -
                              s.operation.friction_coefficient * transpose_times(*s.contact.tangential, r);
@@ -140,7 +139,7 @@ TEST(SteadySliding, CompressionOfColumnsBetweenPlates)
 
 TEST(SteadySliding, WithoutFrictionItIsThePunchOfLeastEnergy)
 {
-  // Independent check: ½ rᵀ F_nn r + gᵀ r over r ≤ 0 by projected Gauss-Seidel
+  // Reactions minimise ½ rᵀ F_nn r + gᵀ r over r ≤ 0; projected Gauss-Seidel finds the minimum independently
   SlidingScene s;
   s.operation.friction_coefficient = 0.;
   SlidingParameters sliding        = steady(BackplateControl::displacement, 2e-6);
@@ -152,16 +151,16 @@ TEST(SteadySliding, WithoutFrictionItIsThePunchOfLeastEnergy)
   const int         n = s.interface.size();
   const DenseMatrix F_nn =
     replicate(*s.contact.normal * s.sliding.response.solve(transpose_times(*s.contact.normal, unit_vectors(s.contact.normal->rows()))));
-  // Subtract the elastic part from the gap
+  // Gaps without their elastic part
   const DenseMatrix reactions = as_column(state.reactions), gap = as_column(state.gaps) - F_nn * reactions;
-  // Projected Gauss-Seidel converges for a symmetric positive definite matrix
+  // The iteration converges, because F_nn is symmetric positive definite
   DenseMatrix r = DenseMatrix::Zero(n, 1);
   for (int sweep = 0; sweep < 20000; ++sweep)
     for (int c = 0; c < n; ++c)
       r(c, 0) = std::min(0., r(c, 0) - (gap(c, 0) + F_nn.row(c).dot(r.col(0))) / F_nn(c, c));
   EXPECT_LT(max_norm(r - reactions), 1e-6 * side_load(s, state, 1));
 
-  // The state is continuous in friction
+  // The state depends continuously on friction
   s.operation.friction_coefficient = 1e-7;
   EXPECT_LT(max_norm(as_column(s.solve(sliding).reactions) - reactions), 1e-5 * side_load(s, state, 1));
 }
@@ -223,7 +222,7 @@ TEST(SteadySliding, LoadsOfSinglePinsGapsAndDisplacements)
 
 TEST(SteadySliding, ScalesWithTheLoad)
 {
-  // If load and gaps are doubled, the state is doubled
+  // Doubling load and gaps doubles the state, because the equations are homogeneous
   SlidingScene      s;
   SlidingParameters sliding = steady();
   sliding.gaps              = {{s.pin_names[1], 4e-7}};
@@ -277,7 +276,7 @@ TEST(SteadySliding, ShoesOutsideAndInsideOfARing)
   SlidingParameters sliding = steady();
   for (const double gap : {0., 1e-6})
     {
-      // The travel closes a gap
+      // The travel increases by the gap
       sliding.gaps             = {{s.pin_names[1], gap}};
       const SlidingState state = s.solve(sliding), touching = s.solve();
       check(s, state);
@@ -306,8 +305,8 @@ TEST(SteadySliding, ShoesOutsideAndInsideOfARing)
 
 TEST(SteadySliding, ADiscThatMovesFreely)
 {
-  // A disc without axial mount floats between equally loaded pins; no force acts along the axis of a ring. A drive takes the moment of a
-  // freely rotating disc, although rotation changes gaps at the ends of shoes on a polygon.
+  // A disc without axial mount floats between equally loaded pins, and no force acts along the axis of a ring. The drive balances the moment
+  // of a freely rotating disc, even if rotation changes the gaps of shoes on a polygon.
   const Mount turns = {"disc_bore", 1e10, 0., 1e10};
   for (const auto &[mesh, mount] : {std::make_pair(four_pins(), Mount{"disc_bore", 0., 7.80e10, 0.}),
                                     {four_pins(), turns},
@@ -316,7 +315,7 @@ TEST(SteadySliding, ADiscThatMovesFreely)
     {
       SlidingScene s(mesh, mounted({mount}));
       ASSERT_NE(s.sliding.response.rigid_body_modes(), nullptr);
-      // A ring that no mount holds along its axis can also tilt about its bore
+      // A ring without axial mount can also tilt about its bore
       EXPECT_EQ(s.sliding.response.rigid_body_modes()->n_columns(), mount.axial == 0. && mount.radial > 0. ? 3 : 1);
       const SlidingCertificate found = s.solve().certificate;
       EXPECT_LT(found.residual, 1e-9);
@@ -410,7 +409,7 @@ TEST(SteadySliding, Refusals)
 
 TEST(ContactMotions, OfALevelDisc)
 {
-  // Three rigid-body motions press the disc against the pins and three slide past them, in any basis
+  // In any basis, three rigid-body motions press the disc against the pins and three are tangential
   const Scene s(four_pins(), mounted({}), operating());
   const auto  N = free_motions(s.model, s.system, 0);
   ASSERT_TRUE(N);
@@ -429,7 +428,7 @@ TEST(ContactMotions, OfALevelDisc)
       EXPECT_LT(max_norm(gram(*sliding, *s.system.mass * *sliding) - DenseMatrix::Identity(3, 3)), 1e-12);
     }
 
-  // For a pure rotation, motions along the normals are rounding errors
+  // The normal components of a pure rotation are rounding errors
   const auto turning = free_motions(s.model, assemble(s.model, mounted({{"disc_bore", 1e10, 0., 1e10}})), 0);
   ASSERT_TRUE(turning);
   ASSERT_EQ(turning->n_columns(), 1);

@@ -88,7 +88,7 @@ TEST(Accuracy, SplitsErrorsAndMarksTheFront)
   std::vector<SolvedMesh> meshes;
   for (const double factor : {1., 2., 4.})
     meshes.push_back(solved(Element::trilinear, factor, 0.01, 1e-3, false));
-  meshes.push_back(solved(Element::quadratic, 3., 0.5, 1e-3, true)); // a slow and inaccurate method with two mixed modes
+  meshes.push_back(solved(Element::quadratic, 3., 0.5, 1e-3, true)); // a slow and inaccurate mesh with two mixed modes
   meshes.back().mesh.factor = 3.;
   const auto families       = converged_families(meshes, 6000.);
   const auto methods        = compare(meshes, best_family(families), 4500.);
@@ -110,14 +110,12 @@ TEST(Accuracy, SplitsErrorsAndMarksTheFront)
                   1e-9);
       EXPECT_NEAR(method.rms_frequency, method.largest_frequency.total, 1e-9);
     }
-  // CPU times 2 1
-  // 4 2
-  // 8 4: full order takes as long as a basis on the next finer mesh, which is more accurate
+  // Full order takes as long as the basis on the next finer mesh, which is more accurate
   std::vector<bool> front;
   for (const ComparedMethod &method : methods)
     front.push_back(method.on_front);
   EXPECT_EQ(front, (std::vector<bool>{false, true, false, true, true, true, false, false}));
-  // Divergence rates are ignored in clusters
+  // Modes of a cluster are marked and counted
   EXPECT_EQ(methods[6].n_in_cluster, 1);
   EXPECT_TRUE(methods[6].modes[3].in_cluster);
 }

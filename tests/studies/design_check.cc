@@ -10,7 +10,7 @@ using namespace Squeal::Testing;
 
 namespace
 {
-  /// Error message of a study.
+  /// Error message of a design study, or `accepted`.
   std::string refusal(const std::string &variables, std::vector<std::string> settings = {})
   {
     settings.insert(settings.begin(), {"Study=geometry", "Designs/Variables=" + variables});
@@ -54,7 +54,7 @@ TEST(DesignChecks, VariablesThatChangeNothingAreRefused)
   expect_refusal({changes_nothing, "Geometry/Pin layers", "Accuracy"}, "Geometry/Pin layers = 3, 4", {"Accuracy=1 %"});
   EXPECT_EQ(refusal("Geometry/Pin height = 0.03, 0.034", {"Accuracy=1 %"}), "accepted");
 
-  // If several parameters share a value, one effective parameter is sufficient
+  // One effective parameter is sufficient if several parameters share a value
   EXPECT_EQ(refusal("Geometry/Pin height + Operation/Load per side = 0.03, 0.034"), "accepted");
 }
 
@@ -84,14 +84,14 @@ TEST(DesignChecks, ValuesAreHeldAgainstTheirBoundsFirst)
   expect_refusal({"must be >= 0 m, not -0.01", "Geometry/Pin height = -0.01"},
                  "Disc material/Density = 1, 2; Geometry/Pin height = 0.03, -0.01");
   expect_refusal({"integer", "Geometry/Disc layers = 1.5"}, "Geometry/Disc layers = 1 to 3 in 5");
-  // A value that is invalid together with parameters that do not vary
+  // A value that is invalid in combination with a fixed parameter
   expect_refusal({"beyond the inner radius", "Geometry/Pin diameter = 0.2"}, "Geometry/Pin diameter = 0.05, 0.2");
-  // Samples of a range are also checked
+  // Samples of ranges are also checked
   expect_refusal({"Poisson", "Pin material/Poisson ratio = 0."}, "Pin material/Poisson ratio = 0.2 to 0.8",
                  {"Designs/Plan=Latin hypercube"});
   expect_refusal({"Pin material/Poisson ratio must lie in -1 ... 0.5, not 0.8"}, "Pin material/Poisson ratio = 0.2 to 0.8",
                  {"Study=search"});
-  // Invalid combinations are reported for the affected designs
+  // Invalid combinations of varied values are accepted, because other designs are valid
   EXPECT_EQ(refusal("Operation/Load per side = 0, 1000; Operation/Radial dissipation = none, consistent"), "accepted");
   // The message names the line of the file
   expect_mentions(refusal_of_file("Geometry/Pin height\n0.03\n\n-1\n"), {"line 4", "not -1"});

@@ -70,7 +70,7 @@ TEST(Ingredients, ChangesAreMadeAndNothingElseInEveryScene)
             {
               EXPECT_FALSE(changed.without_lift_off || !changed.basis.empty()) << ingredient->name;
               EXPECT_NE(printed(changed.parameters), printed(scene)) << ingredient->name;
-              // Changing the ingredient again has no effect
+              // Repeating the change has no effect
               const Variation twice = combined(changed.parameters, {ingredient});
               EXPECT_EQ(printed(twice.parameters), printed(changed.parameters)) << ingredient->name;
             }
@@ -143,7 +143,7 @@ TEST(IngredientEffects, GrowingModesButWeakOnesDecideAVerdict)
 
 TEST(IngredientEffects, ModesWithoutCounterpartCount)
 {
-  // The frequency of a mode that leaves the band has changed at least to the end of the band
+  // A mode that leaves the band has changed its frequency at least to the end of the band
   const Effect lost = effect({{{}, eigenvalue(4900., 0.), std::nullopt}});
   EXPECT_NEAR(lost.frequency().amount, 100. * (5000. / 4900. - 1.), 1e-12);
   EXPECT_EQ(lost.n_lost(), 1u);
@@ -176,18 +176,18 @@ TEST(IngredientSelection, CheapestChangesThatKeepTheAccuracyTogether)
     return std::accumulate(chosen.begin(), chosen.end(), 0., [&](const double s, const int i) { return s + unlike[i].severity; });
   };
   for (const auto &[changes, severity_of, expected] :
-       std::vector<Case>{// All changes meet the accuracy
+       std::vector<Case>{// All changes with a severity below 1 meet the accuracy together
                          {{{"a", 0.2}, {"b", 1.5}, {"c", 0.9}}, always(0.95), {{0, 2}, {}, 1, 0.95}},
                          // The change with the largest effect is reverted
                          {unlike, sum, {{0, 2}, {1}, 2, 0.8}},
-                         // The first sufficient change of an ingredient is made; the next one if the combination is too inaccurate
+                         // The first sufficient change of an ingredient is made, or the next one if the combination is too inaccurate
                          {of_one, always(0.9), {{1, 3}, {}, 1, 0.9}},
                          {of_one, [](const Numbers &chosen) { return chosen.front() == 1 ? 1.2 : 0.4; }, {{2, 3}, {1}, 2, 0.4}},
-                         // One change or none needs no further solution
+                         // A single change, or none, requires no further solution
                          {{{"a", 0.3}, {"b", INFINITY}}, nullptr, {{0}, {}, 0, 0.3}},
                          {{{"a", 1.1}}, nullptr, {{}, {}, 0, 0.}},
                          {{}, nullptr, {{}, {}, 0, 0.}},
-                         // Two incompatible changes: the one with the smaller effect remains
+                         // Of two incompatible changes, the change with the smaller effect remains
                          {{{"a", 0.3}, {"b", 0.4}}, always(INFINITY), {{0}, {1}, 1, 0.3}}})
     {
       const ChangesTogether found = cheapest_changes(changes, severity_of);

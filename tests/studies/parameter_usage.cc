@@ -94,7 +94,7 @@ TEST(ParameterUsage, EveryStudyIsFoundByItsNameAndUsesItsDefaults)
   for (const Study *study : studies())
     {
       Paths run = {std::string("Study=") + study->name};
-      if (run.front() == "Study=geometry" || run.front() == "Study=search") // these variables have no default
+      if (run.front() == "Study=geometry" || run.front() == "Study=search") // `Designs/Variables` has no default
         run.emplace_back("Designs/Variables=Geometry/Pin height = 0.03 to 0.04 in 2");
       if (run.front() == "Study=robustness")
         run.emplace_back("Robustness/Distributions=Pin material/Density = uniform 90 % to 110 %");
@@ -159,7 +159,7 @@ TEST(ParameterUsage, OfEveryStudy)
      {"Accuracy study/"},
      {no_shapes, no_system, no_sliding, own_meshes, {"Complex modes/Maximum", "Accuracy study/Grown"}}},
 
-    // The study varies contact state, dissipation, solver and rotation, so that these parameters are used
+    // The study uses all parameters of contact state, dissipation, solver and rotation, because it varies them
     {{"Study=ingredients"}, {"Ingredients/"}, {{"Output/"}}},
 
     {{"Study=reduction"}, {"Reduction/"}, {no_shapes, no_sliding, undamped}},
@@ -231,7 +231,7 @@ TEST(ParameterUsage, OfEveryStudy)
       conditional.insert(found.begin(), found.end());
     }
 
-  // The table covers every parameter: every run uses it, or some run of the table does not.
+  // Every parameter is either always used or unused in at least one run of the table
   const std::set<std::string> always       = {"Geometry", "Mounts", "Discretization", "Band", "Real modes", "Linear algebra", "Contact"};
   const std::set<std::string> of_materials = {"Young modulus", "Poisson ratio", "Density", "Volumes", "Orthotropic", "Axes"};
   for (const std::string &path : all_paths())
@@ -241,7 +241,7 @@ TEST(ParameterUsage, OfEveryStudy)
                                   always.count(path.substr(0, slash)) > 0 || of_materials.count(path.substr(slash + 1)) > 0;
       EXPECT_TRUE(is_always_used || conditional.count(path) > 0) << path << " has no usage rule";
     }
-  // Every path in a rule of a study must exist; a misspelt path in a general rule would leave a parameter uncovered above
+  // Every path in a rule of a study must exist; the check above detects misspelt paths in general rules
   for (const Study *study : studies())
     {
       std::vector<std::string> beginnings(study->own_parameters.begin(), study->own_parameters.end());

@@ -75,7 +75,7 @@ TEST(Robustness, SamplesHaveTheirDistributions)
   EXPECT_LE(X.col(1).maxCoeff(), 6.5);
   EXPECT_GE(X.col(2).minCoeff(), 0.);
   const Eigen::VectorXd x = X.col(0).array() - X.col(0).mean(), y = X.col(1).array() - X.col(1).mean();
-  // A uniform and a normal variable with normal-score correlation 0.8 have the correlation 0.8 √(3/π), except for the effect of truncation
+  // A uniform and a normal variable with normal-score correlation 0.8 have the correlation 0.8 √(3/π), apart from truncation
   EXPECT_NEAR(x.dot(y) / (x.norm() * y.norm()), 0.8 * std::sqrt(3. / M_PI), 0.02);
   correlations(0, 2) = correlations(2, 0) = 0.9;
   EXPECT_THROW(independent_samples(distributions, correlations, 10, 0), ParameterError);

@@ -48,7 +48,7 @@ TEST(LeastSquares, FindsTheMinimumOfALinearProblem)
 
 TEST(LeastSquares, EndsAtALimitAndAvoidsPointsWithoutResiduals)
 {
-  // The minimum of (3 x − 6)² + (4 y − 2)² is at x = 2, beyond the limit; initially, x > 0.95 has no residuals
+  // The minimum of (3 x − 6)² + (4 y − 2)² at x = 2 is beyond the limit; the first two evaluations at x > 0.95 fail
   int        n_refused = 0;
   const auto at        = [&](const std::vector<double> &x) -> std::optional<Residuals> {
     if (x[0] > 0.95 && n_refused++ < 2)
@@ -100,7 +100,7 @@ TEST(FitStatistics, NamesWhatTheDataDoNotDetermine)
   EXPECT_TRUE(statistics.deviations[1]);
   for (const int i : {0, 2, 3, 4})
     EXPECT_FALSE(statistics.deviations[i]);
-  // There are fewer data than parameters
+  // Fewer data than parameters
   const FitStatistics few = fit_statistics({Eigen::VectorXd::Zero(1), J.topRows(1)}, std::vector<double>(5, 0.5), true);
   EXPECT_FALSE(few.undetermined.empty());
 }

@@ -20,7 +20,7 @@ namespace
   using Complex = std::complex<double>;
 
   constexpr double band       = 3.6;                                ///< end of the band [rad/s]
-  constexpr int    chain_size = 15, n_coupled = 2 * chain_size - 2; ///< dofs of each chain, and of the two chains in contact
+  constexpr int    chain_size = 15, n_coupled = 2 * chain_size - 2; ///< dofs of each chain, and of both chains in contact
   constexpr double before = 0.2, after = 0.3;                       ///< flutter begins between these friction coefficients
 
   /// Two mass-spring chains in contact at two nodes, given by matrices without a mesh.
@@ -48,7 +48,7 @@ namespace
           P_n(c, 2 * c) = P_t(c, 2 * c + 1) = 1.;
           P_n(c, chain_size + 2 * c) = P_t(c, chain_size + 2 * c + 1) = -1.;
         }
-      // Dofs 0 and 2 of the second chain follow dofs of the first
+      // Dofs 0 and 2 of the second chain follow dofs 0 and 2 of the first
       for (int dof = 0, column = 0; dof < 2 * chain_size; ++dof)
         if (dof == chain_size || dof == chain_size + 2)
           T_c.row(dof) = T_c.row(dof - chain_size);

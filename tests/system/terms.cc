@@ -14,8 +14,8 @@ using namespace Squeal::Testing;
 
 namespace
 {
-  /// Terms with the first power of λ, θ = 2 a b² with a symmetric matrix, −3 a with a skew one, and low-rank terms with and without
-  /// weights; and a term with another power.
+  /// Terms with the first power of λ: 2 a b² S with S symmetric, −3 a G with G skew, and low-rank terms Lᵀ R with and without weights. The
+  /// last term has the second power.
   struct Terms
   {
     RowMap                               map = rows(4), short_map = rows(2);

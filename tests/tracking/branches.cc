@@ -31,7 +31,7 @@ namespace
     std::function<DenseMatrix(double)> stiffness;
     std::function<DenseMatrix(double)> damping = nullptr;
 
-    double                                                last        = std::numeric_limits<double>::infinity(); ///< end of the list
+    double                                                last        = std::numeric_limits<double>::infinity(); ///< largest listed |ω|
     std::function<ComplexDenseMatrix(const ChartPoint &)> corrections = nullptr;
     std::function<void(ChartPoint &)>                     disturb     = nullptr;
 
@@ -74,7 +74,6 @@ namespace
     return as_column(values).asDiagonal();
   }
 
-  /// Normally distributed numbers.
   DenseMatrix random(std::mt19937 &generator, const int n_rows, const int n_columns)
   {
     std::normal_distribution<double> normal;
@@ -115,7 +114,7 @@ namespace
       EXPECT_EQ(count.n_modes, count.n_expected) << "at " << count.friction_coefficient;
   }
 
-  /// The chart of a family, checked for these thresholds: onset and restabilisation of a window, or onsets of different branches.
+  /// Chart of a family with the expected thresholds: onset and restabilisation of a window, or onsets of different branches.
   StabilityChart expect_thresholds(Family                     family,
                                    const std::vector<double> &grid,
                                    const ThresholdMechanism   mechanism,
@@ -159,7 +158,7 @@ namespace
         EXPECT_EQ(one.enters, other.enters);
       }
 
-    // The order of the modes of a multiple λ at the first point is arbitrary, so that branches are compared as sets of curves
+    // Compare branches as sets of curves, because modes of a multiple λ have an arbitrary order at the first point
     const auto curves = [&coarse](const StabilityChart &chart) {
       std::vector<Eigen::VectorXcd> result;
       for (std::size_t b = 0; b < chart.branches.size(); ++b)
@@ -188,7 +187,7 @@ namespace
   {
     double d1 = 0., d2 = 0.;
 
-    /// Hurwitz criterion a1 (a3 a2 - a1) = a3² a0 of λ⁴ + a3 λ³ + a2 λ² + a1 λ + a0.
+    /// Friction coefficient with a1 (a3 a2 - a1) = a3² a0, from the Hurwitz criterion of λ⁴ + a3 λ³ + a2 λ² + a1 λ + a0.
     double threshold() const
     {
       const double a3 = d1 + d2, a2 = k11 + k22 + d1 * d2, a1 = d1 * k22 + d2 * k11;
@@ -205,7 +204,7 @@ namespace
     }
   };
 
-  /// Modes that do not interact, each given by its λ(μ); computed values have an error [rad/s] of known size.
+  /// Modes that do not interact, each given by its λ(μ); listed values have a known error [rad/s].
   Family given_modes(const std::vector<std::function<Complex(double)>> &lambda, const Complex error = 0.)
   {
     const auto entries = [lambda](const double mu, double (*const entry)(const Complex &)) {
@@ -270,7 +269,7 @@ TEST(Branches, ThresholdsInClosedForm)
       ASSERT_EQ(chart.thresholds.size(), 1u);
       const Threshold &threshold = chart.thresholds.front();
       EXPECT_LT(std::abs(threshold.lambda - Complex(0., std::sqrt(0.5 * (flutter.k11 + k22)))), 1e-6);
-      // The lower branch is the one that grows
+      // The lower branch grows
       EXPECT_LT(value(chart, threshold.branch, 0).imag(), value(chart, threshold.partner, 0).imag());
       EXPECT_GT(value(chart, threshold.branch, chart.points.size() - 1).real(), 0.);
     }
@@ -307,7 +306,7 @@ TEST(Branches, GrowthAtOnce)
   const auto pairs = [](const double mu) { return DenseMatrix{{5., mu, 0., 0.}, {-mu, 5., 0., 0.}, {0., 0., 7., mu}, {0., 0., -mu, 7.1}}; };
   const auto chart = expect_thresholds({pairs}, uniform_grid(0., 1., 10), coalescence, {0., 0.05});
   EXPECT_EQ(chart.thresholds.at(0).friction_coefficient, 0.);
-  // C = μ diag(c (μ − 0.2), −1, 1) / 100: one mode grows above 0.2, one from μ = 0, one never
+  // C = μ diag(0.2 − μ, −1, 1) / 100: one mode grows above 0.2, one from μ = 0, one never
   const auto K = [](double) { return diagonal({1., 2., 3.}); };
   const auto C = [](const double mu) { return diagonal({-0.01 * mu * (mu - 0.2), -0.01 * mu, 0.01 * mu}); };
   for (const int n_steps : {3, 10})
@@ -322,7 +321,7 @@ TEST(Branches, GrowthAtOnce)
 TEST(Branches, CrossingsWithoutInteractionGoStraightThrough)
 {
   Family family{[](const double mu) { return DenseMatrix{{4. + mu, 0.2, 0.}, {0.2, 5. + mu, 0.}, {0., 0., 6. - mu}}; }};
-  // The last grid contains a crossing, at which vectors are arbitrary
+  // The last grid contains a crossing, where vectors are arbitrary
   const double crossing = (6. - (4.5 - std::sqrt(0.29))) / 2.;
   for (const auto &grid : {uniform_grid(0., 2., 4), uniform_grid(0., 2., 37), std::vector<double>{0., crossing, 2.}})
     {
@@ -349,7 +348,7 @@ TEST(Branches, VeeringsAreRefined)
 
 TEST(Branches, MultipleModesAreFollowedAcrossOthers)
 {
-  // A twelvefold λ² = −5 with randomly mixed vectors at each point; two modes cross it, one of which veers with a third
+  // A twelvefold λ² = −5 with randomly mixed vectors at each point. Two modes cross it; the second also veers with a third mode.
   std::mt19937 generator(7);
   Family       family{[](const double mu) {
     DenseMatrix K             = 5. * DenseMatrix::Identity(15, 15);
@@ -387,11 +386,10 @@ TEST(Branches, MultipleModesAreFollowedAcrossOthers)
 
 TEST(Branches, BandCrossingsInClosedForm)
 {
-  // ω = √(8 + 2μ) leaves the band ω < 3, and √(10.2 − 2μ) enters it; the list of modes ends 5 % above, where a fourth mode appears and
-  // disappears
+  // ω = √(8 + 2μ) leaves the band ω < 3, and √(10.2 − 2μ) enters it. A fourth mode is listed only near μ = 0.5, below ω = 3.15.
   Family family{[](const double mu) { return diagonal({8. + 2. * mu, 10.2 - 2. * mu, 4., 9.9 + 4. * (mu - 0.5) * (mu - 0.5)}); }};
   family.last = 3.15;
-  // The mode is overdamped between μ = 0.7 and 1.3, where c² = 4 k, c = c_max − (μ − 1)²
+  // The first mode is overdamped for 0.7 < μ < 1.3, where c = 2.09 − (μ − 1)² > 2 √k = 2
   Family overdamped{[](double) { return diagonal({1., 9.}); }};
   overdamped.damping = [](const double mu) { return diagonal({2.09 - (mu - 1.) * (mu - 1.), 0.1}); };
   for (const bool real : {false, true})
@@ -444,7 +442,7 @@ TEST(Branches, UncertaintyCoversThePerturbation)
 
 TEST(Branches, ManyModes)
 {
-  // K = diag(squares) + μ U Vᵀ with a correction of rank three, in a basis that hides this structure
+  // K = diag(squares) + μ U Vᵀ with U Vᵀ of rank three, in a random orthonormal basis
   struct Spectrum
   {
     std::string         name;
@@ -460,7 +458,7 @@ TEST(Branches, ManyModes)
       spread.weights.push_back(0.5);
     }
   spread.squares[20] = spread.squares[19] = spread.squares[18];
-  // 12 pin modes within 1 %, a disc doublet among them, and six equal modes above
+  // 12 pin modes within 1 %, a disc doublet among them, and above them six equal and two single modes
   for (int i = 0; i < 22; ++i)
     {
       pins.squares.push_back(i < 12 ? 25. * (1. + 0.02 * i / 12.) : i < 14 ? 25.2 : i < 20 ? 30. : 30. + i);
@@ -508,7 +506,7 @@ TEST(Branches, Refusals)
 
 TEST(GrowthOnset, LiesBetweenTheValuesOfTheChart)
 {
-  // At 0.6, the second mode grows faster, but the first mode, which grows above 0.33, has reached the level earlier
+  // At 0.6, the second mode grows faster, but the first mode reaches both levels at smaller μ
   const Family         modes = given_modes({growing(5., 1e-3, 0.33), growing(7., 4e-3, 0.41)});
   const StabilityChart chart = modes.chart({0., 0.3, 0.6}, precise(10., 1e-10));
   const auto           found = onsets(modes, chart);
@@ -550,7 +548,7 @@ TEST(GrowthOnset, GrowthAtTheFirstValueBeganBefore)
 
 TEST(GrowthOnset, ModesThatEnterTheBandCountFromThereOn)
 {
-  // The mode grows above 0.05 and enters the band at 0.25; another mode grows only above the band
+  // One mode grows for μ > 0.05 and enters the band at 0.25; the other grows above the band
   const auto   entering = [](const double mu) { return Complex(0.1 * (mu - 0.05), 12. - 8. * mu); };
   const Family modes    = given_modes({entering, growing(13., 1e-2, 0.01)});
   for (const auto &onset : onsets(modes, modes.chart({0., 0.2, 0.4, 0.6}, precise(10., 1e-10))))

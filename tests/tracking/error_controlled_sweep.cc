@@ -14,7 +14,7 @@ using namespace Squeal::Testing;
 
 namespace
 {
-  /// A model with everything that a sweep needs.
+  /// Model with the damping, inverse and real modes that a sweep requires.
   struct Chart
   {
     explicit Chart(const double c_b, const double c_t = 0., const std::vector<PolarPin> &pins = skewed_pins)
@@ -84,7 +84,7 @@ namespace
     return result;
   }
 
-  /// A model that is accurate everywhere, with contact damping c_b [N s/m] times the friction coefficient.
+  /// Reduced model accurate for 0 ≤ μ ≤ 0.3, with the contact damping μ c_b [N s/m].
   struct Predicted : Chart
   {
     explicit Predicted(const double c_b)
@@ -169,7 +169,7 @@ TEST(ErrorControlledSweep, StopsAtWhatItProved)
   const auto result     = sweep(model, points, options);
   EXPECT_NE(result.why_stopped.find("the basis would exceed " + std::to_string(options.maximum_basis) + " vectors"), std::string::npos);
   EXPECT_LE(model.size(), options.maximum_basis);
-  ASSERT_TRUE(result.points.front().has_value()); // exact without friction: the basis contains the real modes
+  ASSERT_TRUE(result.points.front().has_value()); // exact, because the basis contains the real modes
   EXPECT_FALSE(result.points.back().has_value());
   EXPECT_LE(result.worst_error, options.tolerance);
 
