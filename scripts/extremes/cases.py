@@ -105,15 +105,15 @@ for exponent in range(-6, 7):
     ratio = 10.0**exponent
     # The mesh resolves slow waves only up to a lower frequency
     end = 5000 * min(1, (ratio / 1e-2) ** 0.5)
-    add("Young's modulus pin to disc", f"1e{exponent}", f"Pin material/Young modulus={ratio * DISC_MODULUS!r}", band(end),
+    add("ratio of Young's moduli, pin to disc", f"1e{exponent}", f"Pin material/Young modulus={ratio * DISC_MODULUS!r}", band(end),
         quick=exponent == -6, argument_count=exponent in (-6, 6))
-add("Young's modulus pin to disc", "1e-6, 5 kHz", f"Pin material/Young modulus={1e-6 * DISC_MODULUS!r}", expected=UNRESOLVED)
+add("ratio of Young's moduli, pin to disc", "1e-6, 5 kHz", f"Pin material/Young modulus={1e-6 * DISC_MODULUS!r}", expected=UNRESOLVED)
 for exponent in range(-6, 7):
     ratio = 10.0**exponent
     end = 5000 * min(1, (1 / ratio) ** 0.5)
-    add("density pin to disc", f"1e{exponent}", f"Pin material/Density={ratio * DISC_DENSITY!r}", band(end), quick=exponent == 6,
+    add("ratio of densities, pin to disc", f"1e{exponent}", f"Pin material/Density={ratio * DISC_DENSITY!r}", band(end), quick=exponent == 6,
         argument_count=exponent in (-6, 6))
-add("density pin to disc", "1e6, 5 kHz", f"Pin material/Density={1e6 * DISC_DENSITY!r}", expected=UNRESOLVED)
+add("ratio of densities, pin to disc", "1e6, 5 kHz", f"Pin material/Density={1e6 * DISC_DENSITY!r}", expected=UNRESOLVED)
 
 for ratio in (1e-3, 3e-3, 1e-2, 0.03, 0.1, 0.3, 1):
     end = 5000 if ratio > 0.01 else 2000
@@ -125,7 +125,7 @@ for ratio in (0.02, 0.05, 0.1, 0.5, 1, 2, 5, 10, 20):
 
 for what, options in (("", {}), (", damped", {"damped": True}), (", free disc", {"held": False})):
     for unit, scale in (("micrometres", 1e-6), ("millimetres", 1e-3), ("kilometres", 1e3)):
-        add(f"metres taken as{what}", unit, *scaled(scale, **options), scale=scale, unit=scaled(1.0, **options),
+        add(f"length unit{what}", unit, *scaled(scale, **options), scale=scale, unit=scaled(1.0, **options),
             argument_count=False,
             quick=unit != "millimetres" and what == ", damped")
 
@@ -138,7 +138,7 @@ add("mounts: radial, tangential, axial [N/m^3]", "1e20, 1, 0", mount(1e20, 1, 0)
 for speed in (0, 1e-9, 1e-6, 1e-3, 1, 1e3, 1e6, 1e9):
     add("rotation speed, dissipation [rad/s]", f"{speed:g}", CONSISTENT, f"Operation/Rotation speed={speed!r}", quick=speed in (0, 1e-6),
         expected="Rotation speed" if speed == 0 else RIGHT)
-add("rotation speed, dissipation published [rad/s]", "1e-3", "Operation/Radial dissipation=published", "Operation/Rotation speed=1e-3")
+add("rotation speed, published dissipation [rad/s]", "1e-3", "Operation/Radial dissipation=published", "Operation/Rotation speed=1e-3")
 for speed in (1e2, 1e4, 1e9):
     add("rotation speed, gyroscopic forces [rad/s]", f"{speed:g}", "Operation/Gyroscopic forces=true", f"Operation/Rotation speed={speed!r}",
         expected=RIGHT if speed < 1e3 else "critical speed")
@@ -183,13 +183,13 @@ for slope in (-10, 10):
     add("friction slope [s/m]", f"{slope:g}", f"Operation/Friction slope={slope}")
 
 for diameter in (1e-3, 1e-4, 1e-5, 1e-6, 1e-8):
-    add("pins of diameter [m]", f"{diameter:g}", f"Geometry/Pin diameter={diameter!r}", f"Geometry/Pin height={diameter!r}")
+    add("diameter of the pins [m]", f"{diameter:g}", f"Geometry/Pin diameter={diameter!r}", f"Geometry/Pin height={diameter!r}")
 for tolerance in (0.1, 0.0):
     add("pairing tolerance [m]", f"{tolerance:g}", f"Geometry/Pairing tolerance={tolerance!r}", expected="Pairing tolerance")
 # At 11.6128 degrees, the chord 2 r sin(angle / 2) equals the pin diameter of 0.052 m
 for angle, gap in ((11.7, "4e-4"), (11.615, "1e-5")):
-    add("gap of two pins [m]", gap, *pins([0.257] * 2, [0, angle]))
-add("gap of two pins [m]", "overlap", *pins([0.257] * 2, [0, 11.5]), expected="pins")
+    add("gap between two pins [m]", gap, *pins([0.257] * 2, [0, angle]))
+add("gap between two pins [m]", "overlap", *pins([0.257] * 2, [0, 11.5]), expected="pins")
 
 add("free disc", "friction", NO_MOUNT)
 add("free disc", "soft pins", NO_MOUNT, "Pin material/Young modulus=1.9e7", band(500.0))

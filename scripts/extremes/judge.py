@@ -161,7 +161,7 @@ def judge_results(case, process, folder, row):
     elif dense_error > TOLERANCE:
         row.remark = f"LAPACK alone is off by {dense_error:.0e}"
     if has_warned:
-        row.remark += ("; " if row.remark else "") + "the run warns of lost digits"
+        row.remark += ("; " if row.remark else "") + "warning of lost digits"
 
 
 def compare_units(case, folder, row):
@@ -220,7 +220,7 @@ def argument_count(case, folder, modes, band):
                 "Sweep/Number of friction coefficients=1", f"Sweep/Count modes at={mu}", "Sweep/Compare dissipation=false"]
     process = call("scene.prm", "--output", "count", *words_of(settings), folder=folder)
     if process.returncode != 0:
-        return f", argument refused ({process.stderr.strip().splitlines()[0][7:]})"
+        return f", argument rejected ({process.stderr.strip().splitlines()[0][7:]})"
     check_numbers(folder / "count")
     counted = int(Table(folder / "count" / "argument_counts.csv").rows[0]["modes counted [-]"])
     n_inside = sum(abs(mode.real) <= 0.1 * band and 1e-3 * band <= mode.imag <= band for mode in modes)
