@@ -196,7 +196,7 @@ def agreement(rows, name):
 
 
 def ruling(rule, holds, less=False):
-    return ("holds" if holds else "holds less" if less else "does not hold"), rule
+    return ("holds" if holds else "holds in part" if less else "does not hold"), rule
 
 
 def at_most(value, bound, weaker):

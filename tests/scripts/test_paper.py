@@ -105,10 +105,10 @@ class Statements(PaperTest):
                          "friction hardly shifts": None})
 
     def test_that_hold_less_or_not(self):
-        self.statements({"unstable modes have a stable partner": (round(math.hypot(0.05, 2260 / 2300 - 1), 6), "holds less"),
+        self.statements({"unstable modes have a stable partner": (round(math.hypot(0.05, 2260 / 2300 - 1), 6), "holds in part"),
                          "its partner A0-4 -": (0.55, "does not hold"),
-                         "unstable disc modes": (1, "does not hold"), "further unstable modes": (1, "holds less"),
-                         "complex modes have nearly the frequencies of the real coupled ones, without C_b": (1.310044, "holds less"),
+                         "unstable disc modes": (1, "does not hold"), "further unstable modes": (1, "holds in part"),
+                         "complex modes have nearly the frequencies of the real coupled ones, without C_b": (1.310044, "holds in part"),
                          "C_b reduces the divergence rate of the growing A0-4": (0.03, "does not hold")},
                         [("A0-4 -", 2260, -0.57, 0.45), *self.UNDAMPED[1:], ("R0-1 -", 690, -0.003, None), ("R0-1 +", 690, 0.003, None)],
                         [self.DAMPED[0], ("A0-4 +", 2300, 0.63, 0.9), *self.DAMPED[2:]])
