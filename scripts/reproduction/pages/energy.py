@@ -10,7 +10,7 @@ MODES = (17, 21, 37, 44)  # row numbers in complex_modes.csv
 @entry("energy", "The table of the default model")
 def default_scene(runs):
     rows = runs.default().rows("energy")
-    for mode, (_, *cells) in zip(MODES, table("energy", "share done on the disc"), strict=True):
+    for mode, (_, *cells) in zip(MODES, table("energy", "friction work on the disc"), strict=True):
         rate, into_disc, *shares = numbers_in(*cells)
         own = {row["body"]: row for row in rows if row["mode [-]"] == mode}
         found = own["disc"]["divergence rate [%]"]

@@ -15,7 +15,7 @@ def leading_mode(runs):
     rows = [row for row in runs("sensitivity", "studies/sensitivity.prm").rows("sensitivities")
             if row["mode [-]"] == 1 and not row["body"]]
     yield from of_mode("the mode", rows[0], "3569", "1.068")
-    for parameter, (_, rate, frequency) in zip(PARAMETERS, table("sensitivity", "one per cent more of")):
+    for parameter, (_, rate, frequency) in zip(PARAMETERS, table("sensitivity", "parameter increased by 1 %")):
         row = next(row for row in rows if row["parameter"] == parameter)
         yield Number(f"{parameter}, divergence rate [percentage points]", rate, row["divergence rate per 1 % [percentage points]"])
         yield Number("  frequency [Hz]", frequency, row["frequency per 1 % [Hz]"])
