@@ -38,7 +38,7 @@ namespace Squeal
     // Sine of a corner angle below which a face is bad: well above the limit of check_mesh(), and below the values in regular plans
     constexpr double least_sine = 0.1;
 
-    // Rows of faces around bad faces that are also moved; there are more rows between neighbouring pins
+    // Rows of faces around bad faces that also move; there are more rows between neighbouring pins
     constexpr int n_rings = 6;
 
     constexpr int    max_untangling_sweeps = 100; ///< ε has its smallest value during a third of the sweeps
@@ -298,7 +298,6 @@ namespace Squeal
               if (before >= good_shape)
                 continue;
 
-              // Use the mean of the neighbours if it is better
               const Plan::Point place = points[node];
               Plan::Point       sum;
               unsigned int      count = 0;

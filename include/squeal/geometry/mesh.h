@@ -115,8 +115,8 @@ namespace Squeal
   FaceGeometry face_geometry(const Mesh &mesh, const CellFace &face);
   FaceGeometry face_geometry(const Mesh &mesh, const Mesh::Face &face);
 
-  /// Reference coordinates of a point by Newton's method on the isoparametric map; nothing for points at a distance of more than about 0.75
-  /// of the cell's extent. The nodes must be in the order of reference_nodes().
+  /// Reference coordinates of a point by Newton's method on the isoparametric map; nothing if the iteration does not converge or the point
+  /// is farther from the cell than about 0.75 of its extent. The nodes must be in the order of reference_nodes().
   std::optional<Mesh::Point> reference_coordinates(Shape                           shape,
                                                    unsigned int                    degree,
                                                    const std::vector<Mesh::Point> &nodes,

@@ -6,8 +6,7 @@
 
 namespace Squeal
 {
-  /// Boundaries of n intervals of [0, 1], including 0 and 1; each interval is shorter than the previous one by @p ratio (1: equal
-  /// intervals).
+  /// Boundaries of n intervals of [0, 1], including 0 and 1; each interval is shorter than the previous one by the factor @p ratio.
   std::vector<double> graded_intervals(unsigned int n, double ratio);
 
   /// Rings of quadrilaterals along the outline of a pin.
