@@ -58,7 +58,7 @@ class Meshes(ProgramTest):
 
     def test_names_that_exclude_each_other(self):
         mesh = renamed(disc_with_pads()[0], "pin_contact", "pin_contact", "pin_clamp")
-        self.dry_run_refused(["pin_contact", "pin_clamp"], file=self.write_mesh(mesh, "clamped_contact"))
+        self.dry_run_refused(["contact node", "pin_clamp"], file=self.write_mesh(mesh, "clamped_contact"))
         mesh = renamed(disc_with_pads()[0], "pin_clamp", "pin_clamp", "back")
         file = self.write_mesh(mesh, "mounted_clamp")
         self.dry_run_refused(["'pin_clamp'", "'back'"], "Mounts/Elastic mounts=back: 1e9, 1e9, 1e9", file=file)

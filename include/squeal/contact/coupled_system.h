@@ -116,12 +116,13 @@ namespace Squeal
   CoupledSystem undamped(CoupledSystem system);
 
   /**
-   * Adds modal damping: each real coupled mode of Φ (n × k, M_c-orthonormal) has its own damping ratio ζ_j,
+   * Adds modal damping with a damping ratio ζ_j for each real coupled mode of Φ (n × k, M_c-orthonormal),
    *
    *   C_m = M_c Φ diag(2 ζ_j ω_j) Φᵀ M_c     n × n, symmetric, of rank k, never formed
    *
    * so that Φᵀ C_m Φ = diag(2 ζ_j ω_j) and, without friction and other damping,
-   * λ_j = −ζ_j ω_j ± i ω_j √(1 − ζ_j²). It does not contribute to the reactions: the ratios do not determine which body dissipates.
+   * λ_j = −ζ_j ω_j ± i ω_j √(1 − ζ_j²). Modal damping does not contribute to the reactions, because the ratios do not
+   * determine which body dissipates.
    *
    * @param eigenvalues ω² [rad²/s²], one for each mode; modes with ω = 0 are undamped
    * @param ratios      ζ [-], one for each mode
@@ -147,7 +148,7 @@ namespace Squeal
                                       const MultiVector                       &real_part,
                                       const MultiVector                       &imaginary_part);
 
-  /// Couples a family of terms as couple() does, each term with its own contribution to the reactions. Mass, stiffness and parameter values
-  /// are for the middle of the family.
+  /// couple() for a family of terms, with the contribution of each term to the reactions. Mass, stiffness and parameter values are for the
+  /// middle of the family.
   CoupledSystem coupled_family(const TermFamily &bodies, const ContactOperators &contact, const ContactDamping &damping = {});
 } // namespace Squeal

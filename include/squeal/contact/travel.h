@@ -21,7 +21,8 @@ namespace Squeal
       return -direction.dot(node.normal);
     }
 
-    /// e·(n + μ f t): force along e on the backplate per unit reaction at a node with friction [-]; negative, because reactions are.
+    /// e·(n + μ f t): force along e on the backplate per unit reaction at a node with friction [-]; negative, because reactions in
+    /// compression are negative.
     double force(const ContactNode &node, const double mu) const
     {
       return direction.dot(node.normal + mu * node.friction * node.sliding);
