@@ -120,7 +120,7 @@ namespace Squeal
       const auto  it    = std::find(names.begin(), names.end(), name);
       if (it == names.end())
         throw MeshError("the mesh has no body named `" + name + "`", "displacements at the points of another mesh",
-                        "compare meshes of the same bodies; this one has " + boost::algorithm::join(names, ", "));
+                        "compare only meshes with the same bodies; the bodies of this mesh are " + boost::algorithm::join(names, ", "));
       return it - names.begin();
     }
 

@@ -92,7 +92,7 @@ namespace Squeal
     double condition_of_mass(const SparseMatrix &M)
     {
       const auto [smallest, largest] = equilibrated_extremes(M, root_of_diagonal(M));
-      return largest / std::max(smallest, std::numeric_limits<double>::epsilon() * largest); // massless dofs have eigenvalues of zero
+      return largest / std::max(smallest, std::numeric_limits<double>::epsilon() * largest); // massless dofs have the eigenvalue zero
     }
 
     double condition_of_stiffness(const SparseMatrix &K, const UpdatedInverse &inverse)

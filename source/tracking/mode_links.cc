@@ -40,7 +40,8 @@ namespace Squeal
       return basis.Q(Eigen::placeholders::all, kept);
     }
 
-    /// cos² of the largest angle between two subspaces; if one is smaller because its vectors are parallel, between it and its projection.
+    /// cos² of the largest angle between two subspaces; if one has a lower dimension because its vectors are parallel, of the largest angle
+    /// to its projection on the other.
     double agreement_of(const ComplexDenseMatrix &first, const ComplexDenseMatrix &second)
     {
       const ComplexDenseMatrix C       = safe_basis(first).adjoint() * safe_basis(second);

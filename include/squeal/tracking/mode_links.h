@@ -26,7 +26,7 @@ namespace Squeal
   struct ModeLinks
   {
     std::vector<ModeBlock> blocks;
-    std::vector<int>       lost, gained; ///< modes of the first point without counterpart, and of the second point
+    std::vector<int>       lost, gained; ///< modes without counterpart, of the first and of the second point
     bool                   resolved;     ///< true if all blocks with modes in the band are resolved
   };
 
