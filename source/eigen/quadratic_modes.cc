@@ -173,10 +173,10 @@ namespace Squeal
                                         const QuadraticModesOptions &options)
     {
       throw SolverError(std::to_string(state.n_converged) + " of " + std::to_string(state.n_inside) +
-                          " eigenvalues inside the radius converged; the worst residual is " + scientific(worst) + ", allowed is " +
+                          " eigenvalues inside the radius converged; the largest residual is " + scientific(worst) + ", the tolerance is " +
                           scientific(options.tolerance) + ": " + reason,
                         "complex modes up to " + scientific(options.largest_circular_frequency) + " rad/s",
-                        "raise the tolerance, the number of basis vectors or of restarts, or lower the largest frequency");
+                        "raise Complex modes/Tolerance, or lower Band/Maximum frequency");
     }
 
     void check(const QuadraticPencil &pencil, const LinearOperator &inverse, const QuadraticModesOptions &options)
@@ -185,11 +185,12 @@ namespace Squeal
         throw SolverError(what, "options of the complex modes", change);
       };
       if (!(options.largest_circular_frequency > 0.))
-        refuse("The largest frequency is " + scientific(options.largest_circular_frequency) + " rad/s", "give a positive frequency");
+        refuse("The largest frequency is " + scientific(options.largest_circular_frequency) + " rad/s, but must be positive",
+               "give a positive frequency");
       if (!(options.shift >= 0.))
-        refuse("The shift is " + scientific(options.shift) + " 1/s", "give a real shift that is not negative");
+        refuse("The shift is " + scientific(options.shift) + " 1/s, but must not be negative", "give a positive shift or zero");
       if (!(options.tolerance > 0.) || options.block_size < 1 || options.n_fresh_directions < 0)
-        refuse("The tolerance, the block size or the number of fresh directions is not positive", "give positive values");
+        refuse("The tolerance or the block size is not positive, or the number of fresh directions is negative", "give positive values");
       if (inverse.map().n() != pencil.mass->map().n())
         refuse("The operators have different sizes", "pass the factors of the same pencil");
     }
@@ -289,7 +290,7 @@ namespace Squeal
         if (count <= state.n_inside)
           return true;
         if (options.report)
-          options.report("random directions show " + std::to_string(count - state.n_inside) + " or more missing eigenvalues");
+          options.report("random directions reveal at least " + std::to_string(count - state.n_inside) + " missing eigenvalues");
         n_wanted += static_cast<int>(count) - state.n_inside;
         inject(n_fresh);
         return false;

@@ -46,7 +46,7 @@ namespace Squeal
   /// Family, nodal circles, nodal diameters, rank and body: common to both modes of a doublet, or to the same mode of identical pins.
   using ModeShape = std::tuple<ModeFamily, int, int, int, std::string>;
 
-  /// Label of a mode: the component mode that it is or resembles most.
+  /// Label of a mode: the component mode that it resembles most.
   struct ModeLabel
   {
     ModeFamily  family          = ModeFamily::unnamed;
