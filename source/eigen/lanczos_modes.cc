@@ -145,7 +145,8 @@ namespace Squeal
           }
         b = static_cast<int>(all.rows());
         if (m + b > basis->n_columns())
-          throw SolverError("the basis of Lanczos vectors is full", "symmetric eigenproblem", "report this error of the program");
+          throw SolverError("the basis of Lanczos vectors is full", "symmetric eigenproblem",
+                            "this is an error in the program: please report it");
         if (b > 0)
           {
             MultiVector place = view(*basis, m, b);

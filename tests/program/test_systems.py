@@ -302,8 +302,8 @@ class Flutter(SystemTest):
         head = "%%MatrixMarket matrix coordinate real "
         for text, mentions in ((head + "general\n2 2 2\n1 1 1.5D2\n2 2 1\n", ["line 3", "1.5D2"]), (head + "general\n2 2 1\n1 1 3,5\n", ["3,5"]),
                                (head + "general\n2 2 1\n1.5 1 3\n", ["1.5"]), (head + "general\n2 2 1\n1 1 3 4\n", ["value"]),
-                               (head + "general\n2 2 1\n1 1 3\n2 2 1\n", ["more than 1"]), (head + "general\n2 2 3\n1 1 3\n2 2 1\n", ["2 entries, not 3"]),
-                               (head + "symmetric\n2 2 1\n1 2 3\n", ["below the diagonal"]), (head + "general\n2 2 1\n0 1 3\n", ["row 0"]),
+                               (head + "general\n2 2 1\n1 1 3\n2 2 1\n", ["more than 1"]), (head + "general\n2 2 3\n1 1 3\n2 2 1\n", ["contains 2 entries, not 3"]),
+                               (head + "symmetric\n2 2 1\n1 2 3\n", ["above the diagonal"]), (head + "general\n2 2 1\n0 1 3\n", ["row 0"]),
                                (head + "general\n2 2 -1\n", ["-1"]), (head + "general\n2000000000 2000000000 1\n1 1 3\n", ["2000000000"]),
                                (head.replace("real", "pattern") + "general\n2 2 1\n1 1\n", ["pattern"])):
             self.write("system/A0.mtx", text)
