@@ -86,7 +86,7 @@ namespace Squeal
         return changes;
       }
 
-      /// Energy fractions of the two travelling waves of harmonic n > 0 in a field; nothing if the field has no energy in this harmonic.
+      /// Energy fractions of the two travelling waves of harmonic n > 0 in a field; empty if the field has no energy in this harmonic.
       std::optional<WaveShares> wave_shares(const Eigen::VectorXd &real_part, const Eigen::VectorXd &imaginary_part, const int n) const
       {
         constexpr std::complex<double> i(0., 1.);

@@ -34,7 +34,6 @@ namespace Squeal
       return *pointer;
     }
 
-    /// T_r0: the columns of all parts.
     MultiVector join_parts(const BasisRecipe &recipe, const BasisIngredients &in, BasisCounts &counts)
     {
       std::vector<MultiVector> sets;

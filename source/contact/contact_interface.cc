@@ -27,7 +27,6 @@ namespace Squeal
     /// Sliding velocities below this fraction of the largest velocity have no reliable direction because of rounding errors [-].
     constexpr double smallest_lever = 1e-8;
 
-    /// A face with its nodes, for communication.
     struct SentFace
     {
       Shape             shape;
@@ -145,7 +144,7 @@ namespace Squeal
                             "keep pin_clamp and the contact surfaces apart, with at least one layer of elements between them");
     }
 
-    /// Disc node within the tolerance of each pin node; nothing if a node of either side has no unique partner.
+    /// Disc node within the tolerance of each pin node; empty if a node of either side has no unique partner.
     std::optional<std::vector<std::size_t>> partners(const ContactSurface &disc, const ContactSurface &pins, const double tolerance)
     {
       if (disc.nodes.size() != pins.nodes.size())

@@ -28,7 +28,6 @@ namespace Squeal
     /// Number of such steps if fewer modes were found than expected.
     constexpr int n_searching_steps = 16;
 
-    /// State of convergence of the Ritz values.
     struct Convergence
     {
       int    n_inside    = 0; ///< Ritz values inside the radius
@@ -207,7 +206,6 @@ namespace Squeal
         , tolerance(0.3 * options.tolerance)
       {}
 
-      /// Extends the space to @p n_basis states.
       void grow(const int n_basis)
       {
         while (krylov.dimension < n_basis && !exhausted)
@@ -224,7 +222,6 @@ namespace Squeal
           }
       }
 
-      /// Checks the Ritz values.
       void assess()
       {
         worst_before     = state.worst;
@@ -336,7 +333,6 @@ namespace Squeal
         return [this](const MultiVector &states, MultiVector &image) { transformation.apply(states, image); };
       }
 
-      /// Random vectors, different at every call.
       MultiVector fresh_vectors(const int n)
       {
         return random_vectors(transformation.pencil.mass->map(), n, options.seed + 7919 * n_injections++);

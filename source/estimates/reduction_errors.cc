@@ -130,7 +130,6 @@ namespace Squeal
     const DenseMatrix        XT = gram(MX, model.basis());
     const ComplexDenseMatrix C  = from_halves(append_columns(XT.topRows(k), -XT.bottomRows(k))) * modes.right;
 
-    // Clusters of reference modes
     const auto &lambda  = reference.lambda;
     const auto  cluster = connected_groups(
        k, [&](const int i, const int j) { return std::abs(lambda[i] - lambda[j]) <= cluster_tolerance * std::abs(lambda[i]); });

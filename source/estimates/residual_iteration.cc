@@ -73,7 +73,6 @@ namespace Squeal
       return parts;
     }
 
-    /// Oscillating modes in the band.
     ReducedModes modes_in_band(const ReducedModel &model, const double mu, const Band &band)
     {
       const ReducedModes modes = reduced_modes(model, mu, band.end);

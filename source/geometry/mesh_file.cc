@@ -22,7 +22,6 @@ namespace Squeal
   {
     constexpr unsigned int not_numbered = static_cast<unsigned int>(-1);
 
-    /// An element type of Gmsh.
     struct ElementType
     {
       const char  *name;
@@ -49,7 +48,6 @@ namespace Squeal
                                              {"Prism 15", 18, Shape::wedge, 2, false},
                                              {"Pyramid 13", 19, Shape::pyramid, 2, false}};
 
-    /// An element of a physical group.
     struct GroupElement
     {
       const ElementType *type;

@@ -162,7 +162,6 @@ namespace Squeal
 
     // ----------------------------------------------------- sides of the contact
 
-    /// Outer faces of a named surface.
     std::vector<CellFace> named_faces(const Mesh &mesh, const std::vector<CellFace> &outline, const std::string &name)
     {
       std::vector<CellFace> result;

@@ -58,7 +58,6 @@ namespace Squeal
       return points.size() - 1;
     };
 
-    // Centre and inner nodes of the spokes
     const Plan::Point  centre      = mean_point(loop, points);
     const unsigned int centre_node = add_point(centre);
     for (unsigned int s = 0; s < 3; ++s)

@@ -224,7 +224,6 @@ namespace Squeal
     constexpr int displacement_sweeps = 200;
     constexpr int displacement_steps  = 5;
 
-    /// Smallest shape quality of the four corners.
     double shape(const Plan::Face &face, const std::vector<Plan::Point> &points)
     {
       double worst = 1.;
@@ -262,7 +261,6 @@ namespace Squeal
 
     void smooth(const std::vector<Plan::Face> &faces, const std::vector<bool> &fixed, std::vector<Plan::Point> &points)
     {
-      // Faces around the movable nodes
       std::vector<std::vector<unsigned int>> faces_at(points.size());
       for (unsigned int face = 0; face < faces.size(); ++face)
         for (const unsigned int node : faces[face])

@@ -279,7 +279,6 @@ namespace Squeal
       return are_affine ? polynomials : others;
     }
 
-    /// Adds the integrals over a polygon.
     void integrate(const Polygon                      &polygon,
                    const std::vector<QuadraturePoint> &rule,
                    const Vector3d                     &normal,

@@ -68,7 +68,7 @@ namespace Squeal
       return values.front() > 0. ? values.back() / values.front() : std::numeric_limits<double>::infinity();
     }
 
-    /// Nonzero columns of X, scaled; nothing if all are zero. @p pairs receives the eigenpairs of their Gram matrix.
+    /// Nonzero columns of X, scaled; empty if all are zero. @p pairs receives the eigenpairs of their Gram matrix.
     std::optional<MultiVector> scaled_columns(const SparseMatrix &M, MultiVector X, const Scaling scaling, RealPairs &pairs)
     {
       const DenseMatrix   G = weighted_gram(X, M);

@@ -42,7 +42,6 @@ namespace Squeal
       double           pull, overlap; ///< largest tension [N] and overlap [m]
     };
 
-    /// Solves a problem for given active sets.
     class ActiveSetSolver
     {
     public:

@@ -31,6 +31,6 @@ namespace Squeal
                                 const std::string     &varied,
                                 double                 largest_circular_frequency);
 
-  /// Shift s for which K + s² M is positive definite: 0, or 0.02 ω if K is semidefinite up to rounding; otherwise nothing.
+  /// Shift s for which K + s² M is positive definite: 0, or 0.02 ω if K is semidefinite up to rounding; otherwise empty.
   std::optional<double> definite_shift(const CoupledSystem &system, double largest_circular_frequency);
 } // namespace Squeal

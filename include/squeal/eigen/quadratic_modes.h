@@ -21,7 +21,6 @@ namespace Squeal
     const LinearOperator *stiffness; ///< K
   };
 
-  /// Options of quadratic_modes().
   struct QuadraticModesOptions
   {
     double shift                      = 0.; ///< shift s ≥ 0 of the operator Q(s)⁻¹; s > 0 if K is singular [1/s]

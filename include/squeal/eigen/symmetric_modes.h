@@ -20,7 +20,6 @@ namespace Squeal
     double limit; ///< the requested limit, or slightly higher if an eigenvalue coincides with the requested limit [rad²/s²]
   };
 
-  /// Options of symmetric_modes().
   struct SymmetricModesOptions
   {
     RealSolver solver = RealSolver::lanczos;

@@ -23,7 +23,6 @@ namespace Squeal
     }
   };
 
-  /// Frames of the disc and the pins.
   std::vector<BodyFrame> body_frames(const Model &model);
 
   /// Maps points to the corresponding positions in another design, with the same masses; bodies that do not exist in the other design

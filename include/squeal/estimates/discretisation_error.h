@@ -64,7 +64,7 @@ namespace Squeal
   {
     double                             limit;           ///< value v for the mesh width 0
     double                             order;           ///< order p, observed or assumed
-    std::vector<std::optional<double>> observed_orders; ///< order from every three consecutive values; nothing if it is not plausible
+    std::vector<std::optional<double>> observed_orders; ///< order from every three consecutive values; empty if it is not plausible
     bool                               is_trustworthy;  ///< true if the three finest values give a plausible p or the finest two are equal
     double                             uncertainty;     ///< estimated error of the limit
     std::vector<double>                errors;          ///< |v_k − limit| of each value

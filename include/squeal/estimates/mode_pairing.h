@@ -16,7 +16,6 @@ namespace Squeal
     bool   in_cluster = false; ///< one of several modes that mix differently on each mesh
   };
 
-  /// Modes of two meshes with their counterparts.
   struct ModePairing
   {
     std::vector<PairedMode> coarse, fine;

@@ -81,7 +81,6 @@ namespace Squeal
                                           const ComplexModes   &reference,
                                           double                cluster_tolerance = 1e-3);
 
-  /// Largest errors of a group of modes.
   struct GroupError : ErrorMeasures
   {
     std::string group;

@@ -9,7 +9,6 @@
 
 namespace Squeal
 {
-  /// Shape quality of the cells.
   struct MeshQuality
   {
     double       worst_scaled_jacobian; ///< 1 for regular cells, for example a box; 0 for a flat corner; negative if inverted

@@ -16,7 +16,6 @@ namespace Squeal
     double       grading = 1.; ///< width of a ring relative to the next outer ring
   };
 
-  /// Mesh inside the outline of a pin.
   struct PinGrid
   {
     std::vector<Plan::Face>   faces;

@@ -11,7 +11,7 @@
 namespace Squeal
 {
   /**
-   * M-orthonormal motions, n × k, selected from the @p free motions of each body, for which reactions can provide equilibrium; nothing if
+   * M-orthonormal motions, n × k, selected from the @p free motions of each body, for which reactions can provide equilibrium; empty if
    * there are none. Excluded are the sliding motion, whose force or moment the drive balances, and motions that do not change any gap.
    *
    * @param pressing forces on the bodies, n × 1 [N]; null: no such forces, and only the disc may have free motions

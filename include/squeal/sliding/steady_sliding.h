@@ -117,7 +117,6 @@ namespace Squeal
                      const OperationParameters &operation,
                      const SlidingParameters   &parameters);
 
-  /// Contact quantities of a pin.
   struct PinContact
   {
     std::string  pin;

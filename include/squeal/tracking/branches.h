@@ -40,7 +40,6 @@ namespace Squeal
     }
   };
 
-  /// Type of a threshold.
   enum class ThresholdEvent
   {
     onset,          ///< growth begins
@@ -51,7 +50,6 @@ namespace Squeal
   inline constexpr EnumName<ThresholdEvent> enum_table<ThresholdEvent>[] = {{ThresholdEvent::onset, "onset"},
                                                                             {ThresholdEvent::restabilisation, "restabilisation"}};
 
-  /// Mechanism of a threshold.
   enum class ThresholdMechanism
   {
     coalescence, ///< λ_1 = λ_2 of two neutral modes, which become a growing and a decaying mode

@@ -62,7 +62,6 @@ namespace Squeal
       residuals.use_sketch();
     }
 
-    /// Number of vectors in the basis.
     int size() const
     {
       return model.size();
@@ -98,10 +97,9 @@ namespace Squeal
       std::vector<int>  modes;
     };
 
-    /// New basis vectors from the residuals of modes; nothing if the basis contains them already. Collective.
+    /// New basis vectors from the residuals of modes; empty if the basis contains them already. Collective.
     std::optional<MultiVector> new_vectors(const std::vector<ModesAt> &modes) const;
 
-    /// Appends vectors to the basis. Collective.
     void extend(MultiVector vectors);
 
     /**

@@ -37,7 +37,7 @@ namespace Squeal
   /// span, and sums over them, depend on rounding errors.
   ComplexDenseMatrix orthonormal_in_clusters(const ComplexDenseMatrix &vectors, const std::vector<std::complex<double>> &lambda);
 
-  /// X with Φ_b ≈ Φ_a X in the least-squares sense, and its inverse, for equal numbers of columns; nothing if X or the inverse does not
+  /// X with Φ_b ≈ Φ_a X in the least-squares sense, and its inverse, for equal numbers of columns; empty if X or the inverse does not
   /// exist.
   struct Transformation
   {
