@@ -128,7 +128,7 @@ namespace Squeal
     const BasisSize size = nominal_size(recipe, counts);
     const int       n    = M.n_rows();
     if (size.n_r > n && recipe.is_connected())
-      throw SolverError("the basis has " + std::to_string(size.n_r) + " vectors, but the coupled system only has " + std::to_string(n) +
+      throw SolverError("the basis has " + std::to_string(size.n_r) + " vectors, but the coupled system has only " + std::to_string(n) +
                           " dofs",
                         where(recipe), "use fewer component modes, or a finer mesh");
 

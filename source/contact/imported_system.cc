@@ -38,7 +38,7 @@ namespace Squeal
       return result.matrix ? split_by_symmetry(result) : std::vector<Term>();
     }
 
-    /// 1 / √ of the diagonal of K + ω² M, rounded to a power of two, for the rows of this process.
+    /// Inverse square roots of the diagonal of K + ω² M, rounded to powers of two, for the rows of this process.
     std::vector<double> dof_scales(const SparseMatrix &K, const SparseMatrix &M, const double omega)
     {
       std::vector<double> result(K.rows().n_local());

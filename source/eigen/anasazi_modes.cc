@@ -175,8 +175,8 @@ namespace Squeal
     parameters.set("Block Size", block_size);
     parameters.set("Num Blocks", n_blocks);
     // Do not restart: Anasazi 13.2 writes beyond its workspace if it restarts a Hermitian problem and rounding errors turn a multiple
-    // eigenvalue of the projected matrix into a complex pair at the boundary. Another start with converged modes deflated finds missing
-    // modes
+    // eigenvalue of the projected matrix into a complex pair at the boundary. Missing modes are found by another start with the converged
+    // modes deflated
     parameters.set("Maximum Restarts", 0);
     // Limit the number of convergence checks, because each computes a dense Schur form of all previous blocks
     parameters.set("Step Size", std::max(4, n_blocks / 16));

@@ -193,7 +193,7 @@ namespace Squeal
         upper = count_below(K, M, std::min(2. * upper.limit, highest), what);
       }
 
-    // Use regula falsi, because modes are distributed evenly, with at least a tenth of the interval on either side
+    // Use regula falsi, because modes are distributed evenly; trial values stay away from the ends by a tenth of the interval
     while (upper.n_modes > n_modes && upper.limit - lower.limit > cluster_width * upper.limit)
       {
         const double    share                      = (n_modes + 0.5 - lower.n_modes) / (upper.n_modes - lower.n_modes);

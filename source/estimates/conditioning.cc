@@ -54,7 +54,7 @@ namespace Squeal
       return {values.front(), values.back()};
     }
 
-    /// √ of the diagonal, as a vector n × 1.
+    /// Square roots of the diagonal entries, n × 1; 1 for zero entries.
     MultiVector root_of_diagonal(const SparseMatrix &A)
     {
       MultiVector       result(A.rows(), 1);

@@ -68,7 +68,7 @@ namespace Squeal
                     cell.nodes[numbers[8]]);
         }
       if (!unmatched.empty())
-        throw MeshError(text("second-order nodes of ", unmatched.size(), " of ", mesh.cells.size(),
+        throw MeshError(text("Second-order nodes of ", unmatched.size(), " of ", mesh.cells.size(),
                              " elements differ from those of a neighbour on the same edge or face, or are corners of another element"),
                         describe_cell(mesh, *unmatched.begin()),
                         "merge second-order nodes as well as corners, and mesh neighbours with matching elements");

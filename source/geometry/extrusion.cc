@@ -10,7 +10,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Surfaces of every extruded mesh; the surfaces from curves of the plan follow.
+    /// Surfaces of every extruded mesh, followed by one surface for each curve of the plan.
     enum ExtrudedSurface : unsigned int
     {
       disc_contact,

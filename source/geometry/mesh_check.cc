@@ -204,7 +204,7 @@ namespace Squeal
           twins = twins.value_or(std::make_pair(first->second, element));
       }
     if (twins)
-      throw MeshError(text("duplicates: ", mesh.cells.size() - known.size(), " of ", mesh.cells.size(), " elements; the first one is ",
+      throw MeshError(text("Duplicates: ", mesh.cells.size() - known.size(), " of ", mesh.cells.size(), " elements; the first one is ",
                            describe_cell(mesh, twins->second), ", with the same nodes as ", describe_cell(mesh, twins->first)),
                       where, "remove duplicate elements, for example of a volume that was meshed or exported twice");
 

@@ -106,7 +106,8 @@ namespace Squeal
           // Gmsh 4.13 prints this message and crashes; 4.8 throws std::bad_alloc
           if (log.find("Out of memory") != std::string::npos)
             refuse_memory(limits, where);
-          throw MeshError(std::string("Gmsh crashed (") + strsignal(WTERMSIG(status)) + "). " + quoted(log), where, repair);
+          throw MeshError(std::string("Gmsh crashed (") + strsignal(WTERMSIG(status)) + "). " + quoted(log), where,
+                          text(repair, ", or use larger elements if the machine ran out of memory"));
         }
       throw MeshError("Gmsh ended before the mesh was complete. " + quoted(log), where, "remove Exit and Abort from the geometry");
     }

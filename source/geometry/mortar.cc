@@ -124,7 +124,8 @@ namespace Squeal
         }
     }
 
-    /// Slave nodes of each mortar row, by the node of the row: nodes with little overlap are merged with the neighbour of largest area.
+    /// Slave nodes of each mortar row, by the node of the row: nodes with little overlap are merged with the neighbour that has the
+    /// largest area.
     std::map<unsigned int, std::vector<unsigned int>> grouped(const std::vector<SlaveNode> &nodes)
     {
       std::map<unsigned int, std::vector<unsigned int>> groups;

@@ -121,7 +121,7 @@ TEST(Refusals, BadElementsAreFound)
   Mesh twice = mesh;
   check_unique(twice, "twice.msh");
   twice.cells.push_back({Shape::hexahedron, {4, 5, 6, 7, 0, 1, 2, 3}, 0});
-  expect_mentions(message<MeshError>([&] { check_unique(twice, "twice.msh"); }), {"duplicates: 1 of 2 elements", "'disc'", "twice.msh"});
+  expect_mentions(message<MeshError>([&] { check_unique(twice, "twice.msh"); }), {"Duplicates: 1 of 2 elements", "'disc'", "twice.msh"});
   Mesh overlapping = folded;
   check_unique(overlapping, "overlapping.msh");
   overlapping.points.insert(overlapping.points.end(), {{0, 0, 2}, {1, 0, 2}, {1, 1, 2}, {0, 1, 2}});

@@ -291,7 +291,7 @@ class Tetrahedra(ProgramTest):
         for change, mentions, *overrides in (
                 (middle_at(0.5, 0.05), ["1 second-order node", "than half its length", "'pad_inner_backplate'"]),
                 (middle_at(0.1), ["folded by second-order nodes"]),
-                (parted(slice(4, 10)), ["second-order nodes of", "merge"]),
+                (parted(slice(4, 10)), ["Second-order nodes of", "merge"]),
                 (parted(slice(0, 10)), ["'pad_outer_lining' is not held", "merge"]),
                 (with_corner(math.nan), ["not a finite number"]),
                 (with_corner(math.inf), ["not a finite number"]),
@@ -310,7 +310,7 @@ class Tetrahedra(ProgramTest):
                 (without("disc_top", "pad_outer_face"), ["'pad_outer' has no contact face", "Contact/Pairs"], f"Contact/Pairs={inner}"),
                 (without("pad_outer_back"), ["'pad_outer' is not held", "Mounts/Elastic mounts"],
                  f"Mounts/Elastic mounts={hub}; pad_inner_back: 0, 0, 2e10"),
-                (lambda mesh: mesh.cells.extend(mesh.cells[-10:]), ["duplicates: 10 of 298 elements", "'pad_inner_backplate'"]),
+                (lambda mesh: mesh.cells.extend(mesh.cells[-10:]), ["Duplicates: 10 of 298 elements", "'pad_inner_backplate'"]),
                 (nothing, ["second order", "quadratic"], "Discretization/Element=trilinear")):
             with self.subTest(mentions):
                 self.dry_run_refused(mentions, *overrides, file=self.write_brake(spoiled(change), "spoiled"))

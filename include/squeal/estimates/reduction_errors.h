@@ -85,7 +85,7 @@ namespace Squeal
   {
     std::string group;
     int         n_modes = 0;
-    int         n_other = 0; ///< number of modes with another counterpart by eq. (17)
+    int         n_other = 0; ///< number of modes for which eq. (17) selects another counterpart
   };
 
   /**

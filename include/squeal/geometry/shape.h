@@ -79,6 +79,6 @@ namespace Squeal
   };
 
   /// Quadrature rule with positive weights, exact for the mass of an undistorted element of this degree: Gauss with degree + 1 points per
-  /// direction; Witherden and Vincent (2015) on triangles and tetrahedra.
+  /// direction (pyramids: degree + 2); Witherden and Vincent (2015) on triangles and tetrahedra.
   std::vector<QuadraturePoint> quadrature(Shape shape, unsigned int degree);
 } // namespace Squeal
