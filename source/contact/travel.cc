@@ -117,8 +117,8 @@ namespace Squeal
         const double force = forces[plates[node.pin]];
         if (!(force < 0.))
           throw ParameterError(
-            text("friction on inclined contact faces balances the load at a friction coefficient of ", operation.friction_coefficient,
-                 ": equal reactions of the contact nodes cannot be determined"),
+            text("friction on inclined contact faces balances or exceeds the load at a friction coefficient of ",
+                 operation.friction_coefficient, ": equal reactions of the contact nodes cannot be determined"),
             "parameter Operation/Friction coefficient, volume " + model.component_names()[node.pin],
             "lower the friction coefficient, or set Operation/Radial dissipation = none and Operation/Friction slope = 0");
         reactions.push_back(operation.load_per_side / force * unit(node));

@@ -266,9 +266,9 @@ namespace Squeal
       }
 
       /**
-       * Searches for missing eigenvalues inside the radius, for example in a cluster larger than the block, by a short process from random
-       * directions in which all values found inside the radius are deflated. Returns false if it finds any; random directions are then
-       * injected into the block.
+       * Searches for missing eigenvalues inside the radius, for example in a cluster larger than the block. A short process starts from
+       * random directions, with all values found inside the radius deflated. If it finds any value, random directions are injected into the
+       * block, and the result is false.
        */
       bool proven()
       {

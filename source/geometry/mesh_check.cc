@@ -261,7 +261,7 @@ namespace Squeal
       for (std::size_t v = 0; v < mesh.volume_names.size(); ++v)
         {
           if (n_elements[v] == 0)
-            throw MeshError("Volume '" + mesh.volume_names[v] + "' has no elements", where, "mesh it, or remove the name");
+            throw MeshError("Volume '" + mesh.volume_names[v] + "' has no elements", where, "mesh this volume, or remove its name");
           ++(is_of_disc(mesh.volume_names[v]) ? n_discs : n_pins);
         }
       if (n_discs == 0 || n_pins == 0)

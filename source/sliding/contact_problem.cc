@@ -17,8 +17,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Tension of a closed node relative to the largest reaction, and overlap of an open node relative to the largest gap, count as
-    /// rounding errors up to this limit [-].
+    /// Limit up to which tension (relative to the largest reaction) and overlap (relative to the largest gap) are rounding errors [-].
     constexpr double rounding_of_contact = 1e-13;
     /// L = −Bᵀ, a condition of uniqueness, counts as satisfied if the difference relative to B is below this limit, the level of rounding
     /// errors [-].

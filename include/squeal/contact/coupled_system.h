@@ -32,17 +32,16 @@ namespace Squeal
   };
 
   /**
-   * The bodies coupled by contact, with friction as a term of rank n_c that is
-   * affine in μ (eqs. (5) to (8) of the paper, with the sign of r_n ≤ 0 in
-   * compression and t the direction of the disc's motion relative to the pin):
+   * The bodies coupled by contact, as a list of terms of
    *
    *   (λ² (M_c − μ A V_M) + λ (C_c − μ A V_C) + K_c − μ A V_K) φ_c = 0
    *
-   * as a list of terms. Each term X of the bodies, for example K, gives
+   * with friction of rank n_c, proportional to μ (eqs. (5) to (8) of the paper, with r_n ≤ 0 in compression and t in the direction of the
+   * disc's motion relative to the pin). Each term X of the bodies, for example K, gives
    *
-   *   X_c = T_cᵀ X T_c   and   −μ A V_X,   A = T_cᵀ P_tᵀ,  V_X = S X T_c,
+   *   X_c = T_cᵀ X T_c   and   −μ A V_X,   A = T_cᵀ P_tᵀ,  V_X = S X T_c.
    *
-   * and contact damping, which does not contribute to the reactions because S P_bᵀ = S P_tᵀ = 0, gives
+   * Contact damping, which does not contribute to the reactions because S P_bᵀ = S P_tᵀ = 0, gives
    *
    *   Rᵀ diag(c_b) R   and   A diag(c_t) Aᵀ,   R = P_b T_c.
    *

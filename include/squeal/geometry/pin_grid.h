@@ -34,9 +34,9 @@ namespace Squeal
    *
    * Without rings, each block has a flat corner on a round outline: its two edges meet at 180 - 60 / k degrees, and at 180 degrees if
    * elements follow the circle. In addition, stresses at the clamped end of the pin are singular on the outline. Rings have right angles at
-   * the outline. All rings except the innermost lie between outlines scaled towards the centre, down to 0.8; the innermost ring ends at a
-   * triangle with curved sides, halfway between the arcs and the chords from corner to corner, so that the angles of the blocks are below
-   * 130 degrees.
+   * the outline. All rings except the innermost lie between outlines scaled towards the centre, down to 0.8. The innermost ring ends at a
+   * triangle with curved sides, halfway between the arcs and the chords from corner to corner. The angles of the blocks are then below 130
+   * degrees.
    */
   PinGrid fill_pin(const std::vector<unsigned int> &outline, const PinRings &rings, std::vector<Plan::Point> &points);
 } // namespace Squeal
