@@ -26,7 +26,7 @@ namespace Squeal
       std::vector<unsigned int> numbers;
     };
 
-    /// Named surface, from the matching faces in @p outer, which are oriented outwards; @p outer: all outer faces of the mesh.
+    /// Named surface with outward faces and all their nodes; @p outer: all outer faces of the mesh.
     NumberedPatch patch_of(const Mesh &mesh, const std::vector<CellFace> &outer, const std::string &surface)
     {
       std::set<std::array<unsigned int, 4>> named;

@@ -29,8 +29,8 @@ namespace Squeal
   /**
    * Removes undetermined motions. If the loads of two backplates are in equilibrium, a disc that floats between them is in equilibrium at
    * any axial position: there is a combination y of motions with B y = 0. One free motion, with an index of at least @p n_plates, is then
-   * held, and its equation of equilibrium is omitted. This is repeated while there is such a y. The singular values of B with columns of unit
-   * norm, which do not depend on the units of the motions, show whether y exists.
+   * held, and its equation of equilibrium is omitted. This is repeated while there is such a y. The singular values of B with
+   * columns of unit norm, which do not depend on the units of the motions, show whether y exists.
    *
    * Throws SolverError if the loads on a floating disc are not in equilibrium.
    */
