@@ -27,8 +27,8 @@ namespace Squeal
    * Modes need not be orthogonal to each other. A mode of the coarse mesh is approximated by the closest combination of fine modes, φ ≈ Σ
    * c_j ψ_j, all normalised, and |c_j|² is the share of ψ_j. The mode is connected with the fine modes of the largest shares until their
    * sum is ¾ of the total; shares below ¼ of the largest share do not connect. Modes of the fine mesh are connected with coarse modes in
-   * the same way. A shape may therefore rotate by up to 30° towards another shape from mesh to mesh and still have a single counterpart. Chains
-   * of connected modes form groups; two modes that are each connected only with the other form a pair.
+   * the same way. A shape may therefore rotate by up to 30° towards another shape from mesh to mesh and still have a single counterpart.
+   * Chains of connected modes form groups; two modes that are each connected only with the other form a pair.
    *
    * - A group with one mode of each mesh: the modes are counterparts.
    * - A group with several modes of a mesh: a cluster. The eigenvalues are so close that discretisation mixes the eigenvectors, as in a

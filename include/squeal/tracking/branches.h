@@ -122,9 +122,9 @@ namespace Squeal
    * A branch that grows at only one end of a step has a threshold in the step. At a coalescence δ²(μ) = (λ_1 − λ_2)² is analytic and real
    * with a simple zero, while λ has a branch point; otherwise the zero of Re λ is computed. The interval of a zero is reduced until it is
    * smaller than the tolerance, to two points close to the prediction of @p predict, or by inverse quadratic interpolation and bisection.
-   * If modes are neutral at the first point and grow from there, for example a double mode of the frictionless problem, their onset is at the
-   * first point. If the growth of a multiple mode exceeds rounding errors only at a later point, the uncertainty extends back to the first
-   * point.
+   * If modes are neutral at the first point and grow from there, for example a double mode of the frictionless problem, their onset is at
+   * the first point. If the growth of a multiple mode exceeds rounding errors only at a later point, the uncertainty extends back to the
+   * first point.
    *
    * The uncertainty is the width of the interval (half the width if it exceeds the tolerance) plus three times the effect of the
    * corrections of λ. At a coalescence, this effect is the change of δ² to
