@@ -57,8 +57,8 @@ namespace Squeal
         return fields;
       }
 
-      /// Sign changes of the radial profile of harmonic n: of its cosine and sine amplitudes in narrow rings, along their dominant common
-      /// direction in the cosine-sine plane, because the nodal line pattern may be rotated.
+      /// Number of sign changes of the radial profile of harmonic n: the component of its cosine and sine amplitudes along their dominant
+      /// direction, because the nodal diameters may be rotated.
       int nodal_circles(const Eigen::VectorXd &coefficients, const int n) const
       {
         // Profile a(r) cos nθ + b(r) sin nθ
@@ -86,7 +86,7 @@ namespace Squeal
         return changes;
       }
 
-      /// Energy fractions of the two travelling waves of harmonic n > 0 in a field; nothing if the field has no energy in this harmonic.
+      /// Energy fractions of the two travelling waves of harmonic n > 0 in a field; empty if the field has no energy in this harmonic.
       std::optional<WaveShares> wave_shares(const Eigen::VectorXd &real_part, const Eigen::VectorXd &imaginary_part, const int n) const
       {
         constexpr std::complex<double> i(0., 1.);

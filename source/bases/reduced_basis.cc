@@ -30,12 +30,10 @@ namespace Squeal
     {
       if (pointer == nullptr)
         throw SolverError("the basis needs " + what + ", which is missing or empty", where(recipe),
-                          "compute it beforehand: modes up to a higher frequency if none was found; where residuals make the vectors, "
-                          "grow them first");
+                          "compute it beforehand; if no modes were found, include modes up to a higher frequency");
       return *pointer;
     }
 
-    /// T_r0: the columns of all parts.
     MultiVector join_parts(const BasisRecipe &recipe, const BasisIngredients &in, BasisCounts &counts)
     {
       std::vector<MultiVector> sets;
@@ -68,7 +66,7 @@ namespace Squeal
         {
           if (!(squares[j] > 0.))
             throw SolverError("column " + std::to_string(j) + " of T_r0 is zero or undefined", where(recipe),
-                              "check the step that computed it");
+                              "check the computation of this column");
           X.col(j) /= std::sqrt(squares[j]);
         }
     }
@@ -94,7 +92,7 @@ namespace Squeal
       const int    n_r0    = T_r0.n_columns();
       connection.rank = std::count_if(values.begin(), values.end(), [&](const double value) { return value / largest / tolerance > 1.; });
       if (connection.rank == n_r0)
-        throw SolverError("no combination of its " + std::to_string(n_r0) + " vectors keeps the contact closed", where(recipe),
+        throw SolverError("no combination of the " + std::to_string(n_r0) + " vectors of T_r0 keeps the contact closed", where(recipe),
                           "use more component modes");
       connection.smallest_kept   = connection.rank > 0 ? values[connection.rank - 1] / largest : 0.;
       connection.largest_dropped = connection.rank < static_cast<int>(values.size()) ? values[connection.rank] / largest : 0.;
@@ -130,7 +128,8 @@ namespace Squeal
     const BasisSize size = nominal_size(recipe, counts);
     const int       n    = M.n_rows();
     if (size.n_r > n && recipe.is_connected())
-      throw SolverError("the basis has " + std::to_string(size.n_r) + " vectors, the coupled system only " + std::to_string(n) + " dofs",
+      throw SolverError("the basis has " + std::to_string(size.n_r) + " vectors, but the coupled system has only " + std::to_string(n) +
+                          " dofs",
                         where(recipe), "use fewer component modes, or a finer mesh");
 
     ReducedBasis basis{nullptr, size.n_r0, size.n_r, 0, options.tolerance, 1., 0., {}};
@@ -153,8 +152,8 @@ namespace Squeal
     basis.n_dropped      = T.n_columns() - basis.size();
     basis.orthonormality = orthonormality_defect(M, *basis.vectors);
     if (!(basis.orthonormality <= largest_orthonormality_defect))
-      throw SolverError("its vectors are not orthonormal: max |TᵀMT − I| = " + std::to_string(basis.orthonormality), where(recipe),
-                        "raise the tolerance of its rank");
+      throw SolverError("the vectors are not orthonormal: max |TᵀMT − I| = " + std::to_string(basis.orthonormality), where(recipe),
+                        "raise the rank tolerance");
     return basis;
   }
 } // namespace Squeal

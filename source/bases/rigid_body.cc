@@ -36,8 +36,8 @@ namespace Squeal
       return {Y * ritz.vectors, ritz.values};
     }
 
-    /// Shift s for K + s² M if the lowest frequency ω_1 < s, else 0: without it, K⁻¹ would amplify a motion at ω_1, and its rounding
-    /// errors, by (ω/ω_1)² relative to a mode at ω.
+    /// Shift s for K + s² M if the lowest frequency ω_1 < s, else 0. Without the shift, K⁻¹ would amplify a motion at ω_1 and its rounding
+    /// errors by (ω/ω_1)² relative to a mode at ω.
     double shift_for(const std::vector<double> &eigenvalues, const double largest_circular_frequency)
     {
       const double s = largest_circular_frequency / band_per_stabilizing_shift;
@@ -160,7 +160,7 @@ namespace Squeal
           {
             if (!(std::min(largest, smallest) < largest_residual))
               throw SolverError("static responses with inertia relief do not converge", what,
-                                "use a mount that either holds the disc firmly or leaves it free");
+                                "use mounts that either hold a body firmly or leave it free");
             return u;
           }
         smallest = largest;

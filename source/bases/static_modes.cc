@@ -114,8 +114,8 @@ namespace Squeal
                                std::optional<double> friction_coefficient)
   {
     if (!system.has_damping())
-      throw SolverError("there is no damping to respond to", "response of the real modes to damping",
-                        "set Operation/Radial dissipation or the Rayleigh coefficients of a material, or leave this response out");
+      throw SolverError("the system has no damping", "response of the real modes to damping",
+                        "set Operation/Radial dissipation or the Rayleigh coefficients of a material, or omit this response");
     return inverse.solve_frictionless(
       times(system.terms, friction_coefficient ? system.at(*friction_coefficient) : system.values, 1, real_modes));
   }

@@ -27,7 +27,6 @@ namespace Squeal
     /// Sliding velocities below this fraction of the largest velocity have no reliable direction because of rounding errors [-].
     constexpr double smallest_lever = 1e-8;
 
-    /// A face with its nodes, for communication.
     struct SentFace
     {
       Shape             shape;
@@ -110,7 +109,7 @@ namespace Squeal
       return text("(", p[0], ", ", p[1], ", ", p[2], ") m");
     }
 
-    /// Sets n, t, b and the lever of a contact node; @p longest is the largest lever [m].
+    /// Sets n, t and b of a contact node; @p longest is the largest lever [m].
     void set_frame(ContactNode &node, Eigen::Vector3d normal, const double longest, const SlidingVelocity &velocity)
     {
       normal *= 1. / normal.norm();
@@ -122,12 +121,12 @@ namespace Squeal
       const std::string where = "parameter Operation/Sliding direction, contact node at " + place(node.position);
       if (!(node.lever > smallest_lever * longest && std::isfinite(node.lever)))
         throw MeshError("the sliding velocity of the disc is zero or undefined at a contact node", where,
-                        "move the bodies away from this point, which may be on the disc's axis, or change the velocity");
+                        "move the bodies away from this point (it may be on the axis of the disc), or change the sliding direction");
       const Eigen::Vector3d along   = velocity(node.position) / node.lever;
       const Eigen::Vector3d sliding = along - along.dot(node.normal) * node.normal;
       if (!(sliding.norm() > 1e-6))
-        throw MeshError("the velocity of the disc is normal to the contact face", where,
-                        "change the velocity, or make the contact faces parallel to it");
+        throw MeshError("the sliding velocity of the disc is normal to the contact face", where,
+                        "change the sliding direction, or make the contact faces parallel to it");
       node.sliding = (1. / sliding.norm()) * sliding;
       node.radial  = node.normal.cross(node.sliding);
     }
@@ -141,11 +140,11 @@ namespace Squeal
                             "contact node at " + place(node.position) + ", parameter Contact/Tied",
                             "keep tied and contact faces apart, with at least one layer of elements between them");
           else if (partner.is_clamped())
-            throw MeshError("a node of disc_contact and pin_contact is clamped by pin_clamp", "contact node at " + place(node.position),
+            throw MeshError("a contact node is clamped by pin_clamp", "contact node at " + place(node.position),
                             "keep pin_clamp and the contact surfaces apart, with at least one layer of elements between them");
     }
 
-    /// Disc node within the tolerance of each pin node; nothing if a node of either side has no unique partner.
+    /// Disc node within the tolerance of each pin node; empty if a node of either side has no unique partner.
     std::optional<std::vector<std::size_t>> partners(const ContactSurface &disc, const ContactSurface &pins, const double tolerance)
     {
       if (disc.nodes.size() != pins.nodes.size())
@@ -179,7 +178,7 @@ namespace Squeal
       return result;
     }
 
-    /// Contact nodes of both types, without t and b of their frames; n is not normalised yet.
+    /// Contact nodes of matching faces, without t and b; n is not yet normalised.
     ContactInterface pairs(const ContactSurface &disc, const ContactSurface &pins, const std::vector<std::size_t> &of_disc)
     {
       ContactInterface result(pins.nodes.size());
@@ -209,11 +208,11 @@ namespace Squeal
         covered[node.pin_node.component] += node.area;
       for (std::size_t body = 0; body < whole.size(); ++body)
         if (covered[body] < least_of_body * whole[body])
-          throw MeshError(
-            text("only ", std::round(100. * covered[body] / whole[body]), " % of the contact face of ", model.component_names()[body],
-                 " lies on the opposite contact surface"),
-            "contact of " + model.component_names()[body],
-            text("let at least ", 100. * least_of_body, " % of it lie on that surface, with gaps well below the size of its elements"));
+          throw MeshError(text("only ", std::round(100. * covered[body] / whole[body]), " % of the contact face of ",
+                               model.component_names()[body], " lies on the opposite contact surface"),
+                          "contact of " + model.component_names()[body],
+                          text("correct the positions of the surfaces: at least ", 100. * least_of_body,
+                               " % of this face must lie on the opposite surface, with gaps well below the size of its elements"));
     }
 
     FoundContact mortar_nodes(const Model &model, const ContactPair &pair, const ContactSurface &disc, const ContactSurface &pins)
@@ -290,7 +289,7 @@ namespace Squeal
           if (!known.insert(node.pin_node.number).second)
             throw MeshError("a node of " + pair.pin + " is in contact twice",
                             "parameter Contact/Pairs, contact node at " + place(node.position),
-                            "put every face of a body into one pair only");
+                            "use every face of a body in one pair only");
         result.interface.insert(result.interface.end(), found.interface.begin(), found.interface.end());
         result.notes.insert(result.notes.end(), found.notes.begin(), found.notes.end());
       }

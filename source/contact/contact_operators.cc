@@ -39,7 +39,7 @@ namespace Squeal
     {
       if (!resolve(rows)) // slaves may depend on slaves: edge and corner nodes of quadratic faces
         throw MeshError("contact nodes depend on each other circularly", "surfaces disc_contact and pin_contact",
-                        "make the contact faces overlap by whole elements");
+                        "change positions or meshes of the contact faces so that they overlap by whole elements");
     }
 
     /// Column numbers of the masters of all slaves, obtained from their owners; the columns of this process start at @p first.
@@ -205,7 +205,7 @@ namespace Squeal
 
   MultiVector coordinates(const SparseMatrix &T, const MultiVector &u)
   {
-    // The columns of T have the order and owners of the selected dofs, even if a slave equals the dof that is selected next
+    // Columns of T have the order and owners of the selected dofs; a slave with the row of the next selected dof has the same value
     const RowMap     &columns = T.columns();
     MultiVector       q(columns, u.n_columns());
     SparseMatrix::Row row;

@@ -38,7 +38,7 @@ namespace Squeal
       return result.matrix ? split_by_symmetry(result) : std::vector<Term>();
     }
 
-    /// 1 / √ of the diagonal of K + ω² M, rounded to a power of two, for the rows of this process.
+    /// Inverse square roots of the diagonal of K + ω² M, rounded to powers of two, for the rows of this process.
     std::vector<double> dof_scales(const SparseMatrix &K, const SparseMatrix &M, const double omega)
     {
       std::vector<double> result(K.rows().n_local());
@@ -105,7 +105,7 @@ namespace Squeal
     const auto             &M = has_parts ? result.mass : whole.mass, &K = has_parts ? result.stiffness : whole.stiffness;
     for (const auto &[matrix, name] : {std::make_pair(&M, "mass"), {&K, "stiffness"}})
       if (!*matrix)
-        throw ParameterError(std::string("no ") + name + " term is nonzero at the values of the parameters", "file " + file.path,
+        throw ParameterError(std::string("all ") + name + " terms are missing or zero at the values of the parameters", "file " + file.path,
                              "give terms of power 0 (stiffness) and 2 (mass) that are nonzero at these values");
     const std::vector<double> d = dof_scales(*K, *M, largest_circular_frequency);
     const auto                D =
@@ -155,8 +155,8 @@ namespace Squeal
     if (is_definite(0.))
       return 0.;
     const double shift = part_of_band * largest_circular_frequency;
-    // Negative eigenvalues may be rounding errors of rigid-body motions; eigenvalues beyond this limit are growing motions, for which a
-    // shift is not allowed
+    // Negative eigenvalues within this limit are rounding errors of rigid-body motions; larger ones are growing motions, which a shift must
+    // not hide
     return is_definite(std::min(shift * shift, system.hidden_square)) && is_definite(shift * shift) ? std::optional(shift) : std::nullopt;
   }
 } // namespace Squeal

@@ -60,13 +60,11 @@ namespace Squeal
         const auto         n_away  = std::count_if(away.begin(), away.end(), [&](const ContactNode *node) { return is_of(*node); });
         const auto         n_nodes = std::count_if(interface.begin(), interface.end(), is_of);
         const auto        &p       = away.front()->position;
-        throw MeshError(text("the contact faces of one body face opposite directions: it has no direction of loading, "
-                             "since ",
-                             n_away, " of its ", n_nodes, " contact nodes do not face the mean direction, the first at (", p[0], ", ", p[1],
-                             ", ", p[2], ") m"),
+        throw MeshError(text("the contact faces of one body have no common direction of loading: ", n_away, " of its ", n_nodes,
+                             " contact nodes do not face the mean direction, the first at (", p[0], ", ", p[1], ", ", p[2], ") m"),
                         "volume " + model.component_names()[pin],
-                        "divide the body, one part for each face; or set Operation/Radial dissipation = none, Operation/Friction slope = 0 "
-                        "and Steady sliding/Contact state = equal load, which need no load");
+                        "divide the body into one part for each face; or set Operation/Radial dissipation = none, Operation/Friction slope "
+                        "= 0 and Steady sliding/Contact state = equal load, which require no direction of loading");
       }
     return result;
   }
@@ -119,8 +117,8 @@ namespace Squeal
         const double force = forces[plates[node.pin]];
         if (!(force < 0.))
           throw ParameterError(
-            text("friction on inclined contact faces balances the load at a friction coefficient of ", operation.friction_coefficient,
-                 ": no equal reactions of the contact nodes can be determined"),
+            text("friction on inclined contact faces balances or exceeds the load at a friction coefficient of ",
+                 operation.friction_coefficient, ": equal reactions of the contact nodes cannot be determined"),
             "parameter Operation/Friction coefficient, volume " + model.component_names()[node.pin],
             "lower the friction coefficient, or set Operation/Radial dissipation = none and Operation/Friction slope = 0");
         reactions.push_back(operation.load_per_side / force * unit(node));

@@ -111,7 +111,7 @@ namespace Squeal
   MultiVector UpdatedInverse::solve_frictionless(const MultiVector &B) const
   {
     MultiVector            Y(B.map(), B.n_columns());
-    const std::vector<int> columns = nonzero_columns(B); // skips zero columns: the imaginary parts of neutral modes
+    const std::vector<int> columns = nonzero_columns(B); // skip zero columns, for example the imaginary parts of neutral modes
     if (static_cast<int>(columns.size()) == B.n_columns())
       frictionless().apply(B, Y);
     else if (!columns.empty())

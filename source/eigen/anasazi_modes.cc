@@ -59,7 +59,7 @@ namespace Anasazi
     static RCP<MV> CloneViewNonConst(MV &X, const std::vector<int> &index)
     {
       if (!is_range(index))
-        throw std::invalid_argument("a view of columns that are not side by side");
+        throw std::invalid_argument("the columns of a view must be adjacent");
       return view(X, index[0], index.size());
     }
     static RCP<const MV> CloneView(const MV &X, const std::vector<int> &index)
@@ -163,9 +163,9 @@ namespace Squeal
     problem->setHermitian(true);
     problem->setNEV(request.n_wanted);
     if (!problem->setProblem())
-      throw SolverError("Anasazi rejected the eigenvalue problem", request.what, "try ARPACK as solver of the real modes");
+      throw SolverError("Anasazi rejected the eigenvalue problem", request.what, "set Real modes/Solver = ARPACK");
 
-    // Large enough for convergence without restarts, which would cost too much time
+    // Use enough blocks for convergence without restarts
     const int n_blocks =
       std::min(std::max(3, (5 * request.n_wanted / 2 + block_size - 1) / block_size + 10 * (1 + request.attempt)), n / block_size - 1);
 
@@ -174,11 +174,11 @@ namespace Squeal
     parameters.set("Which", "LM");
     parameters.set("Block Size", block_size);
     parameters.set("Num Blocks", n_blocks);
-    // No restarts: Anasazi 13.2 writes beyond its workspace if it restarts a Hermitian problem and rounding errors turn a multiple
-    // eigenvalue of the projected matrix into a complex pair at the boundary. Missing modes are found by another start, in which converged
-    // modes are deflated
+    // Do not restart: Anasazi 13.2 writes beyond its workspace if it restarts a Hermitian problem and rounding errors turn a multiple
+    // eigenvalue of the projected matrix into a complex pair at the boundary. Missing modes are found by another start with the converged
+    // modes deflated
     parameters.set("Maximum Restarts", 0);
-    // Number of blocks between two convergence checks; each check computes a dense Schur form of all previous blocks
+    // Limit the number of convergence checks, because each computes a dense Schur form of all previous blocks
     parameters.set("Step Size", std::max(4, n_blocks / 16));
     parameters.set("Convergence Tolerance", request.tolerance);
     parameters.set("Relative Convergence Tolerance", true);
@@ -191,7 +191,7 @@ namespace Squeal
       }
     catch (const std::exception &error)
       {
-        throw SolverError(std::string("Anasazi failed: ") + error.what(), request.what, "try ARPACK as solver of the real modes");
+        throw SolverError(std::string("Anasazi failed: ") + error.what(), request.what, "set Real modes/Solver = ARPACK");
       }
 
     const auto &solution = problem->getSolution();

@@ -17,7 +17,7 @@ namespace Squeal
     [[noreturn]] void throw_arpack(const char *routine, const int info, const std::string &what)
     {
       throw SolverError("ARPACK's " + std::string(routine) + " failed with info = " + std::to_string(info), what,
-                        "try Anasazi as solver of the real modes");
+                        "set Real modes/Solver = Anasazi");
     }
   } // namespace
 
@@ -70,7 +70,7 @@ namespace Squeal
               throw_arpack("pdsaupd (unknown request)", ido, request.what);
           }
       }
-    // Accept info = 1: some values have not converged within the allowed restarts; the converged values are returned
+    // Accept info = 1 and return the converged values: others have not converged within the allowed restarts
     if (info < 0 || info > 1)
       throw_arpack("pdsaupd", info, request.what);
     if (iparam[4] == 0)

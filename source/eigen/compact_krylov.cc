@@ -286,7 +286,7 @@ namespace Squeal
     if (info != 0)
       throw SolverError("The QR algorithm did not converge for a projected matrix of " + std::to_string(dimension) + " rows",
                         "eigenvalues of the quadratic pencil",
-                        "check the matrices for entries that are not finite, or choose another shift");
+                        "check the parameters and matrices for values that are not finite, or change Band/Maximum frequency");
     agree(map.communicator(), T);
     agree(map.communicator(), Z);
     agree(map.communicator(), real.data(), dimension);

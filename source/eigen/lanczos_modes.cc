@@ -130,7 +130,7 @@ namespace Squeal
         const MultiVector V = view(*basis, 0, m);
         MultiVector       B = A.mass * W;
         DenseMatrix       H = DenseMatrix::Zero(m, W.n_columns()), all = DenseMatrix::Identity(W.n_columns(), W.n_columns());
-        // Normalise between the two passes, so that two are sufficient for directions with any small remainder
+        // Normalise between the two passes, so that two passes are sufficient for remainders of any size
         for (const double smallest : {rounding_of_whole, rounding_of_unit})
           {
             MultiVector rest = view(W, 0, static_cast<int>(all.rows())), its_image = view(B, 0, static_cast<int>(all.rows()));

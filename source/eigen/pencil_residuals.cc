@@ -109,7 +109,7 @@ namespace Squeal
 
     /// Improves a mode φ, ‖φ‖ = 1, by generalised conjugate residuals (S. C. Eisenstat, H. C. Elman, M. H. Schultz, SIAM Journal on
     /// Numerical Analysis 20 (1983) 345–357): corrections are orthogonal to φ, lie in the space of Q(s)⁻¹ r of successive residuals r and
-    /// minimise ‖Q(λ)φ‖, until ‖Q(λ)φ‖ ≤ @p tolerance ‖Kφ‖ or for most_correction_steps steps.
+    /// minimise ‖Q(λ)φ‖, until ‖Q(λ)φ‖ ≤ @p tolerance ‖Kφ‖ or after most_correction_steps steps.
     ComplexVector corrected(const QuadraticPencil &pencil,
                             const LinearOperator  &inverse,
                             const Complex          lambda,

@@ -28,7 +28,6 @@ namespace Squeal
     /// Number of such steps if fewer modes were found than expected.
     constexpr int n_searching_steps = 16;
 
-    /// State of convergence of the Ritz values.
     struct Convergence
     {
       int    n_inside    = 0; ///< Ritz values inside the radius
@@ -173,10 +172,10 @@ namespace Squeal
                                         const QuadraticModesOptions &options)
     {
       throw SolverError(std::to_string(state.n_converged) + " of " + std::to_string(state.n_inside) +
-                          " eigenvalues inside the radius converged; the worst residual is " + scientific(worst) + ", allowed is " +
+                          " eigenvalues inside the radius converged; the largest residual is " + scientific(worst) + ", the tolerance is " +
                           scientific(options.tolerance) + ": " + reason,
                         "complex modes up to " + scientific(options.largest_circular_frequency) + " rad/s",
-                        "raise the tolerance, the number of basis vectors or of restarts, or lower the largest frequency");
+                        "raise Complex modes/Tolerance, or lower Band/Maximum frequency");
     }
 
     void check(const QuadraticPencil &pencil, const LinearOperator &inverse, const QuadraticModesOptions &options)
@@ -185,11 +184,12 @@ namespace Squeal
         throw SolverError(what, "options of the complex modes", change);
       };
       if (!(options.largest_circular_frequency > 0.))
-        refuse("The largest frequency is " + scientific(options.largest_circular_frequency) + " rad/s", "give a positive frequency");
+        refuse("The largest frequency is " + scientific(options.largest_circular_frequency) + " rad/s, but must be positive",
+               "give a positive frequency");
       if (!(options.shift >= 0.))
-        refuse("The shift is " + scientific(options.shift) + " 1/s", "give a real shift that is not negative");
+        refuse("The shift is " + scientific(options.shift) + " 1/s, but must not be negative", "give a positive shift or zero");
       if (!(options.tolerance > 0.) || options.block_size < 1 || options.n_fresh_directions < 0)
-        refuse("The tolerance, the block size or the number of fresh directions is not positive", "give positive values");
+        refuse("The tolerance or the block size is not positive, or the number of fresh directions is negative", "give positive values");
       if (inverse.map().n() != pencil.mass->map().n())
         refuse("The operators have different sizes", "pass the factors of the same pencil");
     }
@@ -206,7 +206,6 @@ namespace Squeal
         , tolerance(0.3 * options.tolerance)
       {}
 
-      /// Extends the space to @p n_basis states.
       void grow(const int n_basis)
       {
         while (krylov.dimension < n_basis && !exhausted)
@@ -223,7 +222,6 @@ namespace Squeal
           }
       }
 
-      /// Checks the Ritz values.
       void assess()
       {
         worst_before     = state.worst;
@@ -268,9 +266,9 @@ namespace Squeal
       }
 
       /**
-       * Searches for missing eigenvalues inside the radius, for example in a cluster larger than the block, by a short process from random
-       * directions in which all values found inside the radius are deflated. Returns false if it finds any; random directions are then
-       * injected into the block.
+       * Searches for missing eigenvalues inside the radius, for example in a cluster larger than the block. A short process starts from
+       * random directions, with all values found inside the radius deflated. If it finds any value, random directions are injected into the
+       * block, and the result is false.
        */
       bool proven()
       {
@@ -289,7 +287,7 @@ namespace Squeal
         if (count <= state.n_inside)
           return true;
         if (options.report)
-          options.report("random directions show " + std::to_string(count - state.n_inside) + " or more missing eigenvalues");
+          options.report("random directions reveal at least " + std::to_string(count - state.n_inside) + " missing eigenvalues");
         n_wanted += static_cast<int>(count) - state.n_inside;
         inject(n_fresh);
         return false;
@@ -335,7 +333,6 @@ namespace Squeal
         return [this](const MultiVector &states, MultiVector &image) { transformation.apply(states, image); };
       }
 
-      /// Random vectors, different at every call.
       MultiVector fresh_vectors(const int n)
       {
         return random_vectors(transformation.pencil.mass->map(), n, options.seed + 7919 * n_injections++);

@@ -61,7 +61,6 @@ namespace Squeal
     const MultiVector    *deflated;
   };
 
-  /// Request to a Krylov solver.
   struct KrylovRequest
   {
     int          n_wanted;
@@ -72,12 +71,11 @@ namespace Squeal
     std::string  what;
   };
 
-  /// Approximate eigenvectors of the largest eigenvalues by Anasazi: at most n_wanted, nothing if none converged.
+  /// Approximate eigenvectors of the largest eigenvalues by Anasazi: at most n_wanted, empty if none converged.
   std::optional<MultiVector> anasazi_vectors(const ShiftInvert &A, const KrylovRequest &request);
 
   /// Converged eigenvectors by block Lanczos, in descending order of the eigenvalues up to the first that has not converged.
   std::optional<MultiVector> lanczos_vectors(const ShiftInvert &A, const KrylovRequest &request);
 
-  /// Converged eigenvectors by ARPACK.
   std::optional<MultiVector> arpack_vectors(const ShiftInvert &A, const KrylovRequest &request);
 } // namespace Squeal

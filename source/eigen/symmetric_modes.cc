@@ -135,7 +135,7 @@ namespace Squeal
                                  const SymmetricModesOptions &options)
   {
     if (!(largest_eigenvalue > 0.))
-      throw SolverError("the requested end of the band is " + std::to_string(largest_eigenvalue) + " rad²/s²", options.what,
+      throw SolverError("the end of the band is " + std::to_string(largest_eigenvalue) + " rad²/s², but must be positive", options.what,
                         "give a positive end of the band");
     if (!options.by_parts)
       return SymmetricSolver(K, M, largest_eigenvalue, options).modes();
@@ -161,7 +161,7 @@ namespace Squeal
 
   ModeCount count_below(const SparseMatrix &K, const SparseMatrix &M, double limit, const std::string &what)
   {
-    // A pivot vanishes if the limit is an eigenvalue: increase it slightly
+    // Increase the limit slightly if it is an eigenvalue, because a pivot then vanishes
     for (int attempt = 0; attempt < 4; ++attempt)
       {
         int       n_null  = 0;
@@ -170,8 +170,8 @@ namespace Squeal
           return {n_modes, limit};
         limit *= 1. + 1e-8;
       }
-    throw SolverError("the modes below " + std::to_string(limit) + " rad²/s² cannot be counted: K - limit M stays singular", what,
-                      "check that M is positive definite and that no dof is without stiffness and mass");
+    throw SolverError("the modes below " + std::to_string(limit) + " rad²/s² cannot be counted: K - limit M remains singular", what,
+                      "check that M is positive definite and that every dof has stiffness or mass");
   }
 
   double end_of_lowest(const SparseMatrix &K,
@@ -193,7 +193,7 @@ namespace Squeal
         upper = count_below(K, M, std::min(2. * upper.limit, highest), what);
       }
 
-    // Regula falsi, because modes are distributed evenly; at least half a mode from either limit
+    // Use regula falsi, because modes are distributed evenly; trial values stay away from the ends by a tenth of the interval
     while (upper.n_modes > n_modes && upper.limit - lower.limit > cluster_width * upper.limit)
       {
         const double    share                      = (n_modes + 0.5 - lower.n_modes) / (upper.n_modes - lower.n_modes);

@@ -58,7 +58,7 @@ namespace Squeal
         dense_pairs = symmetric_eigenpairs(stiffness, mass);
         return;
       }
-    // M is singular, with massless dofs: solve M x = ν (K + s M) x with ν = 1 / (ω² + s) and omit ν = 0
+    // M is singular because of massless dofs: solve M x = ν (K + s M) x with ν = 1 / (ω² + s) and omit ν = 0
     const double     s       = count.limit;
     const RealPairs  inverse = symmetric_eigenpairs(mass, stiffness + s * mass); // ascending
     constexpr double zero    = 1e-12;
@@ -121,7 +121,7 @@ namespace Squeal
         }
       catch (const SolverError &)
         {
-          // K is probably singular because of rigid-body motions: try a shift. If there is another reason, that attempt throws
+          // K is probably singular because of rigid-body motions: try a shift, which throws if there is another reason
         }
     if (shift == 0.)
       shift = shift_of_free_bodies * count.limit;
@@ -136,8 +136,7 @@ namespace Squeal
 
     RitzPairs pairs;
     int       n_found = 0, n_fruitless = 0;
-    // Start again while modes are missing: a start may miss members of multiple eigenvalues, and every further start finds at least one of
-    // them
+    // Start again while modes are missing: a start may miss members of multiple eigenvalues, which further starts find
     for (unsigned int attempt = 0; n_found < count.n_modes; ++attempt)
       {
         const std::optional<MultiVector> fresh = krylov(count.n_modes - n_found, attempt, n_fruitless, pairs.vectors);
@@ -271,19 +270,18 @@ namespace Squeal
 
   SymmetricModes SymmetricSolver::accept(const RitzPairs &pairs, const Residuals &result) const
   {
-    const auto fail = [&](const std::string &message) {
-      throw SolverError(message, options.what, "choose the other solver of the real modes, or a larger tolerance");
-    };
+    const auto fail = [&](const std::string &message, const std::string &change) { throw SolverError(message, options.what, change); };
     if (static_cast<int>(pairs.values.size()) != count.n_modes || !(pairs.values.back() <= count.limit * (1. + 1e-8)))
       fail_incomplete(std::upper_bound(pairs.values.begin(), pairs.values.end(), count.limit) - pairs.values.begin());
     if (pairs.values.front() < -hidden_square)
-      fail("the stiffness is not positive semidefinite: there is an eigenvalue of " + std::to_string(pairs.values.front()) + " rad²/s²");
+      fail("the stiffness is not positive semidefinite: its lowest eigenvalue is " + std::to_string(pairs.values.front()) + " rad²/s²",
+           "check the materials and mounts or the matrices; with gyroscopic forces, lower the rotation speed");
     if (!(result.excess <= 1.))
       {
         std::ostringstream message;
         message << "mode " << result.worst + 1 << " of " << count.n_modes << " has a relative residual of " << result.values[result.worst]
                 << ", " << result.excess << " times the limit";
-        fail(message.str());
+        fail(message.str(), "choose another Real modes/Solver, or raise Real modes/Tolerance");
       }
 
     SymmetricModes modes;
@@ -303,7 +301,7 @@ namespace Squeal
   {
     throw SolverError(std::to_string(n_found) + " modes were found but " + std::to_string(count.n_modes) + " exist below " +
                         std::to_string(std::sqrt(count.limit) / (2. * M_PI)) + " Hz",
-                      options.what, "choose the other solver of the real modes, or move the end of the band away from a cluster of modes");
+                      options.what, "choose another Real modes/Solver, or move the end of the band away from a cluster of modes");
   }
 
   bool SymmetricSolver::is_rigid(const double value) const

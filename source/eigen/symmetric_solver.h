@@ -48,7 +48,6 @@ namespace Squeal
 
     RitzPairs rayleigh_ritz(const MultiVector &V) const;
 
-    /// Computes approximations of all requested modes.
     RitzPairs find_all();
 
     RitzPairs                  dense();

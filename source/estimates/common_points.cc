@@ -25,7 +25,6 @@ namespace Squeal
 
   namespace
   {
-    /// Position of a point in a cell.
     struct PointInCell
     {
       const Cell *cell;
@@ -33,7 +32,6 @@ namespace Squeal
       double      distance;  ///< zero inside; infinite if this process has no cell of the body [m]
     };
 
-    /// Extent of the search for a point.
     enum class PointSearch
     {
       inside, ///< search only cells whose bounding box contains the point
@@ -58,7 +56,6 @@ namespace Squeal
     private:
       using Leaf = std::pair<BoundingBox<3>, const Cell *>;
 
-      /// Cells to be searched by find().
       std::vector<Leaf> candidates(unsigned int body, const Point<3> &point, PointSearch search) const;
 
       const Model             &model;
@@ -71,7 +68,6 @@ namespace Squeal
     /// Tolerance of reference coordinates for points inside a cell, for rounding errors [-].
     constexpr double beyond_by_rounding = 1e-10;
 
-    /// Clips a point to the reference cell.
     Point<3> cut_to(const Shape shape, Point<3> x)
     {
       if (shape == Shape::pyramid)
@@ -120,7 +116,7 @@ namespace Squeal
       const auto  it    = std::find(names.begin(), names.end(), name);
       if (it == names.end())
         throw MeshError("the mesh has no body named `" + name + "`", "displacements at the points of another mesh",
-                        "compare meshes of the same bodies; this one has " + boost::algorithm::join(names, ", "));
+                        "compare only meshes with the same bodies; the bodies of this mesh are " + boost::algorithm::join(names, ", "));
       return it - names.begin();
     }
 

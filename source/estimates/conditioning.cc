@@ -54,7 +54,7 @@ namespace Squeal
       return {values.front(), values.back()};
     }
 
-    /// √ of the diagonal, as a vector n × 1.
+    /// Square roots of the diagonal entries, n × 1; 1 for zero entries.
     MultiVector root_of_diagonal(const SparseMatrix &A)
     {
       MultiVector       result(A.rows(), 1);
@@ -92,7 +92,7 @@ namespace Squeal
     double condition_of_mass(const SparseMatrix &M)
     {
       const auto [smallest, largest] = equilibrated_extremes(M, root_of_diagonal(M));
-      return largest / std::max(smallest, std::numeric_limits<double>::epsilon() * largest); // massless dofs have eigenvalues of zero
+      return largest / std::max(smallest, std::numeric_limits<double>::epsilon() * largest); // massless dofs have the eigenvalue zero
     }
 
     double condition_of_stiffness(const SparseMatrix &K, const UpdatedInverse &inverse)

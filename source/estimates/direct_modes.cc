@@ -54,8 +54,8 @@ namespace Squeal
     QuadraticModes in_order_of(const std::vector<std::complex<double>> &lambda, const QuadraticModes &modes)
     {
       if (modes.values.size() != lambda.size())
-        throw SolverError(text(lambda.size(), " right and ", modes.values.size(), " left modes were found"), "complex modes",
-                          "change Band/Maximum frequency or Band/Maximum rate, or lower Complex modes/Tolerance");
+        throw SolverError(text("the numbers of right and left modes differ: ", lambda.size(), " and ", modes.values.size()),
+                          "complex modes", "change Band/Maximum frequency or Band/Maximum rate, or lower Complex modes/Tolerance");
       std::vector<int> rest(lambda.size()), order;
       for (std::size_t j = 0; j < rest.size(); ++j)
         rest[j] = static_cast<int>(j);
@@ -127,9 +127,9 @@ namespace Squeal
         catch (const SolverError &)
           {
             throw SolverError(
-              "Q(lambda) is singular at two shifts, thus probably for all lambda: a motion, or a combination of equations, may have "
-              "neither mass nor damping nor stiffness",
-              source, "remove dependent rows and columns from all matrices, such as redundant constraints");
+              "Q(lambda) is singular at two shifts and probably for all lambda: a motion or a combination of equations may have no mass, "
+              "damping or stiffness",
+              source, "remove dependent rows and columns from all matrices, for example redundant constraints");
           }
         throw;
       }

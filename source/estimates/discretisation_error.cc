@@ -89,7 +89,7 @@ namespace Squeal
       return values[n - 1] + (values[n - 1] - values[n - 2]) * ratio / (1. - ratio);
     }
 
-    /// Order of convergence from three values; nothing if no order in the range agrees with them.
+    /// Order of convergence from three values; empty if no order in the range agrees with them.
     std::optional<double> observed_order(const double *h, const double *v, const OrderRange &plausible)
     {
       const double quotient = (v[0] - v[1]) / (v[1] - v[2]);

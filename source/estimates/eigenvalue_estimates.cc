@@ -63,7 +63,6 @@ namespace Squeal
     const ComplexDenseMatrix &E = products.coupling;
     EigenvalueEstimates       result;
 
-    // Corrections δλ and condition numbers κ
     const Eigen::VectorXcd mass = bilinear(modes.pencil.mass, modes.left, modes.right);
     const Eigen::VectorXcd damping =
       modes.pencil.has_damping ? bilinear(modes.pencil.damping, modes.left, modes.right) : Eigen::VectorXcd(Eigen::VectorXcd::Zero(k));

@@ -17,7 +17,7 @@ namespace Squeal
   {
     using Complex = std::complex<double>;
 
-    /// Connections of a mode comprise this fraction of its energy; shares below the second fraction of the largest share are ignored [-].
+    /// Fraction of a mode's energy that its connections cover, and smallest share of a connection relative to the largest share [-].
     constexpr double connecting = 0.75, side = 0.25;
 
     /// Smallest energy fraction in the span of the other modes for which a mode has a counterpart [-].
@@ -26,7 +26,7 @@ namespace Squeal
     /// Directions of smaller relative size are linearly dependent up to rounding [-].
     constexpr double dependent = 1e-10;
 
-    /// Products of all modes of two meshes, modes normalised.
+    /// Products of all normalised modes of two meshes.
     struct Products
     {
       ComplexDenseMatrix coarse, fine; ///< Gram matrices
@@ -49,7 +49,7 @@ namespace Squeal
     /// |c|² of the combinations of modes with Gram matrix G that are closest to given vectors; C: products of the modes with the vectors.
     DenseMatrix shares(const ComplexDenseMatrix &G, const ComplexDenseMatrix &C)
     {
-      if (C.size() == 0) // Eigen would access the first entry
+      if (C.size() == 0) // Eigen would access a first entry that does not exist
         return DenseMatrix(C.rows(), C.cols());
       Eigen::CompleteOrthogonalDecomposition<ComplexDenseMatrix> factors;
       factors.setThreshold(dependent);
@@ -99,7 +99,7 @@ namespace Squeal
     {
       const Eigen::MatrixX<bool> of_coarse = connections(products.fine, products.mixed),
                                  of_fine   = connections(products.coarse, products.mixed.adjoint());
-      // Separate pairs of modes that are connected only with each other, even if a third mode is connected with one of them
+      // Separate pairs of modes without other connections of their own, even if a third mode is connected with one of them
       const int                          n_fine = products.mixed.rows(), n_coarse = products.mixed.cols();
       const Eigen::VectorX<Eigen::Index> n_of_coarse = of_coarse.colwise().count(), n_of_fine = of_fine.colwise().count();
       const auto                         is_pair = [&](const int i, const int j) {
@@ -128,7 +128,7 @@ namespace Squeal
       return groups;
     }
 
-    /// Drops the modes of a group that the group's modes of the other mesh represent badly.
+    /// Drops modes of a group that are badly represented by the group's modes of the other mesh.
     Group represented(const Group &group, const Products &products)
     {
       const auto kept = [](const std::vector<int> &modes, const std::vector<int> &others, const ComplexDenseMatrix &others_gram,

@@ -118,7 +118,8 @@ namespace Squeal
     if (k == 0)
       return {};
     if (n_reduced < k)
-      throw SolverError("the reduced model has " + std::to_string(n_reduced) + " oscillating modes, the reference " + std::to_string(k),
+      throw SolverError("the reduced model has " + std::to_string(n_reduced) + " oscillating modes, fewer than the " + std::to_string(k) +
+                          " modes of the reference",
                         "errors of a reduced model", "use a larger basis and all of its modes");
 
     // M-inner products of reference modes, of reduced modes, and of reference with reduced modes
@@ -129,7 +130,6 @@ namespace Squeal
     const DenseMatrix        XT = gram(MX, model.basis());
     const ComplexDenseMatrix C  = from_halves(append_columns(XT.topRows(k), -XT.bottomRows(k))) * modes.right;
 
-    // Clusters of reference modes
     const auto &lambda  = reference.lambda;
     const auto  cluster = connected_groups(
        k, [&](const int i, const int j) { return std::abs(lambda[i] - lambda[j]) <= cluster_tolerance * std::abs(lambda[i]); });

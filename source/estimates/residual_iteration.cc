@@ -73,7 +73,6 @@ namespace Squeal
       return parts;
     }
 
-    /// Oscillating modes in the band.
     ReducedModes modes_in_band(const ReducedModel &model, const double mu, const Band &band)
     {
       const ReducedModes modes = reduced_modes(model, mu, band.end);
@@ -163,7 +162,7 @@ namespace Squeal
     if (directions.empty())
       return {};
     const MultiVector      all     = join_all(directions);
-    const std::vector<int> columns = nonzero_columns(all); // skips zero columns: the imaginary parts of neutral modes
+    const std::vector<int> columns = nonzero_columns(all); // skip zero columns, for example the imaginary parts of neutral modes
     if (columns.empty())
       return {};
     MultiVector X = compress(M, model, selected(all, columns));
@@ -193,8 +192,8 @@ namespace Squeal
 
         const auto fresh = new_vectors(system, model, inaccurate_directions(state, options.tolerance));
         if (!fresh || step == options.maximum_steps || model.size() + fresh->n_columns() > options.maximum_basis)
-          throw SolverError(text("the residual iteration ended with an estimated error of lambda of ", worst, " instead of ",
-                                 options.tolerance, " (", model.size(), " vectors, ", step, " extensions)"),
+          throw SolverError(text("the residual iteration ended with an estimated relative error of lambda of ", worst,
+                                 ", above the tolerance of ", options.tolerance, " (", model.size(), " vectors, ", step, " extensions)"),
                             "complex modes",
                             "raise Complex modes/Maximum basis or Complex modes/Iteration tolerance, or choose the Krylov solver");
         model.extend(*fresh);

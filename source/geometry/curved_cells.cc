@@ -14,7 +14,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Rejects mid-edge nodes at such a distance from the middle that the edge folds back or bulges beyond a half circle.
+    /// Rejects mid-edge nodes so far from the middle of their edge that the edge folds back or bulges beyond a half circle.
     void check_middles(const Mesh &mesh)
     {
       constexpr double           farthest = 0.5; // relative to the length of the edge
@@ -35,11 +35,10 @@ namespace Squeal
             }
         }
       if (first)
-        throw MeshError(text(off.size(), off.size() == 1 ? " second-order node is" : " second-order nodes are",
-                             " farther from the middle of the edge than half its length; one of them is at (", mesh.points[*off.begin()],
-                             ") m"),
-                        describe_cell(mesh, *first),
-                        "move second-order nodes to the middles of their edges, or use smaller elements where a surface curves");
+        throw MeshError(
+          text(off.size(), off.size() == 1 ? " second-order node is" : " second-order nodes are",
+               " farther from the middle of the edge than half its length; one such node is at (", mesh.points[*off.begin()], ") m"),
+          describe_cell(mesh, *first), "move second-order nodes to the middle of their edges, or use smaller elements on curved surfaces");
     }
 
     /// Rejects edges and quadrilaterals whose middle nodes differ between neighbouring cells or are corners of other cells: the cells would
@@ -69,10 +68,10 @@ namespace Squeal
                     cell.nodes[numbers[8]]);
         }
       if (!unmatched.empty())
-        throw MeshError(text(unmatched.size(), " of ", mesh.cells.size(),
-                             " elements share corners with neighbours, but not the second-order nodes between these"),
+        throw MeshError(text("Second-order nodes of ", unmatched.size(), " of ", mesh.cells.size(),
+                             " elements differ from those of a neighbour on the same edge or face, or are corners of another element"),
                         describe_cell(mesh, *unmatched.begin()),
-                        "merge the second-order nodes as well as the corners, and mesh neighbours with matching elements");
+                        "merge second-order nodes as well as corners, and mesh neighbours with matching elements");
     }
   } // namespace
 
@@ -88,6 +87,6 @@ namespace Squeal
       throw MeshError(text(inverted.size(), " of ", mesh.cells.size(), inverted.size() == 1 ? " elements is" : " elements are",
                            " folded by second-order nodes: the Jacobian determinant is negative or zero"),
                       describe_cell(mesh, inverted[0]),
-                      "use smaller elements where surfaces curve, or let Gmsh straighten them (Mesh.HighOrderOptimize = 1)");
+                      "use smaller elements on curved surfaces, or optimise the elements in Gmsh (Mesh.HighOrderOptimize = 1)");
   }
 } // namespace Squeal

@@ -10,7 +10,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Surfaces of every extruded mesh; the surfaces from curves of the plan follow.
+    /// Surfaces of every extruded mesh, followed by one surface for each curve of the plan.
     enum ExtrudedSurface : unsigned int
     {
       disc_contact,
@@ -56,7 +56,7 @@ namespace Squeal
         : nodes(ends.size(), std::vector<unsigned int>(plan.points.size()))
         , mesh(mesh)
       {
-        // Nodes, layer by layer, in the order of the plan; both ends use the given points, so that contact faces coincide exactly
+        // Use the given points unchanged at both ends, so that contact faces coincide exactly
         const std::set<unsigned int> used     = nodes_of(faces);
         const unsigned int           n_layers = ends.size() - 1;
         for (unsigned int layer = 0; layer <= n_layers; ++layer)
@@ -111,7 +111,6 @@ namespace Squeal
     for (const Plan::Pin &pin : plan.pins)
       mesh.volume_names.push_back(pin.name);
 
-    // Layers of the disc
     const double                   z_face = parameters.disc_thickness / 2., z_end = z_face + parameters.pin_height;
     const std::vector<Plan::Point> top = points_on_side(plan, Plan::Side::top), bottom = points_on_side(plan, Plan::Side::bottom);
     Stack disc(plan, bottom, top, plan.faces, -z_face, z_face, graded_intervals(parameters.disc_layers, 1.), 0, mesh);

@@ -37,13 +37,13 @@ namespace Squeal
 
     constexpr const char *built_in_geometry = "disc_pins.geo";
 
-    /// True if Gmsh's Include accepts a path: the path must not contain quotes or special characters.
+    /// True if Gmsh's Include accepts the path, which must not contain quotes or special characters.
     bool can_be_included(const std::string &path)
     {
       return path.find_first_of("\"'\\%$~#\n") == std::string::npos;
     }
 
-    /// Script that sets the parameters before Gmsh reads the geometry, whose defaults do not overwrite existing values.
+    /// Script that sets the parameters before Gmsh reads the geometry. Defaults in the geometry do not overwrite existing values.
     std::string driver(const GeometryParameters &parameters)
     {
       std::string script;
@@ -65,8 +65,8 @@ namespace Squeal
           if (const auto value = values.find(variable.name); value != values.end() && value->second == defaults.at(variable.name) &&
                                                              boost::conversion::try_lexical_convert(variable.value, own) &&
                                                              own != std::stod(value->second))
-            mesh.notes.push_back(variable.name + " is " + value->second + ", the value of section Geometry, not " + variable.value +
-                                 " as in the script; set the parameter, or give the variable another name");
+            mesh.notes.push_back(variable.name + " = " + variable.value + " in the script is overridden by " + value->second +
+                                 ", the default of section Geometry; set the parameter there, or rename the variable");
     }
 
     // Gmsh statements with side effects outside the mesh
@@ -86,8 +86,8 @@ namespace Squeal
         }
       else if (std::ifstream stream(geometry, std::ios::binary | std::ios::ate);
                stream.tellg() > 0 && stream.seekg(-1, std::ios::cur).peek() != '\n')
-        throw MeshError("The file does not end with a line break, without which Gmsh ignores its last line", geometry,
-                        "add one, or choose a path without quotes, backslashes and $ % ~ #");
+        throw MeshError("The last line of the file has no line break, and Gmsh would ignore this line", geometry,
+                        "add a line break, or choose a path without quotes, backslashes and $ % ~ #");
       for (const GeometryParameters::Variable &variable : parameters.variables)
         if (variable.value && !variable.declaration.onelab_name.empty())
           input.numbers[variable.declaration.onelab_name] = *variable.value;
@@ -160,7 +160,7 @@ namespace Squeal
       return parameters;
     }
 
-    /// Checks the memory that every study needs at least.
+    /// Checks the minimum memory of any study.
     void check_least_memory(ProblemSize size, const std::string &where, const MPI_Comm communicator)
     {
       constexpr double no_modes = 0.;
@@ -171,18 +171,19 @@ namespace Squeal
     /// Rejects a mesh without volumes and surfaces, and unnamed groups that would be used.
     void check_groups(const GmshMesh &mesh, const std::string &where)
     {
-      const std::string other_formats = "; Gmsh reads no names from formats other than .msh (.unv, .inp, .bdf, ...): name the parts in the "
-                                        ".geo after Merge, or convert to a .msh with physical names";
+      const std::string other_formats = "; for formats from which Gmsh reads no names (.unv, .inp, .bdf, ...), name the parts in a .geo "
+                                        "after Merge, or convert the file to a .msh with physical names";
       if (mesh.dimension() < 2)
         throw MeshError(mesh.n_unnamed_volume_elements == 0 ?
                           "The geometry has neither physical volumes nor physical surfaces" :
-                          text("The mesh has ", mesh.n_unnamed_volume_elements, " volume elements, but no physical group"),
+                          text("The mesh has ", mesh.n_unnamed_volume_elements, " volume elements, but no physical volumes or surfaces"),
                         where, "name the volumes of a solid 'disc', 'pin_1', ..., or the surface of a plan 'disc'" + other_formats);
       constexpr const char *kinds[] = {"point", "curve", "surface", "volume"};
       for (const GmshMesh::Group &group : mesh.groups)
         if (group.name.empty() && (mesh.dimension() == 2 || group.dimension >= 2))
           throw MeshError(text("Physical ", kinds[group.dimension], ' ', group.number, " has no name"), where,
-                          "give it one: Physical Volume(\"disc\") = {...} in a .geo, a line of $PhysicalNames in a .msh" + other_formats);
+                          "name it, for example by Physical Volume(\"disc\") = {...} in a .geo or a line of $PhysicalNames in a .msh" +
+                            other_formats);
     }
 
     /// Rejects names of missing surfaces; called before unused surfaces are rejected.
@@ -197,9 +198,9 @@ namespace Squeal
           present.push_back(group.name);
       const auto require = [&](const std::string &name, const char *parameter) {
         if (std::find(present.begin(), present.end(), name) == present.end())
-          throw MeshError("There is no physical surface '" + name + "', which " + parameter +
-                            " names; the surfaces are: " + (present.empty() ? "(none)" : boost::algorithm::join(present, ", ")),
-                          where, text("give the surface this name, or correct the name in ", parameter));
+          throw MeshError("There is no physical surface '" + name + "', which is named in " + parameter +
+                            "; the surfaces are: " + (present.empty() ? "(none)" : boost::algorithm::join(present, ", ")),
+                          where, text("rename a surface of the geometry, or correct the name in ", parameter));
       };
       for (const ContactPair &pair : contact.pairs)
         {
@@ -228,7 +229,8 @@ namespace Squeal
           if (const unsigned int body = bodies[face.nodes[0]];
               face.surface == given && (body == 0) != (contact_name == PhysicalNames::disc_contact))
             throw MeshError("Surface '" + surface + "' has a face on '" + mesh.body_names[body] + "'", where + ", parameter Contact/Pairs",
-                            "write a surface of the disc first, then one of another body; perhaps they are exchanged");
+                            "in each pair, name a surface of the disc first, then a surface of another body; each surface must be on one "
+                            "side of the contact only");
         if (surface == contact_name)
           return;
         const std::size_t named = number(contact_name);
@@ -264,8 +266,8 @@ namespace Squeal
         if (mesh.tied = contact.tied; !mesh.tied.empty())
           find_bodies(mesh);
         if (!gmsh.why_not_confined.empty())
-          mesh.notes.push_back("this system cannot keep a geometry from running programs and writing files (" + gmsh.why_not_confined +
-                               ")");
+          mesh.notes.push_back("Gmsh was not confined: on this system, a geometry can run programs and write files (" +
+                               gmsh.why_not_confined + ")");
         return mesh;
       };
       if (gmsh.dimension() == 3)
@@ -282,7 +284,7 @@ namespace Squeal
             name_contact(mesh, contact, where);
           check_unique(mesh, where);
           if (const unsigned int n = make_right_handed(mesh); n > 0)
-            mesh.notes.push_back(text(n, " of ", mesh.cells.size(), " cells are left-handed; their nodes have been reordered"));
+            mesh.notes.push_back(text("left-handed cells: ", n, " of ", mesh.cells.size(), "; their nodes have been reordered"));
           return finished(std::move(mesh));
         }
       Plan plan = make_plan(gmsh, {parameters.pin_rings, parameters.pin_grading}, where);

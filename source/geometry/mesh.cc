@@ -53,7 +53,7 @@ namespace Squeal
     double size = 0.;
     for (const Mesh::Point &point : mesh.points)
       size = std::max(size, point.norm());
-    // Use a power of ten, which does not depend on rounding errors of the size
+    // Use a power of ten, so that rounding errors of the size do not change the checksum
     const double unit = 1e-8 * std::pow(10., std::floor(std::log10(size)));
     std::string  places;
     for (const Mesh::Point &point : mesh.points)
@@ -102,7 +102,7 @@ namespace Squeal
 
   void find_bodies(Mesh &mesh)
   {
-    // Join volumes that share nodes
+    // Join volumes that share nodes, are tied, or belong to the disc
     const std::vector<std::string>     &names = mesh.volume_names;
     boost::disjoint_sets_with_storage<> sets(names.size() + mesh.points.size());
     for (const Mesh::Cell &cell : mesh.cells)
@@ -132,7 +132,6 @@ namespace Squeal
         volumes_of_bodies[mesh.body_of_volume.back()].push_back(volume);
       }
 
-    // Name the bodies
     mesh.body_names.clear();
     for (const std::vector<unsigned int> &volumes : volumes_of_bodies)
       {
@@ -165,7 +164,7 @@ namespace Squeal
     const auto                     found = std::find(pins.begin(), pins.end(), pin);
     if (found == pins.end())
       throw ParameterError("there is no pin `" + pin + "`", std::string("parameter ") + parameter,
-                           "name one of " + boost::algorithm::join(pins, ", "));
+                           "use one of " + boost::algorithm::join(pins, ", "));
     return found - pins.begin() + 1;
   }
 
@@ -326,7 +325,7 @@ namespace Squeal
                                                    const Mesh::Point              &point)
   {
     constexpr int         max_steps  = 20;
-    constexpr double      negligible = 5e-9, far = 0.75; // neighbouring nodes of a regular grid are at a distance of 1
+    constexpr double      negligible = 5e-9, far = 0.75; // below 1, the distance of neighbouring nodes of a regular grid
     const ShapeFunctions &functions = ShapeFunctions::of(shape, degree);
     Mesh::Point           xi        = reference_centre(shape);
     for (int step = 0; step <= max_steps && least_depth(shape, xi) > -far; ++step)

@@ -68,8 +68,8 @@ namespace Squeal
       return names.empty() ? "(none)" : boost::algorithm::join(names, ", ");
     }
 
-    /// Checks that every body is connected. The disc may consist of several pieces, each a separate volume with a mount: several discs on
-    /// one axis.
+    /// Checks that every body is connected. The disc may have several pieces (several discs on one axis) if each piece has a mount and no
+    /// volume extends over two pieces.
     void check_connected(const Mesh &mesh, const std::vector<std::string> &mounted_surfaces, const std::string &where)
     {
       boost::disjoint_sets_with_storage<> sets(mesh.points.size());
@@ -106,11 +106,12 @@ namespace Squeal
           for (const auto &[root, size] : pieces[body])
             sizes += (sizes.empty() ? "" : ", ") + std::to_string(size);
           throw MeshError(
-            "Body '" + mesh.body_names[body] + "' is in " + std::to_string(pieces[body].size()) + " pieces that share no node, of " +
-              sizes + " elements",
+            "Body '" + mesh.body_names[body] + "' consists of " + std::to_string(pieces[body].size()) +
+              " disconnected pieces, which have " + sizes + " elements",
             where,
-            "join them (Coherence, BooleanUnion or common curves) or tie their faces by Contact/Tied; give every pin a separate "
-            "physical volume, and each of several discs one that begins with 'disc_' and a surface in Mounts/Elastic mounts");
+            "join the pieces (Coherence, BooleanUnion or common curves), or tie their faces (Contact/Tied); if the pieces are pins, give "
+            "each a separate physical volume; if they are discs, give each a physical volume 'disc_...' and a surface in "
+            "Mounts/Elastic mounts");
         }
     }
 
@@ -157,7 +158,7 @@ namespace Squeal
   MeshQuality mesh_quality(const Mesh &mesh)
   {
     if (mesh.cells.empty())
-      throw MeshError("The mesh has no elements", "mesh", "check the geometry");
+      throw MeshError("The mesh has no elements", "mesh", "define and mesh the volumes of disc and pins in the geometry");
 
     MeshQuality quality{1., 0, 0};
     for (unsigned int element = 0; element < mesh.cells.size(); ++element)
@@ -180,12 +181,12 @@ namespace Squeal
     const MeshQuality quality = mesh_quality(mesh);
     if (quality.n_bad > 0)
       throw MeshError(text(quality.n_bad, " of ", mesh.cells.size(), quality.n_bad == 1 ? " elements is" : " elements are",
-                           " inverted or degenerate; the worst one has scaled Jacobian ", quality.worst_scaled_jacobian, ", at least ",
-                           smallest_scaled_jacobian, " is needed"),
+                           " inverted or degenerate; the smallest scaled Jacobian is ", quality.worst_scaled_jacobian, ", but at least ",
+                           smallest_scaled_jacobian, " is required"),
                       describe_cell(mesh, quality.worst_element),
-                      "change the element size or the number of nodes per pin face; keep pins away from "
-                      "edges and from each other, and in a mesh of your own correct these elements, flat tetrahedra of Gmsh by "
-                      "Mesh.Algorithm3D = 10 or another size");
+                      "in the supplied geometry, change Geometry/Element size or Geometry/Nodes per pin face, or move pins away from edges "
+                      "and from each other; in your own mesh, correct these elements (for flat tetrahedra, try Mesh.Algorithm3D = 10 or "
+                      "another element size in Gmsh)");
     if (mesh.degree == 2)
       check_curved(mesh);
     return quality;
@@ -203,10 +204,9 @@ namespace Squeal
           twins = twins.value_or(std::make_pair(first->second, element));
       }
     if (twins)
-      throw MeshError(text(mesh.cells.size() - known.size(), " of ", mesh.cells.size(),
-                           " elements have the same nodes as others, the first one is ", describe_cell(mesh, twins->second),
-                           ", the other one ", describe_cell(mesh, twins->first)),
-                      where, "remove elements that occur twice, for example those of a volume that was meshed or exported twice");
+      throw MeshError(text("Duplicates: ", mesh.cells.size() - known.size(), " of ", mesh.cells.size(), " elements; the first one is ",
+                           describe_cell(mesh, twins->second), ", with the same nodes as ", describe_cell(mesh, twins->first)),
+                      where, "remove duplicate elements, for example of a volume that was meshed or exported twice");
 
     const std::vector<CellFace> faces = all_faces(mesh);
     std::set<std::size_t>       elements;
@@ -214,9 +214,9 @@ namespace Squeal
       if (faces[i].key == faces[i + 2].key)
         elements.insert({faces[i].cell, faces[i + 1].cell, faces[i + 2].cell});
     if (!elements.empty())
-      throw MeshError(text("More than two elements share a face; this concerns ", elements.size(), " elements, the first one is ",
+      throw MeshError(text("More than two elements share a face; ", elements.size(), " elements have such faces, the first one is ",
                            describe_cell(mesh, *elements.begin())),
-                      where, "remove elements that overlap");
+                      where, "remove overlapping elements");
   }
 
   unsigned int make_right_handed(Mesh &mesh)
@@ -243,9 +243,9 @@ namespace Squeal
         {
           const auto element = std::find_if(reordered.begin(), reordered.end(),
                                             [&](const std::size_t e) { return e == faces[i].cell || e == faces[i + 1].cell; });
-          throw MeshError("An element is inverted: it and its neighbour lie on the same side of their common face",
+          throw MeshError("Two elements lie on the same side of their common face: one of them is inverted, or they overlap",
                           describe_cell(mesh, element == reordered.end() ? reordered[0] : *element),
-                          "correct the nodes of this element, or let no two elements overlap");
+                          "correct the order of the nodes of these elements, or remove overlapping elements");
         }
     return reordered.size();
   }
@@ -261,13 +261,14 @@ namespace Squeal
       for (std::size_t v = 0; v < mesh.volume_names.size(); ++v)
         {
           if (n_elements[v] == 0)
-            throw MeshError("Volume '" + mesh.volume_names[v] + "' has no elements", where, "mesh it, or remove the name");
+            throw MeshError("Volume '" + mesh.volume_names[v] + "' has no elements", where, "mesh this volume, or remove its name");
           ++(is_of_disc(mesh.volume_names[v]) ? n_discs : n_pins);
         }
       if (n_discs == 0 || n_pins == 0)
-        throw MeshError((n_discs == 0 ? "There is no physical volume 'disc', only: " : "There is no physical volume of a pin, only: ") +
+        throw MeshError((n_discs == 0 ? "No physical volume is named 'disc' or 'disc_...'; the volumes are: " :
+                                        "All physical volumes belong to the disc; the volumes are: ") +
                           list(mesh.volume_names),
-                        where, "name the disc's volume 'disc' and each pin's or pad's otherwise, such as 'pin_1'");
+                        where, "name the volume of the disc 'disc', and give each pin or pad another name, for example 'pin_1'");
 
       // Volumes that share nodes form one body; disc and pins must not share nodes
       std::vector<std::optional<unsigned int>> volume_of_node(mesh.points.size());
@@ -277,9 +278,9 @@ namespace Squeal
             const std::string &one = mesh.volume_names[cell.volume], &other = mesh.volume_names[volume_of_node[node].value_or(cell.volume)];
             if (is_of_disc(one) != is_of_disc(other))
               throw MeshError(
-                "Volumes '" + one + "' and '" + other + "' share nodes, so nothing could slide", where,
-                "give disc and pins separate surfaces and nodes where they touch; parts of the disc have names that begin with "
-                "'disc_'");
+                "Volumes '" + one + "' and '" + other + "' share nodes, which prevents sliding", where,
+                "give disc and pins separate surfaces and nodes at the contact; if both volumes are parts of the disc, give them names "
+                "that begin with 'disc_'");
             volume_of_node[node] = cell.volume;
           }
     }
@@ -289,7 +290,6 @@ namespace Squeal
   {
     check_volumes(mesh, where);
 
-    // Required surfaces
     std::vector<std::string> needed = {PhysicalNames::disc_contact, PhysicalNames::pin_contact};
     needed.insert(needed.end(), additional_surfaces.begin(), additional_surfaces.end());
     std::set<std::string> with_faces;
@@ -297,8 +297,9 @@ namespace Squeal
       with_faces.insert(mesh.surface_names[face.surface]);
     for (const std::string &name : needed)
       if (with_faces.count(name) == 0)
-        throw MeshError("There is no face on a physical surface '" + name + "'; the surfaces are: " + list(mesh.surface_names), where,
-                        "give the surface this name, or correct the names in Contact/Pairs and Contact/Tied");
+        throw MeshError("Physical surface '" + name + "' is missing or has no faces; the surfaces are: " + list(mesh.surface_names), where,
+                        "give this name to a surface (in a plan, to a curve), or correct the name in section Contact, Mounts or Steady "
+                        "sliding");
 
     // Named faces must be outer faces of the matching volumes
     const std::vector<CellFace> faces = all_faces(mesh);
@@ -318,7 +319,8 @@ namespace Squeal
         const bool of_pin  = name == PhysicalNames::pin_contact || name == PhysicalNames::pin_clamp || name == PhysicalNames::pin_side;
         if ((of_disc && !on_disc) || (of_pin && on_disc))
           throw MeshError("Surface '" + name + "' has a face on '" + mesh.body_names[first->body] + "'", where,
-                          "put disc_... on the disc and pin_... on pins; perhaps names of disc and pin are exchanged");
+                          "use the names disc_contact, disc_bore and disc_rim on the disc only, and pin_contact, pin_clamp and pin_side on "
+                          "pins only");
       }
   }
 
@@ -342,25 +344,27 @@ namespace Squeal
             is_free = is_free || !std::includes(clamps[body].begin(), clamps[body].end(), nodes[body].begin(), nodes[body].end());
           }
         if (!is_free)
-          throw MeshError("All nodes of '" + surface + "', on which Mounts/Elastic mounts puts a mount, are clamped by '" +
-                            PhysicalNames::pin_clamp + "'",
-                          where, "take the name 'pin_clamp' from these faces, or the mount from Mounts/Elastic mounts");
+          throw MeshError("All nodes of '" + surface + "' are clamped by '" + PhysicalNames::pin_clamp +
+                            "', so that mounts and loads on this surface have no effect",
+                          where,
+                          "remove its faces from 'pin_clamp', or remove its name from Mounts/Elastic mounts, Mounts/Dashpots and Steady "
+                          "sliding/Pressed faces");
       }
     for (std::size_t pin = 1; pin < mesh.body_names.size(); ++pin)
       {
         const std::string &name = mesh.body_names[pin];
         if (contacts[pin].empty())
-          throw MeshError("'" + name + "' has no face on 'pin_contact' or in Contact/Pairs, so it touches nothing", where,
-                          "put its face on the disc into the physical surface 'pin_contact' or into a pair of Contact/Pairs, or leave the "
-                          "volume out");
+          throw MeshError("'" + name + "' has no contact face: none of its faces is on 'pin_contact' or in Contact/Pairs", where,
+                          "add its contact face to the physical surface 'pin_contact' or to Contact/Pairs, or remove the volume");
         if (clamps[pin].empty() && mounted.count(pin) == 0)
           throw MeshError(
-            "'" + name + "' has no face on 'pin_clamp', so nothing holds it", where,
-            "put its backplate face into the physical surface 'pin_clamp', or one of its surfaces into Mounts/Elastic mounts, or merge "
-            "its nodes with those of the volume that it is fixed to");
+            "'" + name + "' is not held: it has no face on 'pin_clamp' and no mount", where,
+            "add its backplate face to the physical surface 'pin_clamp' or one of its surfaces to Mounts/Elastic mounts, or merge its "
+            "nodes with the volume to which it is fixed");
         if (distance(mesh, clamps[pin], disc) < distance(mesh, contacts[pin], disc))
-          throw MeshError("'" + name + "' touches the disc with its face on 'pin_clamp', and its face on 'pin_contact' is away from it",
-                          where, "exchange the names 'pin_clamp' and 'pin_contact' there");
+          throw MeshError("'" + name +
+                            "' has its face on 'pin_clamp' closer to the contact face of the disc than its face on 'pin_contact'",
+                          where, "exchange the names 'pin_clamp' and 'pin_contact' on this body");
       }
   }
 } // namespace Squeal

@@ -22,7 +22,6 @@ namespace Squeal
   {
     constexpr unsigned int not_numbered = static_cast<unsigned int>(-1);
 
-    /// An element type of Gmsh.
     struct ElementType
     {
       const char  *name;
@@ -49,7 +48,6 @@ namespace Squeal
                                              {"Prism 15", 18, Shape::wedge, 2, false},
                                              {"Pyramid 13", 19, Shape::pyramid, 2, false}};
 
-    /// An element of a physical group.
     struct GroupElement
     {
       const ElementType *type;
@@ -67,8 +65,9 @@ namespace Squeal
           const auto type = std::find_if(std::begin(element_types), std::end(element_types),
                                          [&, &wanted = name](const ElementType &known) { return known.name == wanted; });
           if (type == std::end(element_types))
-            throw MeshError("'" + group.name + "' has " + std::to_string(elements.size()) + " elements of type '" + name + "'", where,
-                            "mesh it with tetrahedra, pyramids, prisms and hexahedra of first or second order");
+            throw MeshError("'" + group.name + "' has elements of the unsupported type '" + name + "' (" + std::to_string(elements.size()) +
+                              ")",
+                            where, "mesh the volumes with tetrahedra, pyramids, prisms or hexahedra of first or second order");
           for (const GmshMesh::Element &element : elements)
             all.emplace(element.tag, GroupElement{type, Mesh::Nodes(element.nodes.begin(), element.nodes.end()),
                                                   static_cast<unsigned int>(names.size())});
@@ -103,8 +102,8 @@ namespace Squeal
           {
             if (std::find(known.begin(), known.end(), group.name) == known.end())
               throw MeshError(
-                "There is a physical surface '" + group.name + "' that nothing uses", where,
-                "name it in Contact/Pairs, Contact/Tied or Mounts/Elastic mounts, or take the name away; known names of surfaces: " +
+                "Physical surface '" + group.name + "' is not used", where,
+                "add it to Contact/Pairs, Contact/Tied or Mounts/Elastic mounts, or remove this physical surface; known names: " +
                   boost::algorithm::join(known, ", "));
             add_group(all, group, names, where);
           }
@@ -120,7 +119,7 @@ namespace Squeal
             if (element.type->degree != first->degree)
               throw MeshError(std::string("The mesh has elements of different orders: '") + first->name + "' and '" + element.type->name +
                                 "'",
-                              where, "mesh all volumes and surfaces with elements of one order, by Mesh.ElementOrder in Gmsh");
+                              where, "mesh all volumes and surfaces with elements of the same order (in Gmsh: Mesh.ElementOrder)");
           }
       return first == nullptr ? 1 : first->degree;
     }
@@ -141,7 +140,8 @@ namespace Squeal
             new_index[node] = points.size();
             points.emplace_back(mesh.points[node][0], mesh.points[node][1], mesh.points[node][2]);
             if (!std::isfinite(points.back().norm()))
-              throw MeshError("A node has coordinates that are not finite numbers", where, "write the mesh again");
+              throw MeshError("A node has a coordinate that is not a finite number", where,
+                              "correct the geometry or export the mesh again");
           }
       for (auto &[tag, cell] : cells)
         for (unsigned int &node : cell.nodes)
@@ -153,8 +153,8 @@ namespace Squeal
   Mesh make_mesh(const GmshMesh &gmsh, const std::vector<std::string> &additional_surfaces, const std::string &where)
   {
     if (gmsh.n_unnamed_volume_elements > 0)
-      throw MeshError(std::to_string(gmsh.n_unnamed_volume_elements) + " volume elements belong to no physical volume", where,
-                      "name every meshed volume: the disc 'disc', other bodies freely");
+      throw MeshError("Volume elements without a physical volume: " + std::to_string(gmsh.n_unnamed_volume_elements), where,
+                      "assign every meshed volume to a physical volume: the disc to 'disc', other bodies to any other name");
     Mesh           result;
     TaggedElements cells, faces;
     for (const GmshMesh::Group *group : volumes(gmsh))
@@ -168,14 +168,14 @@ namespace Squeal
         if (const unsigned int first = cells.lower_bound(tag)->second.group; first != cell.group)
           throw MeshError(
             "An element belongs to physical volumes '" + result.volume_names[first] + "' and '" + result.volume_names[cell.group] + "'",
-            where, "put every volume into one physical group; in a mesh file, give each group its own elementary tag (entity)");
+            where, "assign every volume to one physical group; in a mesh file, use a separate elementary tag (entity) for each group");
         result.cells.push_back({cell.type->shape, cell.nodes, cell.group});
         result.element_tags.push_back(tag);
       }
     for (auto &[tag, face] : faces)
       {
         if (const Topology &parts = topology(face.type->shape); result.degree == 2)
-          face.nodes.resize(parts.corners.size() + parts.edges.size()); // drops centre nodes, which the cells of serendipity elements lack
+          face.nodes.resize(parts.corners.size() + parts.edges.size()); // drop centre nodes, which serendipity cells lack
         for (unsigned int &node : face.nodes)
           if ((node = new_index[node]) == not_numbered)
             throw MeshError("Surface '" + result.surface_names[face.group] + "' has a face that is not a face of any element", where,
@@ -185,7 +185,7 @@ namespace Squeal
     if (const std::size_t n = result.degree == 2 ? add_centres(result) : 0; n > 0)
       result.notes.push_back(
         std::to_string(n) +
-        " nodes have been added at centres of faces and cells: serendipity elements are computed as full quadratic ones");
+        " nodes have been added at the centres of faces and cells: serendipity elements are treated as full quadratic elements");
     find_bodies(result);
     return result;
   }

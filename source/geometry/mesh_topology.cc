@@ -29,11 +29,11 @@ namespace Squeal
     // Tolerances of coincident nodes: well below intended distances, above rounding errors in files with six digits
     constexpr double of_shortest_edge = 1e-3, of_size = 2e-5, most_of_shortest_edge = 0.1, most_of_longest_edge = 5e-3;
 
-    /// Largest distance of nodes of a finer part from the faces of a coarser part, relative to the element, if chords approximate a curved
-    /// face [-].
+    /// Largest distance between nodes of a finer part and faces of a coarser part if chords approximate their common curved surface,
+    /// relative to the element [-].
     constexpr double off_curved_faces = 0.3;
 
-    /// Smallest overlap that is an error, relative to the element: chords of a curved face may penetrate another body by less [-].
+    /// Smallest overlap that is an error, relative to the element [-]. Chords of a curved face may cause smaller overlaps.
     constexpr double chord_depth = 0.05;
 
     std::string place(const Position &p)
@@ -60,7 +60,7 @@ namespace Squeal
       return box;
     }
 
-    /// Bounding box of the corners; it may ignore second-order nodes, which are on edges that neighbouring cells share.
+    /// Bounding box of the corners: edges are assumed straight.
     Box box_around(const Mesh &mesh, const Mesh::Cell &cell)
     {
       std::vector<Position> corners;
@@ -136,7 +136,7 @@ namespace Squeal
                           place(mesh.points[*of_body.begin()]),
                         where,
                         "merge coincident nodes (Coherence Mesh in Gmsh, or merge duplicate nodes in the pre-processor), "
-                        "or open the crack that they form");
+                        "or widen the crack between them");
     }
 
     /// Rejects quadrilaterals with triangles on the other side: they share nodes but are not conforming.
@@ -154,15 +154,14 @@ namespace Squeal
                                                                           2)
           unmatched.push_back(&face);
       if (!unmatched.empty())
-        throw MeshError(counted(unmatched.size(), "quadrilateral face", "quadrilateral faces") + " of body '" +
-                          mesh.body_names[unmatched[0]->body] + "' " + (unmatched.size() == 1 ? "has" : "have") +
-                          " two triangles on the other side; the first one is at " + place(face_geometry(mesh, *unmatched[0]).centre),
-                        where, "put pyramids between hexahedra or wedges and tetrahedra");
+        throw MeshError(counted(unmatched.size(), "quadrilateral face", "quadrilateral faces") +
+                          (unmatched.size() == 1 ? " has" : " have") + " two triangles on the other side; the first one is in body '" +
+                          mesh.body_names[unmatched[0]->body] + "' at " + place(face_geometry(mesh, *unmatched[0]).centre),
+                        where, "insert pyramids between quadrilateral and triangular faces");
     }
 
     // ----------------------------------------------------- sides of the contact
 
-    /// Outer faces of a named surface.
     std::vector<CellFace> named_faces(const Mesh &mesh, const std::vector<CellFace> &outline, const std::string &name)
     {
       std::vector<CellFace> result;
@@ -202,7 +201,7 @@ namespace Squeal
         throw MeshError("'" + mesh.body_names[pin] + "' and the disc lie on the same side of " +
                           counted(faces.size(), "contact face", "contact faces") + ", the first one at " +
                           place(face_geometry(mesh, faces.front()).centre) + ": one body is inside the other",
-                        where, "model the pin on the other side of its contact face, for example with the extrusion reversed");
+                        where, "move the pin to the other side of its contact face, for example by reversing its extrusion");
     }
 
     // --------------------------------------------------------- nodes in elements
@@ -331,8 +330,7 @@ namespace Squeal
       for (const auto &[body, nodes] : points.hanging)
         throw MeshError(
           counted(nodes.size(), "node", "nodes") + " of body '" + mesh.body_names[body] + "' " + (nodes.size() == 1 ? "is" : "are") +
-            " on edges or faces of elements of this body, or inside them, but not nodes of these elements; the first one is at " +
-            place_of(*nodes.begin()),
+            " on or inside elements of this body without being nodes of these elements; the first one is at " + place_of(*nodes.begin()),
           where, "mesh neighbouring parts of a body with the same nodes on their common faces (no hanging nodes)");
       const auto most = std::max_element(points.overlaps.begin(), points.overlaps.end(),
                                          [](const auto &a, const auto &b) { return a.second.size() < b.second.size(); });
@@ -344,7 +342,7 @@ namespace Squeal
                         "' overlap: " + counted(n_inside, "node", "nodes") + " and " +
                         counted(indices.size() - n_inside, "element centre", "element centres") +
                         " of the former are inside the latter, the first one at " + place_of(*indices.begin()),
-                      where, "move one of them, or remove duplicate bodies");
+                      where, "move one body, or remove duplicate bodies");
     }
   } // namespace
 

@@ -21,9 +21,9 @@ namespace Squeal
 {
   namespace
   {
-    constexpr const char *repair       = "correct the geometry; opening it in Gmsh shows the position";
-    constexpr const char *add_entities = "a .msh of format 4 must declare the entities of its elements, with their physical groups, in "
-                                         "$Entities; write it with them, or in format 2.2";
+    constexpr const char *repair       = "correct the geometry; open it in Gmsh to locate the error";
+    constexpr const char *add_entities = "in a .msh of format 4, declare the entities of all elements, with their physical groups, in "
+                                         "$Entities, or write the mesh in format 2.2";
     constexpr std::size_t quoted_lines = 8;
 
     /// A file in memory that is removed when its last descriptor is closed.
@@ -55,7 +55,7 @@ namespace Squeal
       process::environment result;
       if (const char *path = std::getenv("LD_LIBRARY_PATH"))
         result["LD_LIBRARY_PATH"] = path;
-      result["HOME"] = "/dev/null"; // libraries cannot store preferences: not even root can create a folder there
+      result["HOME"] = "/dev/null"; // prevents libraries from storing preferences: even root cannot create a folder there
       return result;
     }
 
@@ -84,13 +84,13 @@ namespace Squeal
       std::string text;
       for (const std::size_t end = std::min(lines.size(), first + quoted_lines); first < end; ++first)
         text += "\n    | " + shown(lines[first]);
-      return text.empty() ? "It printed nothing" : "Its log:" + text;
+      return text.empty() ? "Gmsh printed nothing" : "Log of Gmsh:" + text;
     }
 
     [[noreturn]] void refuse_memory(const MesherLimits &limits, const std::string &where)
     {
       throw MeshError("Gmsh needs more than " + exact_text(std::round(limits.bytes / 1e7) / 100.) + " GB for this geometry", where,
-                      "use larger elements or fewer of them, or raise Geometry/Meshing memory limit");
+                      "use larger or fewer elements, or raise Geometry/Meshing memory limit");
     }
 
     /// Throws the error for a process that ended without a reply.
@@ -98,7 +98,7 @@ namespace Squeal
     {
       if (WIFSIGNALED(status) && WTERMSIG(status) == SIGALRM)
         throw MeshError("Gmsh did not finish within " + exact_text(limits.seconds) + " s", where,
-                        "use larger elements, look for an endless loop in the geometry, or raise Geometry/Meshing time limit");
+                        "use larger elements, remove endless loops from the geometry, or raise Geometry/Meshing time limit");
       if (WIFSIGNALED(status) && WTERMSIG(status) == SIGSYS)
         throw ForbiddenAction("starts a program, writes a file or opens a connection");
       if (WIFSIGNALED(status))
@@ -106,10 +106,10 @@ namespace Squeal
           // Gmsh 4.13 prints this message and crashes; 4.8 throws std::bad_alloc
           if (log.find("Out of memory") != std::string::npos)
             refuse_memory(limits, where);
-          throw MeshError(std::string("Gmsh crashed (") + strsignal(WTERMSIG(status)) + "). " + quoted(log), where, repair);
+          throw MeshError(std::string("Gmsh crashed (") + strsignal(WTERMSIG(status)) + "). " + quoted(log), where,
+                          text(repair, ", or use larger elements if the machine ran out of memory"));
         }
-      throw MeshError("The geometry ended Gmsh before the mesh was complete. " + quoted(log), where,
-                      "remove Exit or Abort from the geometry");
+      throw MeshError("Gmsh ended before the mesh was complete. " + quoted(log), where, "remove Exit and Abort from the geometry");
     }
 
     GmshMesh mesh_from(const std::string &reply, const std::string &log, const MesherLimits &limits, const std::string &where)
@@ -124,7 +124,7 @@ namespace Squeal
           case MesherReply::out_of_memory:
             refuse_memory(limits, where);
         }
-      throw MeshError("The mesher gave an unknown reply", where, "rebuild the whole program");
+      throw MeshError("The reply of squeal_mesher is unknown", where, "rebuild squeal and squeal_mesher from the same sources");
     }
   } // namespace
 

@@ -15,7 +15,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Smallest overlap relative to the slave area, relative to the area of an element, and D_j relative to ∫ Ñ_j [-].
+    /// Smallest overlap relative to the slave area and to the area of an element, and smallest D_j relative to ∫ Ñ_j [-].
     constexpr double least_overlap = 1e-3, least_of_element = 0.02, least_of_node = 0.1;
 
     /// Smaller weights are rounding errors [-].
@@ -24,8 +24,8 @@ namespace Squeal
     /// Largest mean cosine between the normals of opposite surfaces [-].
     constexpr double largest_cosine = -0.5;
 
-    /// Largest gap relative to the mean size of the slave faces, and gap above which a note is issued: chords of curved faces cause smaller
-    /// gaps [-].
+    /// Largest gap and largest gap without a note, relative to the mean size of the slave faces [-]. Chords of curved faces cause smaller
+    /// gaps than the second limit.
     constexpr double touching_gap = 0.5, noted_gap = 0.05;
 
     /// Ratio of slave to master face sizes above which the slave pressure oscillates [-].
@@ -96,7 +96,7 @@ namespace Squeal
       std::set<unsigned int>         neighbours; ///< nodes of the same overlapping elements
     };
 
-    /// Adds the dual functions of an element; does nothing if its functions are linearly dependent on the overlap.
+    /// Adds the dual functions of an element; does nothing if the overlap is too small for linearly independent shape functions.
     void add_element(std::vector<SlaveNode> &nodes,
                      const SurfaceElement   &element,
                      const FaceMatrix       &transformation,
@@ -124,7 +124,8 @@ namespace Squeal
         }
     }
 
-    /// Slave nodes of each mortar row, by the node of the row: nodes with little overlap are merged with the neighbour of largest area.
+    /// Slave nodes of each mortar row, by the node of the row: nodes with little overlap are merged with the neighbour that has the
+    /// largest area.
     std::map<unsigned int, std::vector<unsigned int>> grouped(const std::vector<SlaveNode> &nodes)
     {
       std::map<unsigned int, std::vector<unsigned int>> groups;
@@ -205,11 +206,12 @@ namespace Squeal
     {
       const char *where = "surfaces disc_contact and pin_contact";
       if (mean_cosine > largest_cosine)
-        throw MeshError(text("the contact faces do not face each other: the mean cosine between their normals is ", mean_cosine), where,
-                        "make the normals of the two surfaces opposite");
+        throw MeshError(text("the surfaces do not face each other: the mean cosine between their outward normals is ", mean_cosine,
+                             ", but at most ", largest_cosine, " is allowed"),
+                        where, "name the two surfaces at which the bodies touch, and move the bodies to opposite sides of the contact");
       if (!(mortar.overlap_area >= least_overlap * mortar.slave_area) || mortar.rows.empty())
-        throw MeshError(text("the faces overlap by ", mortar.overlap_area, " m² of ", mortar.slave_area, " m²"), where,
-                        text("position them opposite each other, with a gap below ", search_distance, " m, or name other surfaces"));
+        throw MeshError(text("the surfaces overlap by ", mortar.overlap_area, " m² of ", mortar.slave_area, " m²"), where,
+                        text("move them opposite each other, with a gap below ", search_distance, " m, or name other surfaces"));
     }
   } // namespace
 
@@ -257,8 +259,8 @@ namespace Squeal
     if (coupling.largest_gap > noted_gap / touching_gap * largest_gap)
       notes.push_back(text("gaps or penetrations of up to ", coupling.largest_gap, " m: the faces are coupled as if they touched"));
     if (coupling.coarseness > noted_coarseness)
-      notes.push_back(text("faces of ", slave, " are up to ", coupling.coarseness, " times as large as those of ", master,
-                           ": only the coarser side resolves the pressure"));
+      notes.push_back(text("faces of ", slave, " are up to ", coupling.coarseness, " times as large as the opposite faces of ", master,
+                           ": the coarser side limits the resolution of the pressure"));
     return notes;
   }
 } // namespace Squeal

@@ -9,7 +9,7 @@ namespace Squeal
 {
   namespace
   {
-    // Radii relative to the outline: all rings except the innermost lie outside the first; the corners of the blocks are at the second
+    // Radii relative to the outline: inner end of all rings except the innermost, and corners of the blocks
     constexpr double rings_end = 0.8, blocks_end = 0.6;
 
     /// Shape of the sides of the triangle around the blocks: 0 for arcs, 1 for chords.
@@ -58,7 +58,6 @@ namespace Squeal
       return points.size() - 1;
     };
 
-    // Centre and inner nodes of the spokes
     const Plan::Point  centre      = mean_point(loop, points);
     const unsigned int centre_node = add_point(centre);
     for (unsigned int s = 0; s < 3; ++s)

@@ -53,11 +53,11 @@ namespace Squeal
       std::vector<unsigned int> loop = closed_polygon(curve.edges);
       if (loop.empty())
         throw MeshError("Physical curve '" + curve.name + "' is not one closed curve", where,
-                        "give the curves around exactly one hole of the plan this name");
+                        "assign this name to the curves around exactly one hole of the plan");
       if (loop.size() % 6 != 0)
         throw MeshError("Physical curve '" + curve.name + "' has " + std::to_string(loop.size()) +
-                          " nodes; three equal blocks that fill a pin need a multiple of 6",
-                        where, "build it from three arcs with 'Transfinite Curve' and equal numbers of nodes");
+                          " nodes; the three equal blocks in a pin require a multiple of 6",
+                        where, "draw it with three arcs that have equal numbers of nodes by 'Transfinite Curve'");
       if (signed_area(loop, points) < 0.)
         std::reverse(loop.begin(), loop.end());
 
@@ -97,16 +97,15 @@ namespace Squeal
     void check_pins(const Plan &plan, const std::string &where)
     {
       if (plan.pins.empty())
-        throw MeshError("The plan has no pin, so there is no contact", where,
-                        "add a physical surface or curve 'pin_top_1' or 'pin_bottom_1'");
+        throw MeshError("The plan has no pin", where, "add a physical surface or curve 'pin_top_1' or 'pin_bottom_1'");
       std::map<std::pair<Plan::Side, unsigned int>, const Plan::Pin *> pin_at_node;
       for (const Plan::Pin &pin : plan.pins)
         {
           if (pin.faces.empty())
-            throw MeshError("'" + pin.name + "' has no faces", where, "check the entities with this name");
+            throw MeshError("'" + pin.name + "' has no faces", where, "assign a meshed surface or a curve around a hole to this name");
           for (const Plan::Pin &other : plan.pins)
             if (&other != &pin && other.name == pin.name)
-              throw MeshError("'" + pin.name + "' names a surface and a curve", where, "keep one of them");
+              throw MeshError("'" + pin.name + "' is the name of a surface and of a curve", where, "remove or change one of the two names");
           for (const unsigned int node : nodes_of(plan.faces_of(pin)))
             if (const auto [entry, is_new] = pin_at_node.emplace(std::make_pair(pin.side, node), &pin); !is_new)
               throw MeshError("'" + entry->second->name + "' and '" + pin.name +
@@ -131,14 +130,15 @@ namespace Squeal
       void add_surface(const GmshMesh::Group &group)
       {
         if (group.name != PhysicalNames::disc && !is_pin(group.name))
-          throw MeshError("The plan has a physical surface '" + group.name + "'", where,
-                          "known names of surfaces in a plan: disc, pin_top..., pin_bottom...");
+          throw MeshError("The plan has a physical surface with the unknown name '" + group.name + "'", where,
+                          "use the names disc, pin_top..., pin_bottom... for surfaces of a plan");
         std::vector<unsigned int> faces;
         for (const auto &[type, elements] : group.elements)
           {
             if (type != "Quadrilateral 4")
-              throw MeshError("Surface '" + group.name + "' has " + std::to_string(elements.size()) + " elements of type '" + type + "'",
-                              where, "only four-node quadrilaterals can be extruded to hexahedra");
+              throw MeshError("Surface '" + group.name + "' has elements of the unsupported type '" + type + "' (" +
+                                std::to_string(elements.size()) + ")",
+                              where, "mesh the plan with four-node quadrilaterals, which are extruded to hexahedra");
             for (const GmshMesh::Element &element : elements)
               faces.push_back(add_face(element));
           }
@@ -161,23 +161,23 @@ namespace Squeal
             {
               const Plan::Edge edge = {{plan_node[element.nodes[0]], plan_node[element.nodes[1]]}};
               if (edge[0] == no_node || edge[1] == no_node)
-                throw MeshError("Physical curve '" + group.name + "' is not on the surface 'disc'", where,
+                throw MeshError("Physical curve '" + group.name + "' has a node that is not on a surface of the plan", where,
                                 "name only curves that bound the disc or a hole in it");
               curve.edges.push_back(edge);
             }
         for (const char *reserved :
              {PhysicalNames::disc_contact, PhysicalNames::pin_contact, PhysicalNames::pin_clamp, PhysicalNames::pin_side})
           if (group.name == reserved)
-            throw MeshError("The plan has a physical curve '" + group.name + "'", where,
-                            "choose another name; this one is reserved for faces of the extrusion");
+            throw MeshError("The name '" + group.name + "' of a physical curve is reserved for faces of the extrusion", where,
+                            "choose another name for the curve");
         (is_pin(group.name) ? pin_curves : plan.curves).push_back(curve);
       }
 
       void add_centre(const GmshMesh::Group &group)
       {
         if (group.elements.size() != 1 || group.elements.begin()->second.size() != 1)
-          throw MeshError("Physical point '" + group.name + "' is not one point", where,
-                          "name one point, the centre of the pin of this name");
+          throw MeshError("Physical point '" + group.name + "' does not consist of exactly one point", where,
+                          "assign this name to one point only, the centre of the pin with this name");
         const auto &point   = mesh.points[group.elements.begin()->second[0].nodes[0]];
         centres[group.name] = {point[0], point[1]};
       }
@@ -207,8 +207,8 @@ namespace Squeal
             add_pin(curve.name, hole->second);
           }
         if (!centres.empty())
-          throw MeshError("Physical point '" + centres.begin()->first + "' is not the centre of any pin", where,
-                          "give it the name of a physical curve around a pin, or remove its name");
+          throw MeshError("Physical point '" + centres.begin()->first + "' has no physical curve with the same name around a pin", where,
+                          "give the point the name of such a curve, or remove its name");
       }
 
       bool has_disc = false;
@@ -245,7 +245,7 @@ namespace Squeal
             const auto &[x, y, z] = mesh.points[node];
             if (std::abs(z) > 1e-9 * (std::abs(x) + std::abs(y)))
               throw MeshError("The plan has a node at z = " + std::to_string(z) + " m", where,
-                              "draw the plan in z = 0; a solid needs physical volumes");
+                              "draw the plan in the plane z = 0, or define physical volumes for a solid");
             plan_node[node] = plan.points.size();
             plan.points.emplace_back(x, y);
           }
@@ -335,7 +335,7 @@ namespace Squeal
       for (const Plan::Edge &edge : curve.edges)
         if (outline.count(sorted(edge)) == 0)
           throw MeshError("Physical curve '" + curve.name + "' is not on the boundary of the disc", where,
-                          "name only curves that become a surface of the extruded disc");
+                          "name only curves on the boundary of the disc");
     return plan;
   }
 

@@ -38,7 +38,7 @@ namespace Squeal
     // Sine of a corner angle below which a face is bad: well above the limit of check_mesh(), and below the values in regular plans
     constexpr double least_sine = 0.1;
 
-    // Rows of faces around bad faces that are also moved; there are more rows between neighbouring pins
+    // Rows of faces around bad faces that also move; there are more rows between neighbouring pins
     constexpr int n_rings = 6;
 
     constexpr int    max_untangling_sweeps = 100; ///< ε has its smallest value during a third of the sweeps
@@ -224,7 +224,6 @@ namespace Squeal
     constexpr int displacement_sweeps = 200;
     constexpr int displacement_steps  = 5;
 
-    /// Smallest shape quality of the four corners.
     double shape(const Plan::Face &face, const std::vector<Plan::Point> &points)
     {
       double worst = 1.;
@@ -262,7 +261,6 @@ namespace Squeal
 
     void smooth(const std::vector<Plan::Face> &faces, const std::vector<bool> &fixed, std::vector<Plan::Point> &points)
     {
-      // Faces around the movable nodes
       std::vector<std::vector<unsigned int>> faces_at(points.size());
       for (unsigned int face = 0; face < faces.size(); ++face)
         for (const unsigned int node : faces[face])
@@ -298,7 +296,6 @@ namespace Squeal
               if (before >= good_shape)
                 continue;
 
-              // Use the mean of the neighbours if it is better
               const Plan::Point place = points[node];
               Plan::Point       sum;
               unsigned int      count = 0;

@@ -137,17 +137,18 @@ namespace Squeal
     const double needed = size.memory(n_modes), available = available_memory(communicator);
     if (!(needed > available))
       return;
-    throw MeshError(text("The model has about ", size.cells, " cells and ", size.dofs, " dofs, which need about ", needed / 1e9,
-                         " GB of memory; ", available / 1e9, " GB are available"),
-                    where,
-                    "raise Geometry/Element size, lower Geometry/Disc layers, Geometry/Pin layers or Geometry/Nodes per pin face, or lower "
-                    "Band/Maximum frequency");
+    throw MeshError(
+      text("The model has about ", size.cells, " cells and ", size.dofs, " dofs, which need about ", needed / 1e9, " GB of memory; ",
+           available / 1e9, " GB are available"),
+      where,
+      "use a coarser mesh (raise Geometry/Element size; lower Geometry/Disc layers, Geometry/Pin layers or Geometry/Nodes per "
+      "pin face); a lower Band/Maximum frequency reduces the memory of the modes");
   }
 
   namespace
   {
-    /// Area fraction of the disc's faces that a rotation about an axis maps onto themselves, n·(a × (x − c)) ≈ 0. Returns the smaller one
-    /// of the fractions of lateral faces, which determine the position of the axis, and of the other faces, which determine its direction.
+    /// Area fraction of the disc's faces that a rotation about an axis maps onto themselves, n·(a × (x − c)) ≈ 0: the smaller of the
+    /// fractions for lateral faces, which determine the position of the axis, and for other faces, which determine its direction.
     double round_share(const Mesh &mesh, const std::vector<CellFace> &faces, const Mesh::Point &c, const dealii::Tensor<1, 3> &a)
     {
       constexpr double largest_lateral_cosine = 0.5, fitting_motion = 5e-3;
@@ -218,9 +219,9 @@ namespace Squeal
           return text("(", rounded(x[0]), ", ", rounded(x[1]), ", ", rounded(x[2]), ")");
         };
         throw MeshError(
-          "The disc turns about the z axis, but its axis of revolution passes through " +
+          "The disc rotates about the z axis, but its axis of revolution passes through " +
             print(centre, std::pow(10., std::floor(std::log10(1e-3 * radius)))) + " m in direction " + print(axis, 1e-3),
-          where, "move and turn all volumes so that the axis of the disc is the z axis, e.g. by Translate and Rotate in the geometry");
+          where, "move and rotate all volumes so that the axis of the disc is the z axis, for example with Translate and Rotate in Gmsh");
       }
     return about_z >= least_round;
   }
@@ -246,10 +247,8 @@ namespace Squeal
                                   " m long in ", name, ", whose elements measure up to ", edge,
                                   " m: the mesh does not resolve the modes of the band"),
                              "parameter Band/Maximum frequency",
-                             text("lower it below ", wave * degree / edge * frequency,
-                                  " Hz, choose smaller elements, or correct the modulus and "
-                                  "density in ",
-                                  materials.section_of(name)));
+                             text("lower this parameter below ", wave * degree / edge * frequency,
+                                  " Hz, choose smaller elements, or correct the modulus and density in ", materials.section_of(name)));
       }
   }
 } // namespace Squeal

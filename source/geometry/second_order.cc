@@ -35,7 +35,6 @@ namespace Squeal
       return {{std::min(a, b), std::max(a, b)}};
     }
 
-    /// Edges of a face of a cell.
     std::vector<Edge> edges_of(const CellFace &face)
     {
       std::vector<Edge> edges;
@@ -92,7 +91,6 @@ namespace Squeal
         return {first, std::find_if(first, faces.end(), [&](const CellFace &face) { return face.key != key; })};
       }
 
-      /// Finds the cylindrical surfaces of each body.
       void find_surfaces()
       {
         for (const char *name :
@@ -144,7 +142,7 @@ namespace Squeal
             attach(ring.face, ring.axis);
       }
 
-      /// Opposite face of a hexahedron, as a face of the next cell; nothing without a next cell or if the face is not round.
+      /// Opposite face of a hexahedron, as a face of the next cell; empty without a next cell or if the face is not round.
       std::optional<CellFace> face_behind(const CellFace &face, const Point<2> &axis) const
       {
         if (mesh.cells[face.cell].shape != Shape::hexahedron)
@@ -225,7 +223,6 @@ namespace Squeal
         , cylinders(cylinders)
       {}
 
-      /// Adds nodes to all cells and faces.
       void add()
       {
         for (const Mesh::Cell &cell : mesh.cells)

@@ -209,9 +209,8 @@ namespace Squeal
           if (step.squaredNorm() < 1e-16)
             return r;
         }
-      throw MeshError("a face is too distorted: no reference coordinates belong to one of its points",
-                      "surfaces disc_contact and pin_contact",
-                      "mesh the contact faces with elements that are less distorted or less curved");
+      throw MeshError("no reference coordinates were found for a point of a face: the face is too distorted",
+                      "surfaces disc_contact and pin_contact", "use less distorted or less curved elements on these surfaces");
     }
 
     /// Projections of both surfaces onto the plane of a slave facet.
@@ -280,7 +279,6 @@ namespace Squeal
       return are_affine ? polynomials : others;
     }
 
-    /// Adds the integrals over a polygon.
     void integrate(const Polygon                      &polygon,
                    const std::vector<QuadraturePoint> &rule,
                    const Vector3d                     &normal,

@@ -26,7 +26,7 @@ namespace Squeal
       std::vector<unsigned int> numbers;
     };
 
-    /// Named surface with faces from the cells, outwards and with all nodes; @p outer: all outer faces of the mesh.
+    /// Named surface with outward faces and all their nodes; @p outer: all outer faces of the mesh.
     NumberedPatch patch_of(const Mesh &mesh, const std::vector<CellFace> &outer, const std::string &surface)
     {
       std::set<std::array<unsigned int, 4>> named;
@@ -91,7 +91,7 @@ namespace Squeal
         if (coupling.overlap_area < least_tied * coupling.slave_area)
           throw MeshError(text("only ", std::round(100. * coupling.overlap_area / coupling.slave_area),
                                " % of the first surface is opposite the ", "second one"),
-                          where, "exchange the surfaces if the first one is the larger, or correct their positions");
+                          where, "exchange the surfaces if the first one is larger, or correct their positions");
         for (const MortarRow &row : coupling.rows)
           {
             double self = 0.;
@@ -101,7 +101,7 @@ namespace Squeal
             const auto [entry, is_new] = result.masters.emplace(slave.numbers[row.node], SlaveRows::mapped_type());
             if (!is_new)
               throw MeshError(text("a node of the first surface is tied twice, at (", slave.patch.points[row.node], ") m"), where,
-                              "tie each face to one other surface; exchange the surfaces of one of the ties");
+                              "tie each face to only one other surface, or exchange the two surfaces of one tie");
             for (const auto &[node, weight] : row.master)
               entry->second.emplace_back(master.numbers[node], weight / self);
             for (const auto &[node, weight] : row.slave)
@@ -112,7 +112,7 @@ namespace Squeal
           result.notes.push_back(first + " / " + second + ", tied: " + note);
       }
     if (!resolve(result.masters))
-      throw MeshError("tied faces depend on each other circularly", "parameter Contact/Tied", "exchange the surfaces of one of the ties");
+      throw MeshError("tied faces depend on each other circularly", "parameter Contact/Tied", "exchange the two surfaces of one tie");
     merge_masters(result.masters);
     return result;
   }

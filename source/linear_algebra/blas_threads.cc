@@ -9,7 +9,7 @@ namespace Squeal
 {
   namespace
   {
-    /// A function of an optional library; null if it does not exist: Debian's reference BLAS lacks functions of OpenBLAS.
+    /// A function of an optional library; null if it does not exist, for example OpenBLAS functions in Debian's reference BLAS.
     template <typename Function>
     Function *loaded(const char *name)
     {

@@ -16,7 +16,8 @@ namespace Squeal
     {
       if (info != 0)
         throw SolverError("LAPACK's " + routine + " failed with info = " + std::to_string(info),
-                          "a small dense eigenvalue or singular value problem", "check that the reduced matrices are finite");
+                          "a small dense eigenvalue or singular value problem",
+                          "check that the matrices are finite and that mass matrices are positive definite");
     }
 
     /// LAPACK stores the vector of a conjugate pair as two real columns, real part first.

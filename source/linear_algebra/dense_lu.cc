@@ -71,8 +71,8 @@ namespace Squeal
   {
     RealLU factors(A);
     if (!(factors.reciprocal_condition() > singular_condition))
-      throw SolverError("a dense matrix of size " + std::to_string(A.rows()) + " is singular to working precision", what,
-                        "check for linearly dependent vectors or a parameter value at which the problem degenerates");
+      throw SolverError("a dense matrix of size " + std::to_string(A.rows()) + " is singular to working precision or not finite", what,
+                        "check for linearly dependent vectors, or for a parameter value at which the problem becomes singular");
     return factors;
   }
 

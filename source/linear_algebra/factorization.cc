@@ -12,7 +12,7 @@ namespace Squeal
     {
       if (!(A.columns() == A.rows()))
         throw SolverError("a matrix of " + std::to_string(A.n_rows()) + " rows and " + std::to_string(A.n_columns()) +
-                            " columns, or with rows and columns distributed differently, cannot be factorised",
+                            " columns cannot be factorised: it is not square, or its rows and columns are distributed differently",
                           what, "this is an error in the program: please report it");
     }
   } // namespace
@@ -20,19 +20,19 @@ namespace Squeal
   void throw_not_positive_definite(const std::string &library, const std::string &what)
   {
     throw SolverError("the matrix is not positive definite to working precision (" + library + ")", what,
-                      "check the boundary conditions: a body with rigid-body motions has a singular stiffness");
+                      "check the boundary conditions (a body that can move freely has a singular stiffness) and the materials or matrices");
   }
 
   void throw_singular(const std::string &library, const std::string &what)
   {
     throw SolverError("the matrix is singular to working precision (" + library + ")", what,
-                      "check the boundary conditions, or move the shift away from an eigenvalue");
+                      "check the boundary conditions, or change Band/Maximum frequency to move the shift away from an eigenvalue");
   }
 
   void throw_library_failure(const std::string &library, const std::string &failure, const std::string &what)
   {
     throw SolverError(library + " failed: " + failure, what,
-                      "choose another factorisation library, a coarser mesh, or a machine with more memory");
+                      "use a coarser mesh or a machine with more memory, or choose another library by Linear algebra/Factorization");
   }
 
   std::unique_ptr<Factorization> factorize_positive_definite(const SparseMatrix        &A,
@@ -42,8 +42,8 @@ namespace Squeal
     check_square(A, what);
     const int n_processes = A.rows().n_processes();
     if (library == FactorizationLibrary::cholmod && n_processes > 1)
-      throw SolverError("CHOLMOD was requested on " + std::to_string(n_processes) + " processes, but runs on one only", what,
-                        "choose MUMPS or automatic as factorisation library, or run on one process");
+      throw SolverError("CHOLMOD was requested on " + std::to_string(n_processes) + " processes, but runs on one process only", what,
+                        "set Linear algebra/Factorization = MUMPS or automatic, or run on one process");
     if (library == FactorizationLibrary::mumps || n_processes > 1)
       return mumps_factorization(A, true, what);
     return cholmod_factorization(A, what);

@@ -17,13 +17,10 @@ namespace Squeal
   /// MUMPS's LDLᵀ without numerical pivoting (positive definite) or LU (general).
   std::unique_ptr<Factorization> mumps_factorization(const SparseMatrix &A, bool positive_definite, const std::string &what);
 
-  /// Throws the error for a matrix that is not positive definite.
   [[noreturn]] void throw_not_positive_definite(const std::string &library, const std::string &what);
 
-  /// Throws the error for a singular matrix.
   [[noreturn]] void throw_singular(const std::string &library, const std::string &what);
 
-  /// Throws the error for any other failure of a library.
   [[noreturn]] void throw_library_failure(const std::string &library, const std::string &failure, const std::string &what);
 
   /// Pivots below this fraction of the original diagonal entry are rounding errors [-].

@@ -68,7 +68,7 @@ namespace Squeal
       return values.front() > 0. ? values.back() / values.front() : std::numeric_limits<double>::infinity();
     }
 
-    /// Nonzero columns of X, scaled; nothing if all are zero. @p pairs receives the eigenpairs of their Gram matrix.
+    /// Nonzero columns of X, scaled; empty if all are zero. @p pairs receives the eigenpairs of their Gram matrix.
     std::optional<MultiVector> scaled_columns(const SparseMatrix &M, MultiVector X, const Scaling scaling, RealPairs &pairs)
     {
       const DenseMatrix   G = weighted_gram(X, M);
@@ -78,7 +78,7 @@ namespace Squeal
         {
           if (!std::isfinite(G(j, j)))
             throw SolverError("vector " + std::to_string(j) + " contains infinite or undefined values", "orthonormalisation",
-                              "check the step that computed the vectors");
+                              "check the parameters and matrices for extreme or undefined values");
           if (G(j, j) > 0.)
             {
               nonzero.push_back(j);
@@ -196,8 +196,8 @@ namespace Squeal
     const int                  n = X.n_columns();
     std::optional<MultiVector> W = orthonormalize_if_any(M, Q, std::move(X), tolerance, axes);
     if (!W)
-      throw SolverError("all " + std::to_string(n) + " vectors are zero or linearly dependent on existing ones", "orthonormalisation",
-                        "give other vectors, or a smaller tolerance");
+      throw SolverError("all " + std::to_string(n) + " vectors are zero or linearly dependent on existing vectors", "orthonormalisation",
+                        "use other vectors, or a smaller tolerance");
     return std::move(*W);
   }
 
@@ -206,7 +206,7 @@ namespace Squeal
     const std::optional<MultiVector> W = orthonormal_axes(M, nullptr, X, tolerance, Scaling::none, FirstProjection::wanted, axes);
     if (!W)
       throw SolverError("all " + std::to_string(X.n_columns()) + " vectors are zero", "proper orthogonal decomposition",
-                        "give other vectors");
+                        "use nonzero vectors");
     if (maximum < 1)
       throw SolverError("a basis of " + std::to_string(maximum) + " vectors was requested", "proper orthogonal decomposition",
                         "request at least one vector");

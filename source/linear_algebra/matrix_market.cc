@@ -35,7 +35,7 @@ namespace Squeal
         , stream(path)
       {
         if (!stream)
-          refuse(text("the file cannot be opened: ", std::strerror(errno)));
+          refuse(text("the file cannot be opened: ", std::strerror(errno)), "correct the name or the permissions of the file");
       }
 
       [[noreturn]] void refuse(const std::string &what,
@@ -89,7 +89,7 @@ namespace Squeal
     if (header.size() != 5 || !is(0, "%%matrixmarket") || !is(1, "matrix") || !(is(2, "coordinate") || is(2, "array")))
       reader.refuse("the first line is not a Matrix Market header");
     if (!is(3, "real") && !is(3, "integer"))
-      reader.refuse(text("the matrix is ", header[3], ", not real"));
+      reader.refuse(text("the matrix is ", header[3], ", not real or integer"));
     const bool is_array = is(2, "array"), is_general = is(4, "general"), is_skew = is(4, "skew-symmetric");
     if (!is_general && !is_skew && !is(4, "symmetric"))
       reader.refuse(in_quotes(header[4]) + " is not general, symmetric or skew-symmetric");
@@ -99,9 +99,9 @@ namespace Squeal
       reader.refuse("the line of sizes does not have " + std::string(is_array ? "two" : "three") + " numbers");
     const int n_rows = reader.number<int>(sizes[0]), n_columns = reader.number<int>(sizes[1]);
     if (n_rows < 1 || n_columns < 1 || (!is_general && n_rows != n_columns))
-      reader.refuse(text("a matrix of size ", n_rows, " x ", n_columns, is_general ? "" : " is not square"));
+      reader.refuse(text("a matrix of size ", n_rows, " x ", n_columns, is_general ? " is empty" : " is empty or not square"));
     if (const double bytes = bytes_of_row * (double(n_rows) + n_columns); bytes > available_memory())
-      reader.refuse(text("a matrix of size ", n_rows, " x ", n_columns, " takes more than ", bytes / 1e9, " GB of memory"),
+      reader.refuse(text("a matrix of size ", n_rows, " x ", n_columns, " requires more than ", bytes / 1e9, " GB of memory"),
                     "correct the sizes, or run on a machine with more memory");
 
     std::vector<Eigen::Triplet<double>> entries;
@@ -110,9 +110,10 @@ namespace Squeal
       if (!std::isfinite(value))
         reader.refuse(text("the entry in row ", row, " and column ", column, " is not finite"));
       if (row < 1 || row > n_rows || column < 1 || column > n_columns)
-        reader.refuse(text("row ", row, " and column ", column, " are not those of a matrix of size ", n_rows, " x ", n_columns));
+        reader.refuse(text("row ", row, " and column ", column, " are outside a matrix of size ", n_rows, " x ", n_columns));
       if (!is_general && (row < column || (is_skew && row == column)))
-        reader.refuse(text("the entry in row ", row, " and column ", column, " is not below the diagonal of a ", header[4], " matrix"));
+        reader.refuse(text("the entry in row ", row, " and column ", column, is_skew ? " is not below" : " is above", " the diagonal of a ",
+                                                    header[4], " matrix"));
       if (value == 0.)
         return;
       entries.emplace_back(row - 1, column - 1, value);
@@ -132,24 +133,24 @@ namespace Squeal
                   used  = 0;
                 }
               if (words.empty())
-                reader.refuse("there are fewer entries than the sizes say");
+                reader.refuse("there are fewer entries than the sizes require");
               add(row, column, words[used++]);
             }
         if (used < words.size() || !reader.next().empty())
-          reader.refuse("there are more entries than the sizes say");
+          reader.refuse("there are more entries than the sizes allow");
       }
     else
       {
         const auto n = reader.number<long>(sizes[2]);
         if (n < 0)
-          reader.refuse(text(n, " is not a number of entries"));
+          reader.refuse(text("the number of entries is negative: ", n));
         for (long k = 0; k < n; ++k)
           {
             const std::vector<std::string> &words = reader.next();
             if (words.empty())
-              reader.refuse(text("there are ", k, " entries, not ", n));
+              reader.refuse(text("the file contains ", k, " entries, not ", n));
             if (words.size() != 3)
-              reader.refuse("an entry is not a row, a column and a value");
+              reader.refuse("an entry does not consist of a row, a column and a value");
             add(reader.number<int>(words[0]), reader.number<int>(words[1]), words[2]);
           }
         if (!reader.next().empty())

@@ -17,7 +17,7 @@ namespace Squeal
     void require(const bool condition, const char *operation)
     {
       if (!condition)
-        throw SolverError("the shapes of two sets of vectors do not fit together", operation,
+        throw SolverError("the shapes of two sets of vectors or coefficients do not match", operation,
                           "this is an error in the program: please report it");
     }
 
@@ -135,7 +135,7 @@ namespace Squeal
 
   void MultiVector::append(const MultiVector &X)
   {
-    require(!is_view() && X.n_local_rows() == n_rows, "columns behind others");
+    require(!is_view() && X.n_local_rows() == n_rows, "appended columns");
     own.conservativeResize(Eigen::NoChange, k + X.k);
     copy(X.local(), own.rightCols(X.k));
     k += X.k;

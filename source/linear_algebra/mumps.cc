@@ -20,7 +20,6 @@ namespace Squeal
     /// Number of right-hand sides per solve, which limits the memory of MUMPS and the solutions.
     constexpr int block_size = 64;
 
-    /// Matrix type passed to MUMPS.
     enum class MatrixKind
     {
       general           = 0,
@@ -171,7 +170,6 @@ namespace Squeal
         id.a_loc                = nullptr;
       }
 
-      /// Number of solution rows on this process.
       int n_solved() const
       {
         return id.info[22];

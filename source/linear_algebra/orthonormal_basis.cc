@@ -14,9 +14,8 @@ namespace Squeal
     /// A unit vector is linearly dependent if its remainder after Gram-Schmidt is below this norm [-].
     constexpr double dependent = 1e-13;
 
-    /// CholeskyQR2: Cholesky factors of XᴴX, twice (T. Fukaya et al., 2014), which takes only a few block products. Nothing if the
-    /// component of a column outside the span of the previous columns is below 10⁻³ of its norm, because squares of such components are
-    /// lost in rounding errors.
+    /// CholeskyQR2: Cholesky factors of XᴴX, twice (T. Fukaya et al., 2014), which takes only a few block products. Empty if the
+    /// component of a column outside the span of the previous columns is below 10⁻³ of its norm: its square would be lost in rounding.
     std::optional<OrthonormalBasis> basis_by_cholesky(const ComplexDenseMatrix &X)
     {
       constexpr double least_part = 1e-3;

@@ -75,9 +75,9 @@ namespace Squeal
   SparseDeterminant::SparseDeterminant(const SparseMatrix &M, const SparseMatrix *C, const SparseMatrix &K)
   {
     if (M.rows().n_processes() > 1)
-      throw SolverError("determinants of sparse matrices are computed by UMFPACK, which runs on one process, not on " +
+      throw SolverError("UMFPACK, which computes determinants of sparse matrices, runs on one process only, not on " +
                           std::to_string(M.rows().n_processes()),
-                        what, "run on one process, or take the determinant condensed to the contact nodes");
+                        what, "run on one process, or use the determinant condensed to the contact nodes");
     implementation = std::make_unique<Implementation>(M, C, K);
   }
 

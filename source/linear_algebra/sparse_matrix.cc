@@ -139,7 +139,7 @@ namespace Squeal
 
     [[noreturn]] void throw_misfit(const char *operation)
     {
-      throw SolverError("shapes or distributions do not fit together", operation, "this is an error in the program: please report it");
+      throw SolverError("shapes or distributions do not match", operation, "this is an error in the program: please report it");
     }
   } // namespace
 

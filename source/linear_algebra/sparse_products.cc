@@ -8,7 +8,6 @@ namespace Squeal
 {
   namespace
   {
-    /// Number of rows in a task.
     constexpr int rows_of_task = 2048;
 
     /// Computes at most @p width columns of A X in row-major storage, so that each entry of A is read only once.

@@ -17,14 +17,13 @@ namespace Squeal
 {
   namespace
   {
-    /// Tension of a closed node relative to the largest reaction, and overlap of an open node relative to the largest gap, count as
-    /// rounding errors up to this limit [-].
+    /// Limit up to which tension (relative to the largest reaction) and overlap (relative to the largest gap) are rounding errors [-].
     constexpr double rounding_of_contact = 1e-13;
     /// L = −Bᵀ, a condition of uniqueness, counts as satisfied if the difference relative to B is below this limit, the level of rounding
     /// errors [-].
     constexpr double symmetric_motions = 1e-10;
-    /// Two solutions are equal if the difference of their reactions relative to the largest reaction is below this limit: nodes may just
-    /// touch [-].
+    /// Two solutions are equal if the difference of their reactions relative to the largest reaction is below this limit [-]: nodes that
+    /// just touch may be open or closed.
     constexpr double same_reactions = 1e-8;
 
     /// Number of block steps without a decrease of violations before single nodes are toggled.
@@ -42,7 +41,6 @@ namespace Squeal
       double           pull, overlap; ///< largest tension [N] and overlap [m]
     };
 
-    /// Solves a problem for given active sets.
     class ActiveSetSolver
     {
     public:
@@ -254,12 +252,12 @@ namespace Squeal
       if (succeeds(pivot(solver, random_set(generator, n), problem.initial_gap)))
         return best->solution;
 
-    throw SolverError(
-      text("no steady sliding state was found at friction coefficient ", mu, ": ",
-           best ? text("in the best iterate ", best->violated.size(), " of ", n, " contact nodes violate the contact conditions, by ",
-                       best->pull, " N of tension and ", best->overlap, " m of overlap") :
-                  "with all nodes closed, the reactions are not determined"),
-      "steady sliding", "lower the friction coefficient or the gaps, or set Steady sliding/Contact state = equal load");
+    throw SolverError(text("no steady sliding state was found at friction coefficient ", mu, ": ",
+                           best ? text("in the best iterate, ", best->violated.size(), " of ", n,
+                                       " contact nodes violate the contact conditions, by up to ", best->pull, " N of tension and ",
+                                       best->overlap, " m of overlap") :
+                                  "the closed contact nodes do not determine the reactions in any attempt"),
+                      "steady sliding", "lower the friction coefficient or the gaps, or set Steady sliding/Contact state = equal load");
   }
 
   DenseMatrix reaction_rates(const ContactProblem    &problem,
@@ -295,7 +293,7 @@ namespace Squeal
         const Attempt attempt = pivot(solver, random_set(generator, n), problem.initial_gap);
         if (attempt && attempt->violated.empty() && attempt->solution.closed != solution.closed)
           {
-            // Nodes that just touch may count as closed or open: only solutions with different reactions differ
+            // Compare reactions, because nodes that just touch may count as closed or open
             const auto r       = as_column(solution.reactions);
             result.found_other = max_norm(as_column(attempt->solution.reactions) - r) / max_norm(r) > same_reactions;
             result.other       = attempt->solution;

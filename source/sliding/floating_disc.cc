@@ -32,8 +32,9 @@ namespace Squeal
     {
       const auto rigid = velocity.rigid_motion();
       if (!rigid)
-        throw SolverError("the disc moves freely, but its sliding velocity is not a rigid-body motion that a drive could prescribe",
-                          "steady sliding, parameter Operation/Sliding direction", "hold the disc by a mount (Mounts/Elastic mounts)");
+        throw SolverError("the disc is not fully held, and its sliding velocity is not a rigid-body motion that a drive could prescribe",
+                          "steady sliding, parameter Operation/Sliding direction",
+                          "hold the disc by Mounts/Elastic mounts, or choose the velocity of a rigid-body motion");
       const MultiVector motion = rigid_motions(model, 0) * DenseMatrix(*rigid);
       return motion * DenseMatrix::Constant(1, 1, 1. / std::sqrt(column_products(motion, *system.mass * motion)[0]));
     }
@@ -66,11 +67,12 @@ namespace Squeal
           const double      slip   = slips[j] / (size * std::sqrt(contact.tangential->rows().n()));
           const double      force  = pressing ? std::abs(gram(motion, *pressing)(0, 0)) / (size * column_norms(*pressing)[0]) : 0.;
           if ((mu > 0. && slip > no_slip) || force > no_slip)
-            throw SolverError(text("nothing holds ", body == PhysicalNames::disc ? "the disc" : body, " in its plane against the ",
-                                   mu > 0. && slip > no_slip ? "friction forces" : "pressure"),
+            throw SolverError(text("nothing holds ", body == PhysicalNames::disc ? "the disc" : body, " against the ",
+                                   mu > 0. && slip > no_slip ? "friction forces" : "pressure",
+                                   " in a direction that does not change the gaps"),
                               "steady sliding",
-                              "add a mount with radial or tangential stiffness (Mounts/Elastic mounts), or set Steady sliding/Contact "
-                              "state = equal load");
+                              "add stiffness in this direction (Mounts/Elastic mounts), for a disc usually radial or tangential, or set "
+                              "Steady sliding/Contact state = equal load");
         }
     }
 
@@ -79,13 +81,13 @@ namespace Squeal
     void refuse_unbalanced(const Eigen::VectorXd &y, const Eigen::VectorXd &forces, const DenseMatrix &of_contact)
     {
       if (max_norm(of_contact.transpose() * y) > no_slip * max_norm(of_contact.cwiseAbs().transpose() * y.cwiseAbs()))
-        throw SolverError("the disc and the bodies on it can tilt together, and friction is not balanced", "steady sliding",
-                          "hold the disc against tilting (Mounts/Elastic mounts)");
+        throw SolverError("the disc and the bodies on it can move together without changing a gap, and friction does work on this motion",
+                          "steady sliding", "hold the disc against this motion, for example against tilting (Mounts/Elastic mounts)");
       const Eigen::VectorXd work         = y.cwiseProduct(forces);
       const double          sum_of_sizes = work.lpNorm<1>();
       if (sum_of_sizes > 0. && std::abs(work.sum()) / sum_of_sizes > equal_loads)
         throw SolverError("the disc floats between its backplates, and the loads on them are not in equilibrium", "steady sliding",
-                          "give loads that balance each other, or a mount that holds the disc along them (Mounts/Elastic mounts)");
+                          "use loads that balance each other, or hold the disc in their direction (Mounts/Elastic mounts)");
     }
   } // namespace
 
@@ -106,8 +108,8 @@ namespace Squeal
         if (!others)
           continue;
         if (body > 0 && !(pressing && max_norm(gram(rigid_motions(model, body), *pressing)) > 0.))
-          throw SolverError("nothing holds " + name + ", and no pressure acts on it", "steady sliding",
-                            "hold it by Mounts/Elastic mounts or pin_clamp, or name its back in Steady sliding/Pressed faces");
+          throw SolverError("nothing holds " + name + " completely, and no pressure acts on it", "steady sliding",
+                            "hold it by Mounts/Elastic mounts or pin_clamp, or add its back to Steady sliding/Pressed faces");
         const auto [balanced, unchanged] = contact_motions(*contact.normal, *others);
         if (unchanged)
           refuse_forces_on(*unchanged, contact, name, operation.friction_coefficient, pressing);

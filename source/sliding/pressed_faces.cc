@@ -65,17 +65,17 @@ namespace Squeal
         throw ParameterError(what, "parameter Steady sliding/Pressed faces, surface " + name, change);
       };
       if (face.of_disc > 0.)
-        refuse("the pressed face is part of the disc", "name faces of the bodies that are pressed on the disc");
+        refuse("the pressed face is on the disc", "use faces of the bodies that are pressed against the disc");
       if (face.in_contact > 0.)
-        refuse("the pressed face is in contact with the disc", "name the back of the body");
+        refuse("the pressed face is in contact with the disc", "use the back of the body");
       if (face.clamped > 0.)
-        refuse("the pressed face is clamped: the clamp would carry the load",
-               "hold the body by Mounts/Elastic mounts that do not constrain it along the load");
+        refuse("the pressed face has clamped nodes, and the clamp would carry the load",
+               "instead of pin_clamp, use Mounts/Elastic mounts without stiffness in the direction of the load");
       if (!(face.area_normals.rowwise().sum().norm() > least_resultant * face.area))
-        refuse("the face is closed around its body: a pressure on it has no resultant", "name a face on one side of the body");
+        refuse("the pressed face surrounds its body: a pressure on it has almost no resultant", "use a face on one side of the body");
       for (std::size_t body = 0; body < directions.size(); ++body)
         if (face.area_normals.col(body).dot(directions[body].direction) > 0.)
-          refuse("a pressure on the face pulls " + model.component_names()[body] + " away from the disc", "name the back of the body");
+          refuse("a pressure on the face pushes " + model.component_names()[body] + " away from the disc", "use the back of the body");
     }
   } // namespace
 

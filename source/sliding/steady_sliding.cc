@@ -81,12 +81,13 @@ namespace Squeal
           result.loads[number] = load.load;
       for (const double load : result.loads)
         if (!(load > 0.))
-          throw ParameterError("a pin that Steady sliding/Loads does not list has no load", "parameter Operation/Load per side",
-                               "give a positive load, or list every pin");
+          throw ParameterError("a pin that is not listed in Steady sliding/Loads has no load", "parameter Operation/Load per side",
+                               "set a positive load per side, or list every pin");
       return result;
     }
 
-    /// Problem condensed to the contact nodes. Free @p motions follow the motions of the backplates; @p pressing: forces of a pressure.
+    /// Problem condensed to the contact nodes. Its motions are those of the backplates, then the free @p motions; @p pressing: forces of a
+    /// pressure.
     ContactProblem contact_problem(const SlidingModel               &sliding,
                                    const Backplates                 &plates,
                                    const Eigen::VectorXd            &gaps,
@@ -287,9 +288,10 @@ namespace Squeal
         const unsigned int pin    = interface[c].pin;
         const double       height = heights[pin];
         if (std::abs(gaps[c]) >= height)
-          throw ParameterError(
-            "the gap of " + exact_text(gaps[c]) + " m is larger than the height of the pin, " + exact_text(height) + " m",
-            "parameter Steady sliding/Gaps, pin " + model.component_names()[pin], "gaps are given in metres: 1e-5 is 10 micrometres");
+          throw ParameterError("the gap of " + exact_text(gaps[c]) + " m is not smaller than the height of the pin, " + exact_text(height) +
+                                 " m",
+                               "parameter Steady sliding/Gaps, pin " + model.component_names()[pin],
+                               "give smaller gaps or tapers, in metres (1e-5 is 10 micrometres)");
         double &of_plate = smallest[plates.of_pin[pin]];
         of_plate         = std::min(of_plate, gaps[c]);
       }
@@ -297,7 +299,7 @@ namespace Squeal
       for (const double gap : smallest)
         if (gap >= parameters.displacement)
           throw ParameterError("the displacement of " + exact_text(parameters.displacement) +
-                                 " m closes no gap on one side, where the smallest is " + exact_text(gap) + " m",
+                                 " m does not close the smallest gap of one backplate, " + exact_text(gap) + " m",
                                "parameters Steady sliding/Displacement and Gaps", "raise the displacement or lower the gaps");
   }
 

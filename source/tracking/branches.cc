@@ -92,7 +92,7 @@ namespace Squeal
       };
       add_overlaps(carried.right, modes.points[k + 1].right);
       add_overlaps(carried.left, modes.points[k + 1].left);
-      // Prefer modes with the same sign of growth, even if the growth is slow: it may be the only distinction
+      // Prefer modes with the same sign of growth, which may be the only distinction
       const auto   grow_alike = [](const Complex &x, const Complex &y) { return growth_class(x) == growth_class(y); };
       const double weight     = block.resolved ? closeness_weight : 1.;
       return best_assignment(n, n, [&](const int i, const int j) {
@@ -242,14 +242,15 @@ namespace Squeal
   {
     for (std::size_t i = 1; i < grid.size(); ++i)
       if (!(grid[i] > grid[i - 1]))
-        throw Error("friction coefficient " + std::to_string(grid[i]) + " follows " + std::to_string(grid[i - 1]),
-                    "modes over the friction coefficient", "give friction coefficients in ascending order, each once");
+        throw Error("friction coefficient " + std::to_string(grid[i]) + " is not larger than the previous one, " +
+                      std::to_string(grid[i - 1]),
+                    "modes over the friction coefficient", "give friction coefficients in ascending order, each only once");
     for (const auto &[quantity, name] : {std::make_pair(options.largest_circular_frequency, "end of the band"),
                                          {options.threshold_tolerance, "tolerance of thresholds"},
                                          {options.smallest_step, "smallest step"}})
       if (!(quantity > 0.))
-        throw Error("the " + std::string(name) + " is " + std::to_string(quantity), "modes over the friction coefficient",
-                    "give a positive value");
+        throw Error("the " + std::string(name) + " is " + std::to_string(quantity) + ", but must be positive",
+                    "modes over the friction coefficient", "give a positive value");
 
     TrackedModes tracked{options, {}, {}, {}, {}, {}, {}};
     insert(tracked, evaluate, grid, false);

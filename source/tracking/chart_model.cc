@@ -55,8 +55,8 @@ namespace Squeal
         return {(1. - t) * mean + t * other.mean, (1. - t) * square + t * other.square};
       }
 
-      /// Moves the values closest to the expected ones to the front: a small basis has additional eigenvalues, which may be close to the
-      /// mean.
+      /// Moves the values closest to the expected values to the front, because a small basis has additional eigenvalues, which may be close
+      /// to the mean.
       void bring_to_front(std::vector<std::complex<double>> &values) const
       {
         auto place = values.begin();

@@ -42,7 +42,7 @@ namespace Squeal
     {
       auto vectors = model.new_vectors({{point, &chart, model.inaccurate_modes(chart, tolerance)}});
       if (!vectors)
-        return "all new directions are rounding errors";
+        return "the residuals contain no new directions beyond rounding errors";
       if (model.size() + vectors->n_columns() > maximum_basis)
         return text("the basis would exceed ", maximum_basis, " vectors");
       model.extend(*std::move(vectors));
@@ -184,12 +184,13 @@ namespace Squeal
         });
         if (worst < 0)
           break;
-        left               = missed;
-        grown              = worst;
-        error_before       = worst_error;
-        result.why_stopped = n_in_vain >= max_growths_in_vain ?
-                               text("extending the basis does not halve the estimated error ", worst_error, ", which is due to rounding") :
-                               grow(model, points[worst], worst_point, options.tolerance, options.maximum_basis);
+        left         = missed;
+        grown        = worst;
+        error_before = worst_error;
+        result.why_stopped =
+          n_in_vain >= max_growths_in_vain ?
+            text("repeated extensions of the basis do not halve the estimated error ", worst_error, ", which is probably due to rounding") :
+            grow(model, points[worst], worst_point, options.tolerance, options.maximum_basis);
         if (!result.why_stopped.empty())
           break;
       }

@@ -118,8 +118,8 @@ namespace Squeal
       const double l = modes.mu(k), r = modes.mu(k + 1);
       if (search.at_once && grows_at_once(modes, search))
         return {l, 0.};
-      // The growth of the double mode exceeds rounding errors only in this interval: the onset may be anywhere between the first point and
-      // here
+      // The growth of the double mode exceeds rounding errors only in this interval: the onset may be anywhere from the first point to its
+      // end
       if (search.multiple)
         return {modes.mu(0), r - modes.mu(0)};
       if (modes.width(k) > modes.tolerance(k))

@@ -162,7 +162,7 @@ namespace Squeal
     const double     width    = bracket.second - bracket.first;
     const ChartPoint there    = at(bracket.second);
     const int        mode     = mode_at(there);
-    // Slope from a finite difference across the bracket or a short step beyond it, because growth may begin as √(μ − μ_c)
+    // Compute the slope over a finite step, because growth may begin as √(μ − μ_c)
     const double step      = std::max(width, 1e-3 * (right - left));
     const double far       = bracket.second + step <= right ? bracket.second + step : bracket.second - step;
     const double slope     = (value(far) - excess(there, mode)) / (far - bracket.second);

@@ -24,9 +24,10 @@ namespace Squeal
     constexpr double negligible_part = 0.25;
     /// |φ_iᴴφ_j|² at one point above which two modes are about to coalesce [-].
     constexpr double parallel = 0.7;
-    /// The remainder of a unit vector after Gram-Schmidt is a rounding error below this limit, as occurs close to a coalescence [-].
+    /// The remainder of a unit vector after Gram-Schmidt is a rounding error below this limit [-]. Such remainders occur close to a
+    /// coalescence.
     constexpr double defective = 1e-7;
-    /// δ² of two λ counts as real, as for modes that may coalesce, if |Im δ²| / |δ²| is below this limit [-].
+    /// δ² of two λ counts as real if |Im δ²| / |δ²| is below this limit [-]; modes that may coalesce have a real δ².
     constexpr double real_discriminant = 1e-6;
 
     /// Orthonormal basis without directions due to rounding errors.
@@ -40,7 +41,8 @@ namespace Squeal
       return basis.Q(Eigen::placeholders::all, kept);
     }
 
-    /// cos² of the largest angle between two subspaces; if one is smaller because its vectors are parallel, between it and its projection.
+    /// cos² of the largest angle between two subspaces; if one has a lower dimension because its vectors are parallel, of the largest angle
+    /// to its projection on the other.
     double agreement_of(const ComplexDenseMatrix &first, const ComplexDenseMatrix &second)
     {
       const ComplexDenseMatrix C       = safe_basis(first).adjoint() * safe_basis(second);

@@ -24,9 +24,9 @@ namespace Squeal
     constexpr double other_growth = 0.5;
     /// Fraction of a step within which several approaches share one evaluation [-].
     constexpr double one_look = 0.2;
-    /// Number of steps of a search without halving before the interval is halved.
+    /// Number of successive steps that reduce the interval by less than half before it is bisected.
     constexpr int patience = 2;
-    /// Number of failed predictions in a search before the interval is halved; each prediction has two values.
+    /// Number of such steps before predictions are no longer used; each prediction adds two values.
     constexpr int most_predictions = 5;
 
     /// True if a step must be divided before the mode of a branch can be distinguished from others.
@@ -117,7 +117,7 @@ namespace Squeal
       return result;
     }
 
-    /// True if two modes are beyond the band at both ends of a step, and thus not in the results.
+    /// True if two modes are beyond the band at both ends of a step and therefore not in the results.
     bool are_beyond(const TrackedModes &modes, const int k, const int p, const int q)
     {
       const double limit = modes.options.largest_circular_frequency;

@@ -11,7 +11,6 @@
 
 namespace Squeal
 {
-  /// A step between neighbouring points.
   struct ChartInterval
   {
     std::optional<ModeLinks> links;
@@ -98,10 +97,9 @@ namespace Squeal
     bool multiple = false; ///< true for two modes that are indistinguishable from the first point up to this interval
   };
 
-  /// Steps with thresholds or band crossings.
   std::vector<EventSearch> find_events(const TrackedModes &modes);
 
-  /// Value of the function of a search at point k; nothing if its branches do not exist there.
+  /// Value of the function of a search at point k; empty if its branches do not exist there.
   std::optional<double> search_value(const TrackedModes &modes, const EventSearch &search, int k);
 
   /// True if a branch that is neutral at the first point grows from there: the quotient Re λ / μ, or δ² / μ² for a double mode,

@@ -128,5 +128,5 @@ TEST(SlidingVelocity, Refusals)
     [&] {
       nodes(block_on_rail(), {Rotation::positive, "0, 0, 2"});
     },
-    {"the velocity of the disc is normal to the contact face", "contact node at (0.07"});
+    {"the sliding velocity of the disc is normal to the contact face", "contact node at (0.07"});
 }

@@ -68,7 +68,7 @@ TEST(Mesher, SurvivesWhatHappensToGmsh)
   const auto failure = [](const std::string &text, const MesherLimits &limits) {
     return message<MeshError>([&] { mesh_of(File("script.geo", text), limits); });
   };
-  expect_mentions(failure("Exit;", wide), {"ended Gmsh", "here"});
+  expect_mentions(failure("Exit;", wide), {"Gmsh ended", "here"});
   std::string errors;
   for (int i = 0; i < 100; ++i)
     errors += "foo bar;\n";

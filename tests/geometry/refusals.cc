@@ -45,14 +45,14 @@ TEST(Refusals, SolidsThatDoNotFit)
                   {blocks(volumes + "Physical Surface(\"disc_contact\") = {6};"), {"'pin_contact'"}},
                   {blocks(volumes), {"'disc_contact'"}},
                   {blocks("Physical Volume(\"disk\") = {1}; Physical Volume(\"pin_1\") = {2};" + surfaces),
-                   {"no physical volume 'disc'", "disk, pin_1"}},
-                  {blocks("Physical Volume(\"disc\") = {1, 2};" + surfaces), {"no physical volume of a pin"}},
+                   {"No physical volume is named 'disc'", "disk, pin_1"}},
+                  {blocks("Physical Volume(\"disc\") = {1, 2};" + surfaces), {"All physical volumes belong to the disc"}},
                   {blocks("Physical Volume(\"disc\") = {1};" + surfaces), {"8 volume elements"}},
                   {blocks(volumes + "Physical Surface(\"disc_contact\") = {11}; Physical Surface(\"pin_contact\") = {6};"),
                    {"'pin_contact' has a face on 'disc'"}},
                   {blocks(volumes + "Physical Surface(\"disc_contact\") = {6}; Physical Surface(\"pin_contact\") = {6};", "Coherence;\n"),
                    {"share nodes"}},
-                  {blocks(volumes + surfaces, "Mesh.ElementOrder = 3;\n"), {"elements of type 'Hexahedron 64'", "second order"}}});
+                  {blocks(volumes + surfaces, "Mesh.ElementOrder = 3;\n"), {"unsupported type 'Hexahedron 64'", "second order"}}});
   expect_mentions(refusal(of_file(File("blocks.geo", blocks(volumes + surfaces)).string()), {"mount"}), {"'mount'", "disc_contact"});
 }
 
@@ -121,8 +121,7 @@ TEST(Refusals, BadElementsAreFound)
   Mesh twice = mesh;
   check_unique(twice, "twice.msh");
   twice.cells.push_back({Shape::hexahedron, {4, 5, 6, 7, 0, 1, 2, 3}, 0});
-  expect_mentions(message<MeshError>([&] { check_unique(twice, "twice.msh"); }),
-                  {"1 of 2 elements have the same nodes", "'disc'", "twice.msh"});
+  expect_mentions(message<MeshError>([&] { check_unique(twice, "twice.msh"); }), {"Duplicates: 1 of 2 elements", "'disc'", "twice.msh"});
   Mesh overlapping = folded;
   check_unique(overlapping, "overlapping.msh");
   overlapping.points.insert(overlapping.points.end(), {{0, 0, 2}, {1, 0, 2}, {1, 1, 2}, {0, 1, 2}});

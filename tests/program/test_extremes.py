@@ -107,7 +107,7 @@ class Extremes(ProgramTest):
         self.assertEqual(found, len(real_frequencies(folder)))
 
     def test_band_beyond_the_mesh(self):
-        resolved = ["the mesh does not resolve", "Band/Maximum frequency", "lower it below"]
+        resolved = ["the mesh does not resolve", "Band/Maximum frequency", "lower this parameter below"]
         for override, body in (("Band/Maximum frequency=100000", "disc"), ("Pin material/Density=3.07e9", "pin_top_1")):
             with self.subTest(override):
                 self.refused([*resolved, body], override)

@@ -58,7 +58,7 @@ class Meshes(ProgramTest):
 
     def test_names_that_exclude_each_other(self):
         mesh = renamed(disc_with_pads()[0], "pin_contact", "pin_contact", "pin_clamp")
-        self.dry_run_refused(["pin_contact", "pin_clamp"], file=self.write_mesh(mesh, "clamped_contact"))
+        self.dry_run_refused(["contact node", "pin_clamp"], file=self.write_mesh(mesh, "clamped_contact"))
         mesh = renamed(disc_with_pads()[0], "pin_clamp", "pin_clamp", "back")
         file = self.write_mesh(mesh, "mounted_clamp")
         self.dry_run_refused(["'pin_clamp'", "'back'"], "Mounts/Elastic mounts=back: 1e9, 1e9, 1e9", file=file)
@@ -115,7 +115,7 @@ class Meshes(ProgramTest):
                 n = left_handed(mesh, lambda body, nodes: where(mesh, body, nodes))
                 results = self.run_mesh(mesh, f"left_{kind}")
                 self.assert_baseline(results)
-                self.assertIn(f"{n} of {len(mesh.cells)} cells are left-handed", self.call(f"left_{kind}.prm", "--dry-run").stdout)
+                self.assertIn(f"left-handed cells: {n} of {len(mesh.cells)}", self.call(f"left_{kind}.prm", "--dry-run").stdout)
         self.assertNotIn("left-handed", self.call("baseline.prm", "--dry-run").stdout)
 
     # ------------------------------------------------------------------ clamps
@@ -236,13 +236,13 @@ class Tetrahedra(ProgramTest):
         self.assertGreater(max(abs(a - b) for a, b in zip(values, other)), 1)
         loose = clutch()
         loose.faces = [face for face in loose.faces if face[0] != "disc_front_hub"]
-        self.dry_run_refused(["'disc' is in 2 pieces", "each of several discs"], pairs, held("1e12").replace("disc_front_hub: 1e12, 1e12, 1e12; ", ""),
+        self.dry_run_refused(["'disc' consists of 2 disconnected pieces", "if they are discs"], pairs, held("1e12").replace("disc_front_hub: 1e12, 1e12, 1e12; ", ""),
                              volumes, file=self.write_brake(loose, "loose"))
 
     def test_ties_that_are_refused(self):
         file = self.write_brake(bonded_brake(), "bonded")
         for mentions, *overrides in (
-                (["'pad_outer_lining_back' that nothing uses", "Contact/Tied"],),
+                (["'pad_outer_lining_back' is not used", "Contact/Tied"],),
                 (["`pad_outer_face` is tied"], "Contact/Tied=pad_outer_face / pad_outer_front"),
                 (["'pad_inner_fronts', which Contact/Tied names"], TIED + "s"),
                 (["`pad_outer_front` is not a pair"], "Contact/Tied=pad_outer_front")):
@@ -291,26 +291,26 @@ class Tetrahedra(ProgramTest):
         for change, mentions, *overrides in (
                 (middle_at(0.5, 0.05), ["1 second-order node", "than half its length", "'pad_inner_backplate'"]),
                 (middle_at(0.1), ["folded by second-order nodes"]),
-                (parted(slice(4, 10)), ["not the second-order nodes", "merge"]),
-                (parted(slice(0, 10)), ["'pad_outer_lining'", "nothing holds it", "merge"]),
-                (with_corner(math.nan), ["not finite numbers"]),
-                (with_corner(math.inf), ["not finite numbers"]),
+                (parted(slice(4, 10)), ["Second-order nodes of", "merge"]),
+                (parted(slice(0, 10)), ["'pad_outer_lining' is not held", "merge"]),
+                (with_corner(math.nan), ["not a finite number"]),
+                (with_corner(math.inf), ["not a finite number"]),
                 (pad(lambda x, y, z: (x, y, z + 0.05)), ["overlap by 0 m", between, "gap below"]),
                 (pad(lambda x, y, z: (1.5 * x, 1.5 * y, z)), ["only 5 %", "pad_outer", between, "20 %"]),
                 (pad(lambda x, y, z: (x, y, z - 0.005)), ["'pad_outer' and 'disc' overlap"]),
                 (pad(lambda x, y, z: (x, y, 0.012 + 0.4 * (z - 0.012))), ["do not face each other", "surfaces disc_top and pad_outer_back", "opposite"],
                  pairs("disc_top / pad_outer_back", inner), held(hub, "pad_outer_face", "pad_inner_back")),
                 (nothing, ["overlap by 0 m", "surfaces disc_bottom and pad_outer_face"], pairs(f"{outer}; {inner}", "disc_bottom / pad_outer_face")),
-                (nothing, ["no physical surface 'disc_topp', which Contact/Pairs names", "disc_top"], pairs("disc_topp / pad_outer_face", inner)),
-                (nothing, ["'pad_outer_face' has a face on 'pad_outer'", "Contact/Pairs", "exchanged"], pairs("pad_outer_face / disc_top", inner)),
+                (nothing, ["no physical surface 'disc_topp', which is named in Contact/Pairs", "disc_top"], pairs("disc_topp / pad_outer_face", inner)),
+                (nothing, ["'pad_outer_face' has a face on 'pad_outer'", "Contact/Pairs", "surface of the disc first"], pairs("pad_outer_face / disc_top", inner)),
                 (nothing, ["'disc_hub' has a face on 'disc'", "Contact/Pairs"], pairs(f"{outer}; {inner}", "disc_top / disc_hub")),
-                (nothing, ["'pad_outer_face' that nothing uses", "Contact/Pairs"], pairs("disc_top / disc_bottom", inner)),
-                (nothing, ["no physical surface 'disc_bub', which Mounts/"], held("disc_bub: 0, 0, 1e10", "pad_outer_back", "pad_inner_back")),
+                (nothing, ["'pad_outer_face' is not used", "Contact/Pairs"], pairs("disc_top / disc_bottom", inner)),
+                (nothing, ["no physical surface 'disc_bub', which is named in Mounts/"], held("disc_bub: 0, 0, 1e10", "pad_outer_back", "pad_inner_back")),
                 (nothing, ["no volume `pad_outer_plate`", "pad_outer_backplate"], "Materials/Volumes=pad_outer_plate: 210e9, 0.3, 7850"),
-                (without("disc_top", "pad_outer_face"), ["'pad_outer'", "touches nothing", "Contact/Pairs"], f"Contact/Pairs={inner}"),
-                (without("pad_outer_back"), ["'pad_outer'", "nothing holds it", "Mounts/Elastic mounts"],
+                (without("disc_top", "pad_outer_face"), ["'pad_outer' has no contact face", "Contact/Pairs"], f"Contact/Pairs={inner}"),
+                (without("pad_outer_back"), ["'pad_outer' is not held", "Mounts/Elastic mounts"],
                  f"Mounts/Elastic mounts={hub}; pad_inner_back: 0, 0, 2e10"),
-                (lambda mesh: mesh.cells.extend(mesh.cells[-10:]), ["10 of 298 elements have the same nodes as others", "'pad_inner_backplate'"]),
+                (lambda mesh: mesh.cells.extend(mesh.cells[-10:]), ["Duplicates: 10 of 298 elements", "'pad_inner_backplate'"]),
                 (nothing, ["second order", "quadratic"], "Discretization/Element=trilinear")):
             with self.subTest(mentions):
                 self.dry_run_refused(mentions, *overrides, file=self.write_brake(spoiled(change), "spoiled"))

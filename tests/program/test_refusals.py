@@ -95,19 +95,19 @@ class Refusals(ProgramTest):
         per_pin, loads = "Steady sliding/Control=load per pin", "Steady sliding/Loads"
         self.sliding_refused(["no pin `pin_left`", loads, "pin_bottom_2"], per_pin, f"{loads}=pin_left: 500")
         self.sliding_refused(["load is 0 N", loads, "pin pin_top_1"], per_pin, f"{loads}=pin_top_1: 0")
-        self.sliding_refused(["does not list has no load", "Operation/Load per side"], per_pin, f"{loads}=pin_top_1: 5",
+        self.sliding_refused(["is not listed in Steady sliding/Loads has no load", "Operation/Load per side"], per_pin, f"{loads}=pin_top_1: 5",
                              "Operation/Load per side=0")
         self.sliding_refused(["`load per side` is prescribed", loads, "Control = load per pin"], f"{loads}=pin_top_1: 500")
 
     def test_displacement(self):
         control, displacement = "Steady sliding/Control=displacement", "Steady sliding/Displacement"
         self.sliding_refused(["do not move", displacement, "positive"], control)
-        self.sliding_refused(["1e-06 m closes no gap", "2e-06 m", displacement, "Gaps"], control, f"{displacement}=1e-6",
+        self.sliding_refused(["1e-06 m does not close", "2e-06 m", displacement, "Gaps"], control, f"{displacement}=1e-6",
                              "Steady sliding/Gaps=pin_top_1: 1e-5; pin_top_2: 2e-6")
 
     def test_disc_that_nothing_holds(self):
-        # sliding_refused() does not apply, because this case is detected only after a factorisation
-        self.scene_refused(["nothing holds the disc in its plane", "Mounts/Elastic mounts"], "Steady sliding/Contact state=steady sliding",
+        # Friction pushes the disc in its plane; this is detected only after a factorisation
+        self.scene_refused(["nothing holds the disc against the friction forces", "Mounts/Elastic mounts"], "Steady sliding/Contact state=steady sliding",
                            "Mounts/Elastic mounts=", output="new")
 
     def test_damping(self):

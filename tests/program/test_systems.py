@@ -145,7 +145,7 @@ class Flutter(SystemTest):
                 self.assertFalse((self.folder / "refused").exists())
         for part, powers in (("mass", (2, 0)), ("stiffness", (0, 2))):
             self.write_system({"mu": (0.6, 0., 1.)}, [(power, coefficient, [[1., 0.], [0., 1.]], "symmetric") for power, coefficient in zip(powers, ("mu", "1"))])
-            self.assert_message(self.call("study.prm", "--output", "refused", "--set", "System values=mu = 0"), [f"no {part} term is nonzero", "system.json"])
+            self.assert_message(self.call("study.prm", "--output", "refused", "--set", "System values=mu = 0"), [f"all {part} terms are missing or zero", "system.json"])
         self.write_system({"mu": (0.6, 0., 1.), "kappa": (1., 0.5, 2.)}, flutter_terms())
         for study, override, mentions in (("stability", "System values=nu = 1", ["`nu`", "mu, kappa"]), ("stability", "System values=mu = 2", ["range"]),
                                           ("sweep", "Sweep/Parameter=mu, 0, 2, 5", ["range"]), ("stability", "System=nothing", ["nothing"]),
@@ -302,8 +302,8 @@ class Flutter(SystemTest):
         head = "%%MatrixMarket matrix coordinate real "
         for text, mentions in ((head + "general\n2 2 2\n1 1 1.5D2\n2 2 1\n", ["line 3", "1.5D2"]), (head + "general\n2 2 1\n1 1 3,5\n", ["3,5"]),
                                (head + "general\n2 2 1\n1.5 1 3\n", ["1.5"]), (head + "general\n2 2 1\n1 1 3 4\n", ["value"]),
-                               (head + "general\n2 2 1\n1 1 3\n2 2 1\n", ["more than 1"]), (head + "general\n2 2 3\n1 1 3\n2 2 1\n", ["2 entries, not 3"]),
-                               (head + "symmetric\n2 2 1\n1 2 3\n", ["below the diagonal"]), (head + "general\n2 2 1\n0 1 3\n", ["row 0"]),
+                               (head + "general\n2 2 1\n1 1 3\n2 2 1\n", ["more than 1"]), (head + "general\n2 2 3\n1 1 3\n2 2 1\n", ["contains 2 entries, not 3"]),
+                               (head + "symmetric\n2 2 1\n1 2 3\n", ["above the diagonal"]), (head + "general\n2 2 1\n0 1 3\n", ["row 0"]),
                                (head + "general\n2 2 -1\n", ["-1"]), (head + "general\n2000000000 2000000000 1\n1 1 3\n", ["2000000000"]),
                                (head.replace("real", "pattern") + "general\n2 2 1\n1 1\n", ["pattern"])):
             self.write("system/A0.mtx", text)

@@ -255,10 +255,10 @@ TEST(PressedFaces, Refusals)
     expect_refusal([&] { scene.solve(parameters); }, parts);
   };
   expect(s, pressed({"pad_bck"}), {"no surface named `pad_bck`", "pad_back"});
-  expect(s, pressed({"disc_bore"}), {"is part of the disc", "Steady sliding/Pressed faces, surface disc_bore"});
+  expect(s, pressed({"disc_bore"}), {"is on the disc", "Steady sliding/Pressed faces, surface disc_bore"});
   expect(s, pressed({"pin_contact"}), {"is in contact with the disc"});
-  expect(held, pressed({"pin_clamp"}), {"is clamped"});
-  expect(free, pressed(), {"nothing holds pin_pad in its plane against the friction forces"});
+  expect(held, pressed({"pin_clamp"}), {"has clamped nodes"});
+  expect(free, pressed(), {"nothing holds pin_pad against the friction forces"});
   SlidingParameters moved = pressed({});
   moved.control           = BackplateControl::load_per_side;
   expect(s, moved, {"nothing holds pin_pad", "Pressed faces"});

@@ -402,9 +402,9 @@ TEST(SteadySliding, Refusals)
     expect_refusal([&] { scene.solve(sliding); }, parts);
   };
   expect(s, steady(), {{"pin_upper", 1e-6}}, {"there is no pin `pin_upper`", first});
-  expect(s, steady(), {{first, 10.}}, {"is larger than the height of the pin"});
-  expect(s, steady(BackplateControl::displacement, 1e-6), {{first, 2e-6}, {second, 1e-6}}, {"closes no gap on one side"});
-  expect(free, steady(), {}, {"nothing holds the disc in its plane"});
+  expect(s, steady(), {{first, 10.}}, {"is not smaller than the height of the pin"});
+  expect(s, steady(BackplateControl::displacement, 1e-6), {{first, 2e-6}, {second, 1e-6}}, {"does not close the smallest gap"});
+  expect(free, steady(), {}, {"nothing holds the disc against the friction forces"});
 }
 
 TEST(ContactMotions, OfALevelDisc)

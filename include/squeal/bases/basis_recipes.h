@@ -80,10 +80,11 @@ namespace Squeal
   /// A block of basis vectors: a set from the input, or responses computed from it.
   struct BasisPart
   {
-    const char                *symbol;
-    std::vector<BasisSource>   rests_on; ///< quantities that must be computed beforehand
-    std::optional<BasisSource> set;      ///< input set: the vectors, or modes with one response each; none: one vector per contact node
-    bool                       is_uncoupled                     = false;   ///< the vectors have uncoupled dofs
+    const char              *symbol;
+    std::vector<BasisSource> rests_on; ///< quantities that must be computed beforehand
+    std::optional<BasisSource>
+         set; ///< input set: the vectors themselves, or modes with one response each; none: one vector per contact node
+    bool is_uncoupled                                           = false;   ///< the vectors have uncoupled dofs
     MultiVector (*compute)(const BasisIngredients &ingredients) = nullptr; ///< null: use the set itself
   };
 

@@ -78,8 +78,8 @@ namespace Squeal
   /**
    * Labels real or complex coupled modes by their M-inner products with component modes; modes of one shape (a doublet, the F1 modes of all
    * pins) count together. If each mode is dominated by a different component mode, it gets the label of this component mode. If several
-   * modes compete (an A0-5 mode with larger motion of the pins), labels are assigned so that the sum of all participations is largest and
-   * no label occurs more often than there are component modes with this label. Participations below 0.1 are ignored.
+   * modes compete (an A0-5 mode with larger motion of the pins), labels are assigned so that the sum of all participations is largest. No
+   * label occurs more often than there are component modes with this label. Participations below 0.1 are ignored.
    *
    * @param references component modes, as for shape_shares()
    * @param shares     result of shape_shares(), one entry per coupled mode

@@ -46,7 +46,7 @@ namespace Squeal
   /// Family, nodal circles, nodal diameters, rank and body: common to both modes of a doublet, or to the same mode of identical pins.
   using ModeShape = std::tuple<ModeFamily, int, int, int, std::string>;
 
-  /// Label of a mode: the component mode that it is or resembles most.
+  /// Label of a mode: the component mode that it resembles most.
   struct ModeLabel
   {
     ModeFamily  family          = ModeFamily::unnamed;
@@ -76,8 +76,8 @@ namespace Squeal
   std::string shape_text(ModeLabel label);
 
   /**
-   * Assigns signs to labels whose shape occurs exactly twice, except unnamed modes. Plus is the mode that grows, or grows faster; if
-   * neither grows, the mode with the higher frequency. All tables of all studies use this rule.
+   * Assigns signs to labels whose shape occurs exactly twice, except unnamed modes. The sign is plus for the mode that grows or grows
+   * faster or, if neither grows, for the mode with the higher frequency. All tables of all studies use this rule.
    *
    * @param labels       labels of modes in ascending order of frequency
    * @param growth_rates one for each mode, zero if the mode does not grow [any unit]; empty: no mode grows

@@ -22,7 +22,7 @@ namespace Squeal
     /// Directions whose M-norm is below this fraction of the largest are dropped [-].
     double tolerance = 1e-10;
 
-    /// Singular values of P_n T_r0, columns scaled to unit M-norm, below this fraction of the largest count as zero [-].
+    /// Singular values of P_n T_r0 (columns scaled to unit M-norm) below this fraction of the largest count as zero [-].
     double connection_tolerance = 1e-12;
 
     double pod_tolerance = 1e-6; ///< principal axes of the snapshots below this fraction of the largest are dropped [-]

@@ -24,7 +24,7 @@ namespace Squeal
   /// The six rigid-body motions of the disc in coupled coordinates, n × 6; pins move only where the contact constraints require it.
   MultiVector rigid_disc_motions(const Model &model, const CoupledSystem &system);
 
-  /// Rigid-body motions of an uncoupled body that its mounts do not resist (up to rounding errors of K), M-orthonormal; nothing if mounts
+  /// Rigid-body motions of an uncoupled body that its mounts do not resist (up to rounding errors of K), M-orthonormal; empty if mounts
   /// resist all motions, or if the body has clamped nodes.
   std::optional<MultiVector> free_motions(const Model &model, const SecondOrderSystem &system, unsigned int component);
 
@@ -63,7 +63,7 @@ namespace Squeal
   {
   public:
     /**
-     * @param rigid_body N, n × k, M-orthonormal; nothing if K is positive definite
+     * @param rigid_body N, n × k, M-orthonormal; empty if K is positive definite
      * @param largest_circular_frequency end of the band [rad/s]: sets the shift s
      * @param what       name of the body with stiffness K, for messages
      *

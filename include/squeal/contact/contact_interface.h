@@ -74,7 +74,8 @@ namespace Squeal
    * else by mortar(). The normal of a node pair is the area average over the adjacent contact faces of the disc; for a mortar node, the
    * average is over the faces of the pin. t is the direction of the velocity in the tangent plane.
    *
-   * Throws MeshError if a contact node is clamped, if its velocity is zero, not finite or normal to the face, or if mortar() fails.
+   * Throws MeshError if a contact node is clamped, tied or in two pairs; if its velocity is zero, not finite or normal to the face; if too
+   * little of a body's face is opposite the disc; or if mortar() fails.
    */
   FoundContact contact_nodes(const Model &model, const std::vector<ContactPair> &pairs, const SlidingVelocity &velocity, double tolerance);
 

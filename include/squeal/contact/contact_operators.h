@@ -28,12 +28,12 @@ namespace Squeal
    *   P_n u = n·(u_D − u_P),  P_t u = f t·(u_D − u_P),  P_b u = b·(u_D − u_P)   n_c × n each
    *   T_c spans ker P_n of the rigid contact nodes                             n × (n − n_rigid)
    *
-   * with the friction factor f of each pair of surfaces, by default 1, and S that extracts the reactions r_n from the contact forces f =
-   * P_nᵀ r_n + P_tᵀ r_t + P_bᵀ r_b (n_c × n),
+   * with the friction factor f of each pair of surfaces (1 by default). S, n_c × n, extracts the reactions r_n from the contact forces
+   * P_nᵀ r_n + P_tᵀ r_t + P_bᵀ r_b:
    *
    *   S P_nᵀ = I,   S P_tᵀ = 0,   S P_bᵀ = 0,   r_n = S (λ² M + λ C + K) u.
    *
-   * Any S with these properties gives the same eigenvalues. For node pairs it is ½ P_n, because P_n P_nᵀ = 2 I; for mortar nodes it is a
+   * Any S with these properties gives the same eigenvalues. For node pairs, S = ½ P_n, because P_n P_nᵀ = 2 I. For mortar nodes, S is a
    * weighted sum of the forces on the nodes of the pin.
    *
    * T_c eliminates the displacement component of each pin node that is closest to the normal; if the normal is a coordinate axis, T_c

@@ -32,17 +32,16 @@ namespace Squeal
   };
 
   /**
-   * The bodies coupled by contact, with friction as a term of rank n_c that is
-   * affine in μ (eqs. (5) to (8) of the paper, with the sign of r_n ≤ 0 in
-   * compression and t the direction of the disc's motion relative to the pin):
+   * The bodies coupled by contact, as a list of terms of
    *
    *   (λ² (M_c − μ A V_M) + λ (C_c − μ A V_C) + K_c − μ A V_K) φ_c = 0
    *
-   * as a list of terms. Each term X of the bodies, for example K, gives
+   * with friction of rank n_c, proportional to μ (eqs. (5) to (8) of the paper, with r_n ≤ 0 in compression and t in the direction of the
+   * disc's motion relative to the pin). Each term X of the bodies, for example K, gives
    *
-   *   X_c = T_cᵀ X T_c   and   −μ A V_X,   A = T_cᵀ P_tᵀ,  V_X = S X T_c,
+   *   X_c = T_cᵀ X T_c   and   −μ A V_X,   A = T_cᵀ P_tᵀ,  V_X = S X T_c.
    *
-   * and contact damping, which does not contribute to the reactions because S P_bᵀ = S P_tᵀ = 0, gives
+   * Contact damping, which does not contribute to the reactions because S P_bᵀ = S P_tᵀ = 0, gives
    *
    *   Rᵀ diag(c_b) R   and   A diag(c_t) Aᵀ,   R = P_b T_c.
    *
@@ -116,12 +115,13 @@ namespace Squeal
   CoupledSystem undamped(CoupledSystem system);
 
   /**
-   * Adds modal damping: each real coupled mode of Φ (n × k, M_c-orthonormal) has its own damping ratio ζ_j,
+   * Adds modal damping with a damping ratio ζ_j for each real coupled mode of Φ (n × k, M_c-orthonormal),
    *
    *   C_m = M_c Φ diag(2 ζ_j ω_j) Φᵀ M_c     n × n, symmetric, of rank k, never formed
    *
    * so that Φᵀ C_m Φ = diag(2 ζ_j ω_j) and, without friction and other damping,
-   * λ_j = −ζ_j ω_j ± i ω_j √(1 − ζ_j²). It does not contribute to the reactions: the ratios do not determine which body dissipates.
+   * λ_j = −ζ_j ω_j ± i ω_j √(1 − ζ_j²). Modal damping does not contribute to the reactions, because the ratios do not
+   * determine which body dissipates.
    *
    * @param eigenvalues ω² [rad²/s²], one for each mode; modes with ω = 0 are undamped
    * @param ratios      ζ [-], one for each mode
@@ -147,7 +147,7 @@ namespace Squeal
                                       const MultiVector                       &real_part,
                                       const MultiVector                       &imaginary_part);
 
-  /// Couples a family of terms as couple() does, each term with its own contribution to the reactions. Mass, stiffness and parameter values
-  /// are for the middle of the family.
+  /// couple() for a family of terms, with the contribution of each term to the reactions. Mass, stiffness and parameter values are for the
+  /// middle of the family.
   CoupledSystem coupled_family(const TermFamily &bodies, const ContactOperators &contact, const ContactDamping &damping = {});
 } // namespace Squeal

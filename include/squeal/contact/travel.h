@@ -21,7 +21,8 @@ namespace Squeal
       return -direction.dot(node.normal);
     }
 
-    /// e·(n + μ f t): force along e on the backplate per unit reaction at a node with friction [-]; negative, because reactions are.
+    /// e·(n + μ f t): force along e on the backplate per unit reaction at a node with friction [-]; negative, because reactions in
+    /// compression are negative.
     double force(const ContactNode &node, const double mu) const
     {
       return direction.dot(node.normal + mu * node.friction * node.sliding);
@@ -32,8 +33,8 @@ namespace Squeal
    * Travel of each component: e = −N/|N|, N = Σ area n over its contact nodes. Within 45 degrees of the disc's axis, backplates are guided
    * along the axis.
    *
-   * Throws MeshError if a body has no direction of travel: some of its contact nodes face across the direction or away from it, for example
-   * if it touches both faces of the disc.
+   * Throws MeshError if a body has no direction of travel: some of its contact nodes face perpendicular to it or away from it, for
+   * example if the body touches both faces of the disc.
    */
   std::vector<Travel> travels(const Model &model, const ContactInterface &interface);
 

@@ -12,7 +12,7 @@
 
 namespace Squeal
 {
-  /// Storage of the attachment modes X, a dense n × n_c matrix: its computation takes longer than the factorisation.
+  /// Storage of the attachment modes X, a dense n × n_c matrix that takes longer to compute than the factor.
   enum class AttachmentModes
   {
     at_once,     ///< computed with the factor
@@ -45,7 +45,7 @@ namespace Squeal
                    FactorizationLibrary library,
                    AttachmentModes      attachment = AttachmentModes::at_once);
 
-    /// Sets the friction coefficient for apply(); throws SolverError if Q(s) is singular there.
+    /// Sets the friction coefficient for apply(); throws SolverError if Q(s) is singular at this value.
     void set_friction_coefficient(double mu);
 
     /// Y = Q(s)⁻¹ X.
@@ -65,7 +65,7 @@ namespace Squeal
     /// X B for a replicated matrix B, n_c × k; takes k solves if X has not been computed.
     MultiVector attachment_modes_times(const DenseMatrix &B) const;
 
-    /// Factor of S. Several threads may use it, as well as apply() without friction.
+    /// Factor of S. Several threads may use this factor and apply() without friction concurrently.
     const Factorization &frictionless() const;
 
   private:

@@ -49,7 +49,7 @@ namespace Squeal
 
   /**
    * Computes the modes of dense_quadratic_modes() with the QR algorithm restricted to the modes of the band, which band_subspaces() or
-   * damped_band_subspaces() separate. Returns nothing if the band cannot be separated. Otherwise the modes outside the band have no real λ.
+   * damped_band_subspaces() separate. Empty if the band cannot be separated. Otherwise the modes outside the band have no real λ.
    *
    * @param mass,damping,stiffness matrices in modal coordinates of a nearby symmetric pencil
    * @param squares                ω² of these modes, ascending

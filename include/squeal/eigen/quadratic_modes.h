@@ -21,7 +21,6 @@ namespace Squeal
     const LinearOperator *stiffness; ///< K
   };
 
-  /// Options of quadratic_modes().
   struct QuadraticModesOptions
   {
     double shift                      = 0.; ///< shift s ≥ 0 of the operator Q(s)⁻¹; s > 0 if K is singular [1/s]
@@ -112,7 +111,7 @@ namespace Squeal
                                 const MultiVector                       &real_part,
                                 const MultiVector                       &imaginary_part);
 
-  /// Rotates each complex vector so that its entry of largest modulus is real and positive; among entries whose moduli are equal up to
-  /// rounding, the entry with the lowest row number.
+  /// Rotates each complex vector so that its entry of largest modulus is real and positive. If several moduli are equal up to rounding, the
+  /// entry with the lowest row number is used.
   void fix_phase(MultiVector &real_part, MultiVector &imaginary_part);
 } // namespace Squeal

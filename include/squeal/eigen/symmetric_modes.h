@@ -20,7 +20,6 @@ namespace Squeal
     double limit; ///< the requested limit, or slightly higher if an eigenvalue coincides with the requested limit [rad²/s²]
   };
 
-  /// Options of symmetric_modes().
   struct SymmetricModesOptions
   {
     RealSolver solver = RealSolver::lanczos;
@@ -38,10 +37,10 @@ namespace Squeal
     /// (K + s M)⁻¹ for this shift, if available; null: K + s M is factorised.
     const LinearOperator *inverse = nullptr;
 
-    /// Result of count_below(), if available; not with by_parts.
+    /// Result of count_below(), if available; must be empty with by_parts.
     std::optional<ModeCount> count;
 
-    /// True if K and M consist of many uncoupled blocks, for example of pins, which are then solved individually; not with inverse.
+    /// True if K and M consist of many uncoupled blocks, for example of pins, which are then solved individually; inverse must be null.
     bool by_parts = false;
 
     FactorizationLibrary library = FactorizationLibrary::automatic;
@@ -93,8 +92,8 @@ namespace Squeal
   ModeCount count_below(const SparseMatrix &K, const SparseMatrix &M, double limit, const std::string &what);
 
   /**
-   * Upper end of a band [rad²/s²] that contains the @p n_modes lowest modes, by inertia counts. The band may contain further modes whose ω²
-   * exceeds that of the last of these modes by less than 0.1 %, for example members of a multiple eigenvalue.
+   * Upper end of a band [rad²/s²] that contains the @p n_modes lowest modes, by inertia counts. The band may contain further modes if their
+   * ω² is less than 0.1 % above the highest of these ω², for example members of a multiple eigenvalue.
    *
    * @param first   start of the search [rad²/s²]
    * @param highest limit of the search [rad²/s²]

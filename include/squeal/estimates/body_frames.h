@@ -23,11 +23,10 @@ namespace Squeal
     }
   };
 
-  /// Frames of the disc and the pins.
   std::vector<BodyFrame> body_frames(const Model &model);
 
-  /// Maps points to the corresponding positions in another design, with the same masses; bodies that the other design lacks are omitted.
-  /// Points of the disc keep their angle and their relative radial and axial positions, points of pins keep their relative positions in the
-  /// bounding box.
+  /// Maps points to the corresponding positions in another design, with the same masses; bodies that do not exist in the other design
+  /// are omitted. Points of the disc keep their angle and their relative radial and axial positions; points of pins keep their relative
+  /// positions in the bounding box.
   CommonPoints carried_over(const CommonPoints &points, const std::vector<BodyFrame> &from, const std::vector<BodyFrame> &to);
 } // namespace Squeal

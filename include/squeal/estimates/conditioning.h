@@ -29,8 +29,8 @@ namespace Squeal
    *
    *   G_ij = φ_iᴴ K φ_j + λ̄_i λ_j φ_iᴴ M φ_j        2k × 2k
    *
-   * Members of a multiple eigenvalue (relative distance up to 1e-7) share the κ of their space. κ is 1 without friction and damping,
-   * infinite at a coalescence, and a lower bound: components of the left vectors in modes beyond the band are neglected.
+   * Members of a multiple eigenvalue (relative distance up to 1e-7) share the κ of their space. κ is 1 without friction and damping and
+   * infinite at a coalescence. It is a lower bound, because components of the left vectors in modes beyond the band are neglected.
    */
   struct Conditioning
   {
@@ -39,7 +39,7 @@ namespace Squeal
     std::vector<double> modes;                     ///< κ of each λ [-]
     std::vector<double> errors;                    ///< |δλ| / |λ| of each λ [-]
     double              largest_cancellation = 1.; ///< largest γ [-]
-    double              span                 = 1.; ///< condition number of G: of the problem projected on the computed modes [-]
+    double              span                 = 1.; ///< condition number of G, the problem projected on the computed modes [-]
     double              largest_residual     = 0.; ///< largest √ε_res [-]
 
     double largest_error() const;

@@ -31,6 +31,6 @@ namespace Squeal
                            Progress               &progress);
 
   /// ω_max² MᵀM at a value of the varied parameter: an inner product for bases of systems without a definite part. It ignores massless dofs
-  /// and constraint forces, because combinations of modes that contain nothing else make a projection singular.
+  /// and constraint forces, because vectors that contain only these would make a projection singular.
   std::shared_ptr<const SparseMatrix> inertia_square(const CoupledSystem &system, double value, double omega_max);
 } // namespace Squeal

@@ -36,8 +36,8 @@ namespace Squeal
    *
    * Two modes whose distance Δω changes by 100 % or more from mesh to mesh, |Δω − Δω_c| ≥ |Δω|, may coalesce on finer meshes. Since they
    * may exchange their shapes, the larger of their errors of ξ applies to both, for example to a growing mode and its decaying partner. Two
-   * neutral modes, as occur without damping, may become a growing and a decaying mode if they coalesce. Their coupling does not cause
-   * flutter at a distance of Δω; the growth rate is therefore at most |Δω| / 2, which also counts as an error of ξ.
+   * neutral modes, which occur without damping, may become a growing and a decaying mode if they coalesce. Their growth rate is then at
+   * most |Δω| / 2, because their coupling does not cause flutter at a distance of Δω. This limit also counts as an error of ξ.
    *
    * A mode is unstable if verdict_of() with the error of the solver is `unstable` and R exceeds the estimated error; it is stable if it
    * decays by more than the estimated error, or is neutral with an estimated error of ξ below weak_divergence. All other modes, and modes
@@ -64,8 +64,8 @@ namespace Squeal
   {
     double                             limit;           ///< value v for the mesh width 0
     double                             order;           ///< order p, observed or assumed
-    std::vector<std::optional<double>> observed_orders; ///< order from each three consecutive values; nothing if it is not plausible
-    bool                               is_trustworthy;  ///< true if p was observed in the plausible range from the three finest values
+    std::vector<std::optional<double>> observed_orders; ///< order from every three consecutive values; empty if it is not plausible
+    bool                               is_trustworthy;  ///< true if the three finest values give a plausible p or the finest two are equal
     double                             uncertainty;     ///< estimated error of the limit
     std::vector<double>                errors;          ///< |v_k − limit| of each value
   };

@@ -43,9 +43,9 @@ namespace Squeal
    * Estimates errors of reduced eigenvalues from right and left residuals, R_F = Q(λ)φ and L_F = Q(λ)ᵀψ with φ = T φ_r, ψ = T ψ_r. A
    * Galerkin step that adds K_c⁻¹ R_F and K_c⁻¹ L_F changes λ by
    *
-   *   ψᵀQ'(λ)φ δλ + ψᵀMφ δλ² = L_Fᵀ K_c⁻¹ R_F,
+   *   ψᵀQ'(λ)φ δλ + ψᵀMφ δλ² = L_Fᵀ K_c⁻¹ R_F;
    *
-   * of which the smaller root is used.
+   * δλ is the smaller root.
    *
    * The condition number of an eigenvalue,
    *

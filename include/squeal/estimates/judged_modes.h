@@ -22,7 +22,6 @@ namespace Squeal
 
     std::size_t n_unstable() const;
 
-    /// Number of modes with this verdict.
     std::size_t n_of(Verdict verdict) const;
 
     /// Number of real eigenvalues λ > 0: static divergence.

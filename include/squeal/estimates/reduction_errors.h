@@ -49,11 +49,11 @@ namespace Squeal
   /**
    * Errors of reduced modes, one entry for each of the @p reference modes. Counterparts are found by the mass-weighted criterion
    *
-   *   MAC-M = |φᴴ M φ̂|² / (φᴴ M φ  φ̂ᴴ M φ̂)      eq. (18),
+   *   MAC-M = |φᴴ M φ̂|² / (φᴴ M φ  φ̂ᴴ M φ̂)      eq. (18).
    *
-   * using each reduced mode once, so that the sum of MAC-M is largest. (Eq. (17) of the paper selects the reduced mode with the largest
-   * MAC-M for each reference mode individually, so that a reduced mode may be selected several times or never; the `closest_` errors use
-   * this selection.) For clusters of reference modes, chains with |λ_i − λ_j| ≤ @p cluster_tolerance |λ_i|, individual MAC-M are not
+   * Each reduced mode is used at most once, so that the sum of MAC-M is largest. (Eq. (17) of the paper selects the reduced mode with the
+   * largest MAC-M for each reference mode individually and may select a reduced mode several times or never; the `closest_` errors use this
+   * selection.) For clusters of reference modes, chains with |λ_i − λ_j| ≤ @p cluster_tolerance |λ_i|, individual MAC-M are not
    * meaningful. Reduced modes are then ranked by their share in the span of the cluster, and angles between the subspaces are given in
    * addition to ε_mac, all in the complex M-inner product. A reference mode that a poor basis does not represent gets the best match within
    * 30 % of its λ.
@@ -81,12 +81,11 @@ namespace Squeal
                                           const ComplexModes   &reference,
                                           double                cluster_tolerance = 1e-3);
 
-  /// Largest errors of a group of modes.
   struct GroupError : ErrorMeasures
   {
     std::string group;
     int         n_modes = 0;
-    int         n_other = 0; ///< number of modes with another counterpart by eq. (17)
+    int         n_other = 0; ///< number of modes for which eq. (17) selects another counterpart
   };
 
   /**

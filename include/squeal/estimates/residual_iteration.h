@@ -48,21 +48,20 @@ namespace Squeal
 
   /**
    * Enriches a two-sided basis by residuals (Bobillot; section 4.3 of the paper) until the estimated errors of all modes and real
-   * eigenvalues in the band are below the tolerance at each of the @p friction_coefficients. It starts from the real modes Φ_R and their
-   * first-order responses to friction and damping, right and left,
+   * eigenvalues in the band are below the tolerance at each of the @p friction_coefficients; see estimate_eigenvalues() for the errors. The
+   * basis starts from the real modes Φ_R and their first-order responses to friction and damping, right and left,
    *
-   *   K_c⁻¹ A V_K Φ_R,  K_c⁻¹ V_Kᵀ Aᵀ Φ_R,  K_c⁻¹ C_c Φ_R,
+   *   K_c⁻¹ A V_K Φ_R,  K_c⁻¹ V_Kᵀ Aᵀ Φ_R,  K_c⁻¹ C_c Φ_R.
    *
-   * and is extended at the friction coefficient with the largest error by the displacement residuals K_c⁻¹ R_F and K_c⁻¹ L_F of the right
-   * and left reduced eigenvectors of all modes above the tolerance, compressed by their principal axes in the M-norm. See
-   * estimate_eigenvalues() for the errors.
+   * It is extended at the friction coefficient with the largest error by the displacement residuals K_c⁻¹ R_F and K_c⁻¹ L_F of all modes
+   * above the tolerance, compressed to their principal axes in the M-norm.
    *
    * One Cholesky factor of K_c is reused for every step and every μ.
    *
    * @param real_modes Φ_R, n × n_R, M-orthonormal
    * @param inverse    factor of K_c (or of the shifted stiffness) and K_c⁻¹ A
    *
-   * Throws SolverError if the basis reaches its maximum size before the errors meet the tolerance. @p system must outlive the result.
+   * Throws SolverError if the errors do not meet the tolerance within the limits of the options. @p system must outlive the result.
    */
   GrownBasis grow_residual_basis(const CoupledSystem            &system,
                                  const UpdatedInverse           &inverse,

@@ -48,8 +48,7 @@ namespace Squeal
     std::vector<Group>                 groups;                        ///< sorted by dimension, then by number
     std::size_t                        n_unnamed_volume_elements = 0; ///< number of 3-D elements without a physical group
 
-    /// System feature without which Gmsh could not be confined (no programs, no file output); empty if Gmsh was confined, or if this was
-    /// not requested.
+    /// Missing system feature that prevented the confinement of Gmsh; empty if Gmsh was confined or confinement was not requested.
     std::string why_not_confined;
 
     /// Highest dimension with a physical group; 0 without groups.

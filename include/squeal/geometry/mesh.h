@@ -80,10 +80,8 @@ namespace Squeal
   /// Pairs of nodes that connect the tied surfaces in Mesh::tied.
   std::vector<std::pair<unsigned int, unsigned int>> tied_links(const Mesh &mesh);
 
-  /// Body of each node.
   std::vector<unsigned int> body_of_nodes(const Mesh &mesh);
 
-  /// A face of a cell.
   struct CellFace
   {
     std::size_t                 cell;   ///< index among the cells
@@ -115,8 +113,8 @@ namespace Squeal
   FaceGeometry face_geometry(const Mesh &mesh, const CellFace &face);
   FaceGeometry face_geometry(const Mesh &mesh, const Mesh::Face &face);
 
-  /// Reference coordinates of a point by Newton's method on the isoparametric map; nothing for points at a distance of more than about 0.75
-  /// of the cell's extent. The nodes must be in the order of reference_nodes().
+  /// Reference coordinates of a point by Newton's method on the isoparametric map; empty if the iteration does not converge or the point
+  /// is farther from the cell than about 0.75 of its extent. The nodes must be in the order of reference_nodes().
   std::optional<Mesh::Point> reference_coordinates(Shape                           shape,
                                                    unsigned int                    degree,
                                                    const std::vector<Mesh::Point> &nodes,
@@ -135,13 +133,12 @@ namespace Squeal
   /// Mean of the corners of a cell [m].
   Mesh::Point centre(const Mesh &mesh, const Mesh::Cell &cell);
 
-  /// Depth of a point in a cell, whose edges are assumed straight; nothing if reference_coordinates() fails.
+  /// Depth of a point in a cell, whose edges are assumed straight; empty if reference_coordinates() fails.
   std::optional<Depth> depth_in_cell(const Mesh &mesh, const Mesh::Cell &cell, const Mesh::Point &point);
 
   /// Index of a pin among the body names, which begin with the disc; throws a ParameterError that names @p parameter and all pins.
   unsigned int pin_number(const std::vector<std::string> &body_names, const std::string &pin, const char *parameter);
 
-  /// Physical names common to all geometries.
   namespace PhysicalNames
   {
     inline constexpr const char *disc         = "disc";         ///< volume: the disc, or part of it; other parts begin with disc_

@@ -9,7 +9,6 @@
 
 namespace Squeal
 {
-  /// Shape quality of the cells.
   struct MeshQuality
   {
     double       worst_scaled_jacobian; ///< 1 for regular cells, for example a box; 0 for a flat corner; negative if inverted
@@ -41,11 +40,10 @@ namespace Squeal
   void check_unique(const Mesh &mesh, const std::string &where);
 
   /**
-   * Reorders the nodes of left-handed cells, whose Jacobians are negative at all corners, as in mirrored copies or meshes of other
-   * programs. Returns the number of such cells.
+   * Reorders the nodes of left-handed cells, whose Jacobians are negative at all corners. Such cells occur in mirrored copies and in meshes
+   * of other programs. Returns their number.
    *
-   * Throws MeshError if a reordered cell and its neighbour are on the same side of their common face: the cell is then folded, not
-   * left-handed.
+   * Throws MeshError if, after reordering, two cells are on the same side of their common face.
    */
   unsigned int make_right_handed(Mesh &mesh);
 

@@ -25,7 +25,6 @@ namespace Squeal
     using std::runtime_error::runtime_error;
   };
 
-  /// Input of the Gmsh process.
   struct MesherInput
   {
     std::string                   file;    ///< mesh or geometry file; may be empty

@@ -34,7 +34,7 @@ namespace Squeal
     double       area;         ///< D_j = ∫ ψ_j over the overlap, positive [m²]
     NodeWeights  slave;        ///< B_ji; the sum is one
     NodeWeights  master;       ///< W_jl = ∫ ψ_j N_l / D_j; the sum is one, entries below 1e-13 are dropped
-    NodeWeights  left_inverse; ///< G_ji, not the transpose of B in general
+    NodeWeights  left_inverse; ///< G_ji, in general not the transpose of B
   };
 
   struct Mortar
@@ -67,9 +67,9 @@ namespace Squeal
    * for corners v and mid-edge nodes e of an edge v v'. 9-node quadrilaterals of such a slave are transformed as well, because they share
    * edges with triangles; their centre node is unchanged. B u = ũ.
    *
-   * At the edge of the overlap D_j may be small or negative. A multiplier with less than a tenth of the ∫ Ñ_j of the whole elements is
-   * added to the neighbour with the largest D: the rows of B and W are averaged with the weights D; D and the rows of G are summed. Slave
-   * elements that overlap by less than 2 % carry no multiplier, so that ∫ Ñ Ñᵀ remains invertible; their area is missing in Σ D_j.
+   * At the edge of the overlap, D_j may be small or negative. If D_j is less than a tenth of ∫ Ñ_j over the whole elements, multiplier j is
+   * merged with the neighbour that has the largest D: the rows of B and W are averaged with the weights D, and D and the rows of G are
+   * summed. Slave elements that overlap by less than 2 % carry no multiplier, so that ∫ Ñ Ñᵀ remains invertible; Σ D_j excludes their area.
    *
    * B. I. Wohlmuth, SIAM J. Numer. Anal. 38 (2000) 989–1012 (dual functions); M. A. Puso, T. A. Laursen, Comput. Methods Appl. Mech.
    * Engrg. 193 (2004) 601–629 (segments); A. Popp, B. I. Wohlmuth, M. W. Gee, W. A. Wall, SIAM J. Sci. Comput. 34 (2012) B421–B446

@@ -6,8 +6,7 @@
 
 namespace Squeal
 {
-  /// Boundaries of n intervals of [0, 1], including 0 and 1; each interval is shorter than the previous one by @p ratio (1: equal
-  /// intervals).
+  /// Boundaries of n intervals of [0, 1], including 0 and 1; each interval is shorter than the previous one by the factor @p ratio.
   std::vector<double> graded_intervals(unsigned int n, double ratio);
 
   /// Rings of quadrilaterals along the outline of a pin.
@@ -17,7 +16,6 @@ namespace Squeal
     double       grading = 1.; ///< width of a ring relative to the next outer ring
   };
 
-  /// Mesh inside the outline of a pin.
   struct PinGrid
   {
     std::vector<Plan::Face>   faces;
@@ -36,9 +34,9 @@ namespace Squeal
    *
    * Without rings, each block has a flat corner on a round outline: its two edges meet at 180 - 60 / k degrees, and at 180 degrees if
    * elements follow the circle. In addition, stresses at the clamped end of the pin are singular on the outline. Rings have right angles at
-   * the outline. All rings except the innermost lie between outlines scaled towards the centre, down to 0.8; the innermost ring ends at a
-   * triangle with curved sides, halfway between the arcs and the chords from corner to corner, so that the angles of the blocks are below
-   * 130 degrees.
+   * the outline. All rings except the innermost lie between outlines scaled towards the centre, down to 0.8. The innermost ring ends at a
+   * triangle with curved sides, halfway between the arcs and the chords from corner to corner. The angles of the blocks are then below 130
+   * degrees.
    */
   PinGrid fill_pin(const std::vector<unsigned int> &outline, const PinRings &rings, std::vector<Plan::Point> &points);
 } // namespace Squeal

@@ -86,7 +86,6 @@ namespace Squeal
   /// Edges that belong to only one of the given faces, oriented as in this face.
   std::vector<Plan::Edge> boundary_edges(const std::vector<Plan::Face> &faces);
 
-  /// Nodes of faces or edges.
   template <typename Parts>
   std::set<unsigned int> nodes_of(const Parts &parts)
   {

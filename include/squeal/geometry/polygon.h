@@ -36,7 +36,7 @@ namespace Squeal
     double           radius; ///< [m]
   };
 
-  /// Circle from which all points deviate by at most 1e-6 of its radius, by linear least squares, x² + y² = 2 a x + 2 b y + c. Nothing if
+  /// Circle from which all points deviate by at most 1e-6 of its radius, by linear least squares, x² + y² = 2 a x + 2 b y + c. Empty if
   /// there is no such circle, or for fewer than six different points, because the four corners of a square also lie on a circle.
   std::optional<Circle> circle_through(const std::vector<dealii::Point<2>> &points);
 } // namespace Squeal

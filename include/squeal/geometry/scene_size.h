@@ -33,7 +33,7 @@ namespace Squeal
   /// Size of a model with this mesh and elements of this @p degree.
   ProblemSize expected_size(const Mesh &mesh, unsigned int degree);
 
-  /// Throws a MeshError with these numbers if the memory exceeds the available memory of the machines that run the processes.
+  /// Throws a MeshError with size and memory if the model needs more than the available memory of the machines that run the processes.
   void check_memory(const ProblemSize &size, double n_modes, const std::string &where, MPI_Comm communicator = MPI_COMM_SELF);
 
   /// True if at least half of the disc's surface is a surface of revolution about z, n·(e_z × x) ≈ 0. Throws a MeshError that names @p

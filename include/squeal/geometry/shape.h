@@ -52,8 +52,8 @@ namespace Squeal
   const std::vector<unsigned int> &nodes_of_face(Shape cell, unsigned int degree, unsigned int face);
 
   /**
-   * Shape functions N_i of a Lagrange element, in the order of reference_nodes(): deal.II's FE_Q, FE_SimplexP, FE_WedgeP and FE_PyramidP, and for
-   * pyramids of degree 2, which deal.II lacks, the nodal basis of P_2 + span{w x, w y, w, w²}, w = x y / (1 − z) (M. Bergot, G. Cohen,
+   * Shape functions N_i of a Lagrange element, in the order of reference_nodes(): FE_Q, FE_SimplexP, FE_WedgeP and FE_PyramidP of deal.II.
+   * Pyramids of degree 2, which deal.II lacks, use the nodal basis of P_2 + span{w x, w y, w, w²}, w = x y / (1 − z) (M. Bergot, G. Cohen,
    * M. Duruflé 2010).
    */
   class ShapeFunctions
@@ -79,6 +79,6 @@ namespace Squeal
   };
 
   /// Quadrature rule with positive weights, exact for the mass of an undistorted element of this degree: Gauss with degree + 1 points per
-  /// direction; Witherden and Vincent (2015) on triangles and tetrahedra.
+  /// direction (pyramids: degree + 2); Witherden and Vincent (2015) on triangles and tetrahedra.
   std::vector<QuadraturePoint> quadrature(Shape shape, unsigned int degree);
 } // namespace Squeal

@@ -39,7 +39,6 @@ namespace Squeal
   /// normal of this plane. Throws MeshError if the reference coordinates of a point cannot be found.
   SurfaceOverlap overlap(const SurfacePatch &slave, const SurfacePatch &master, double search_distance);
 
-  /// Integrals over a whole element.
   struct WholeElement
   {
     FaceVector      functions   = FaceVector::Zero();      ///< ∫ N_i [m²]

@@ -18,8 +18,8 @@ namespace Squeal
   constexpr int rows_of_large_matrices = 100000;
 
   /// Sets the threads of a factorisation during the lifetime of this object. If the matrix is large enough, BLAS uses as many threads as
-  /// tasks do. Otherwise OpenMP regions started by this thread are serial: CHOLMOD would use four threads for every front, regardless of
-  /// OMP_NUM_THREADS, and these would mostly wait.
+  /// tasks do. Otherwise OpenMP regions started by this thread are serial, because CHOLMOD would use four threads for every front,
+  /// regardless of OMP_NUM_THREADS, and these threads would mostly wait.
   class ThreadsOfFactorization
   {
   public:

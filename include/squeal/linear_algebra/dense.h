@@ -28,10 +28,10 @@ namespace Squeal
     return A.size() == 0 ? 0. : A.cwiseAbs().template maxCoeff<Eigen::PropagateNaN>();
   }
 
-  /// Applies a linear operation to the nonzero columns of X only: the imaginary parts of neutral modes are zero.
+  /// Applies a linear operation to the nonzero columns of X only, because the imaginary parts of neutral modes are zero.
   DenseMatrix sparing_zeros(const DenseMatrix &X, const std::function<DenseMatrix(const DenseMatrix &)> &operation);
 
-  /// A X, omitting zero columns and rows of X: they occur for vanishing terms, and for a basis that has been extended.
+  /// A X without the zero columns and rows of X, which occur for vanishing terms and after an extension of the basis.
   DenseMatrix multiply_sparing_zeros(const DenseMatrix &A, const DenseMatrix &X);
 
   /// A X for a real A and a complex X, as one real product with [Re X, Im X].

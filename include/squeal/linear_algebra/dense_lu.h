@@ -28,7 +28,7 @@ namespace Squeal
     /// Estimate of ‖A⁻¹‖₁; infinite if A is singular to working precision.
     double inverse_norm() const;
 
-    /// Logarithm of det A: the sum of the logarithms of the pivots, imaginary part in (−π, π]; −∞ for a zero pivot.
+    /// Logarithm of det A: the sum of the logarithms of the pivots, imaginary part in [−π, π]; −∞ for a zero pivot.
     std::complex<double> log_determinant() const;
 
   private:

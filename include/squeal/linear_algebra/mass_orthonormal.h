@@ -34,7 +34,7 @@ namespace Squeal
    *
    * With std::move(), the result overwrites X; X is copied only if some axes require another pass.
    *
-   * Returns the kept directions, or nothing if none remains. @p axes, if not null, receives norms and condition number.
+   * Returns the kept directions; empty if none remains. @p axes, if not null, receives norms and condition number.
    */
   std::optional<MultiVector> orthonormalize_if_any(const SparseMatrix &M,
                                                    const MultiVector  *Q,

@@ -134,10 +134,8 @@ namespace Squeal
   /// x_jᵀ y_j of each pair of columns.
   std::vector<double> column_products(const MultiVector &X, const MultiVector &Y);
 
-  /// Euclidean norms of the columns.
   std::vector<double> column_norms(const MultiVector &X);
 
-  /// Indices of the nonzero columns.
   std::vector<int> nonzero_columns(const MultiVector &X);
 
   /// Copy of selected columns.

@@ -16,7 +16,6 @@ namespace Squeal
   class RowMap
   {
   public:
-    /// Map without rows.
     RowMap() = default;
 
     /// Map with @p n_local rows on this process. Collective.
@@ -55,7 +54,6 @@ namespace Squeal
       return number >= first() && number < first() + n_local() ? number - first() : -1;
     }
 
-    /// Process that owns a row.
     int owner(int number) const;
 
     MPI_Comm communicator() const
@@ -63,7 +61,6 @@ namespace Squeal
       return processes;
     }
 
-    /// Rank of this process in the communicator.
     int rank() const
     {
       return process;
@@ -99,7 +96,6 @@ namespace Squeal
       return nothing;
     }
 
-    /// Sends the rows to their owners.
     void deliver(const Eigen::Ref<const DenseMatrix> &here, Eigen::Ref<DenseMatrix> own) const
     {
       exchange(places_here, here, places_owned, own, false);
@@ -111,7 +107,6 @@ namespace Squeal
       exchange(places_here, here, places_owned, own, true);
     }
 
-    /// Fetches the rows from their owners.
     void fetch(const Eigen::Ref<const DenseMatrix> &own, Eigen::Ref<DenseMatrix> here) const
     {
       exchange(places_owned, own, places_here, here, false);

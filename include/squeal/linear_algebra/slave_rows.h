@@ -8,7 +8,8 @@
 
 namespace Squeal
 {
-  /// Constraints u_slave = Σ coefficient u_master: pairs (master, coefficient) for each slave. The numbers are numbers of dofs or of nodes.
+  /// Constraints u_slave = Σ coefficient u_master: pairs (master, coefficient) for each slave. Slaves and masters are numbers of dofs or
+  /// nodes.
   using SlaveRows = std::map<int, std::vector<std::pair<int, double>>>;
 
   /// Replaces masters that are slaves in other rows by the masters of these rows. Returns false if slaves depend on each other circularly.

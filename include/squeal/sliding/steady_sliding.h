@@ -32,7 +32,7 @@ namespace Squeal
   {
     std::vector<double>          reactions;          ///< R_n0 [N] ≤ 0, one for each contact node
     std::vector<double>          gaps;               ///< g [m] ≤ 0
-    std::vector<bool>            closed;             ///< true for nodes of S_0
+    std::vector<bool>            closed;             ///< true for closed nodes, the set S_0
     std::vector<double>          approach;           ///< travel of the backplate of each component [m]; 0 for the disc
     std::shared_ptr<MultiVector> displacement;       ///< u [m], n × 1, elastic, relative to the moved backplates
     std::shared_ptr<MultiVector> total_displacement; ///< u with the travel of the backplates [m], n × 1
@@ -117,7 +117,6 @@ namespace Squeal
                      const OperationParameters &operation,
                      const SlidingParameters   &parameters);
 
-  /// Contact quantities of a pin.
   struct PinContact
   {
     std::string  pin;

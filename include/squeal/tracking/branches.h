@@ -40,7 +40,6 @@ namespace Squeal
     }
   };
 
-  /// Type of a threshold.
   enum class ThresholdEvent
   {
     onset,          ///< growth begins
@@ -51,7 +50,6 @@ namespace Squeal
   inline constexpr EnumName<ThresholdEvent> enum_table<ThresholdEvent>[] = {{ThresholdEvent::onset, "onset"},
                                                                             {ThresholdEvent::restabilisation, "restabilisation"}};
 
-  /// Mechanism of a threshold.
   enum class ThresholdMechanism
   {
     coalescence, ///< λ_1 = λ_2 of two neutral modes, which become a growing and a decaying mode
@@ -122,20 +120,20 @@ namespace Squeal
    * if extrapolated growth rates approach zero, or extrapolated frequencies approach each other.
    *
    * A branch that grows at only one end of a step has a threshold in the step. At a coalescence δ²(μ) = (λ_1 − λ_2)² is analytic and real
-   * with a simple zero, while λ has a branch point; otherwise the zero of Re λ is computed. The interval of a zero is reduced to two points
-   * close to the prediction of @p predict, or by inverse quadratic interpolation and bisection, until it is smaller than the tolerance. If
-   * modes are neutral at the first point and grow from there, for example a double mode of the frictionless problem, their onset is at the
-   * first point. If the growth of a multiple mode exceeds rounding errors only at a later point, the uncertainty extends back to the first
-   * point.
+   * with a simple zero, while λ has a branch point; otherwise the zero of Re λ is computed. The interval of a zero is reduced until it is
+   * smaller than the tolerance, to two points close to the prediction of @p predict, or by inverse quadratic interpolation and bisection.
+   * If modes are neutral at the first point and grow from there, for example a double mode of the frictionless problem, their onset is at
+   * the first point. If the growth of a multiple mode exceeds rounding errors only at a later point, the uncertainty extends back to the
+   * first point.
    *
    * The uncertainty is the width of the interval (half the width if it exceeds the tolerance) plus three times the effect of the
    * corrections of λ. At a coalescence, this effect is the change of δ² to
    *
    *   (λ_1 + D_11 − λ_2 − D_22)² + 4 D_12 D_21,
    *
-   * divided by dδ²/dμ, at points at some distance from the coalescence, because D is large and cancels close to it. Otherwise the effect is
-   * the change of Re λ or Im λ, |Re D_ii| + Σ |D_ij D_ji / (λ_i − λ_j)| for Re λ, at most the uncertainty of λ, divided by the slope of Re
-   * λ or Im λ.
+   * divided by dδ²/dμ. It is evaluated at some distance from the coalescence, because D is large and cancels close to it. Otherwise the
+   * effect is the change of Re λ or Im λ divided by its slope. The change of Re λ is |Re D_ii| + Σ |D_ij D_ji / (λ_i − λ_j)|, but at most
+   * the uncertainty of λ.
    *
    * Throws Error if the grid is not ascending or an option is not positive.
    */

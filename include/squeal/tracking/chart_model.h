@@ -51,9 +51,10 @@ namespace Squeal
     }
 
     /**
-     * Changes the error estimate for systems that differ from S in more than friction and damping: parts of the estimate for a mode in a
-     * dense cluster might cancel. Errors are then at least κ/2 √(ε_R ε_L), with the energies of the right and left residuals, which is the
-     * estimate without cancellation. Norms of a sketch are sufficient for it, see ProjectedResiduals::use_sketch().
+     * Changes the error estimate for systems that differ from the factorised matrix in more than friction and damping: parts of the
+     * estimate for a mode in a dense cluster might cancel. Errors are then at least κ/2 √(ε_R ε_L), with the energies of the right and left
+     * residuals, which is the estimate without cancellation. This estimate requires only norms of a sketch, see
+     * ProjectedResiduals::use_sketch().
      */
     void estimate_without_cancellation()
     {
@@ -61,7 +62,6 @@ namespace Squeal
       residuals.use_sketch();
     }
 
-    /// Number of vectors in the basis.
     int size() const
     {
       return model.size();
@@ -97,10 +97,9 @@ namespace Squeal
       std::vector<int>  modes;
     };
 
-    /// New basis vectors from the residuals of modes; nothing if the basis contains them already. Collective.
+    /// New basis vectors from the residuals of modes; empty if the basis contains them already. Collective.
     std::optional<MultiVector> new_vectors(const std::vector<ModesAt> &modes) const;
 
-    /// Appends vectors to the basis. Collective.
     void extend(MultiVector vectors);
 
     /**

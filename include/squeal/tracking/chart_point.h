@@ -75,6 +75,6 @@ namespace Squeal
     std::vector<ModesAtPoint> beyond;        ///< these modes at the adjacent points on both sides, if they exist
   };
 
-  /// Function that predicts the zero between the points; nothing if there is no prediction. The result is identical on every process.
+  /// Function that predicts the zero between the points; empty if there is no prediction. The result is identical on every process.
   using PredictZero = std::function<std::optional<double>(const ZeroSearch &)>;
 } // namespace Squeal

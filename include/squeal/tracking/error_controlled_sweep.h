@@ -21,7 +21,6 @@ namespace Squeal
     int    maximum_basis = 1500; ///< maximum number of vectors, at least the number of real modes
   };
 
-  /// Result of a sweep.
   struct ErrorControlledSweep
   {
     std::size_t n_left;      ///< number of points that do not meet the tolerance
@@ -36,7 +35,6 @@ namespace Squeal
   /// Evaluates @p model at several operating points, in rounds of several points per thread, and passes the results to @p each in order.
   void evaluate(const ChartModel &model, const std::vector<OperatingPoint> &points, MPI_Comm communicator, const KeepPoint &each);
 
-  /// Evaluates @p model at all points.
   std::vector<ChartPoint> evaluate(const ChartModel &model, const std::vector<OperatingPoint> &points, MPI_Comm communicator);
 
   /// Function that predicts zeros for stability_chart() by ChartModel::predicted_zero(), identical on every process; @p at returns the

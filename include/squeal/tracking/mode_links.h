@@ -26,18 +26,18 @@ namespace Squeal
   struct ModeLinks
   {
     std::vector<ModeBlock> blocks;
-    std::vector<int>       lost, gained; ///< modes of the first point without counterpart, and of the second point
+    std::vector<int>       lost, gained; ///< modes without counterpart, of the first and of the second point
     bool                   resolved;     ///< true if all blocks with modes in the band are resolved
   };
 
   /// Index of the cluster of each λ: chains of indistinguishable neighbours.
   std::vector<int> mode_clusters(const std::vector<std::complex<double>> &lambda);
 
-  /// Replaces the vectors of each cluster of λ by an orthonormal basis of their span, because the vectors of an eigensolver within this
-  /// span, and sums over them, depend on rounding errors.
+  /// Replaces the vectors of each cluster of λ by an orthonormal basis of their span. The vectors of an eigensolver within this span depend
+  /// on rounding errors, and so do sums over these vectors.
   ComplexDenseMatrix orthonormal_in_clusters(const ComplexDenseMatrix &vectors, const std::vector<std::complex<double>> &lambda);
 
-  /// X with Φ_b ≈ Φ_a X in the least-squares sense, and its inverse, for equal numbers of columns; nothing if X or the inverse does not
+  /// X with Φ_b ≈ Φ_a X in the least-squares sense, and its inverse, for equal numbers of columns; empty if X or the inverse does not
   /// exist.
   struct Transformation
   {
