@@ -273,7 +273,7 @@ class Import(ProgramTest):
                                  (text.replace("*NODE\n", "*NODE, SYSTEM=C\n"), ["*NODE generates or moves"]),
                                  (text.replace("\n1, ", "\n777, ", 1), ["has node 1, which is not in the file"]),
                                  ("*INCLUDE, INPUT=nodes.inp\n" + text, ["nodes.inp", "is missing"]),
-                                 (text.replace("S2", "SPOS", 1), ["side SPOS", "S1 to S6"]),
+                                 (text.replace("S2", "SPOS", 1), ["side SPOS", "use one of: S1, S2"]),
                                  (text + "*SURFACE, NAME=HUB\n1, S1\n", ["surface HUB is defined twice"]),
                                  (text + "*ELSET, ELSET=MORE\nROTOR, STATOR\n", ["set MORE names `STATOR`"]),
                                  (text + "*NSET, NSET=HUB\nBACKS\n", ["`HUB` names different faces"]),

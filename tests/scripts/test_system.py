@@ -273,7 +273,7 @@ class Solutions(InFolder):
 
     def test_pymor(self):
         if pymor is None:
-            self.assert_rejected(flutter().to_pymor, "pymor is missing", "install pyMOR")
+            self.assert_rejected(flutter().to_pymor, "pyMOR cannot be imported", "install pyMOR")
             return
         model = flutter().to_pymor()
         matrix = model.K.assemble(model.parameters.parse({"mu": 0.6, "k": 1.5})).matrix

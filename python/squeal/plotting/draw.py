@@ -24,7 +24,8 @@ def figures(results):
         if results.has(table):
             found.update(importlib.import_module(f"squeal.plotting.{name}").figures(results))
     if not found:
-        raise Error("no table of this run has a plot", f"folder {results.folder}", "run squeal again")
+        raise Error("the tables of this run contain nothing to plot", f"folder {results.folder}",
+                    f"choose a run with results in one of the tables: {', '.join(PLOTS.values())}")
     return found
 
 

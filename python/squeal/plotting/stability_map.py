@@ -13,7 +13,7 @@ from squeal.plotting.stability_cells import COLOURS, StabilityMap, limits, logar
 from squeal.results import axis_title
 
 SCALE = LinearSegmentedColormap.from_list("growth", COLOURS)
-MOST_STEPS = 12  # largest number of modes up to which each number has its own colour
+MOST_STEPS = 12  # maximum number of unstable modes for which each number has its own colour
 
 
 def draw_cells(panel, stability, values, norm):
