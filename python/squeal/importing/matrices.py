@@ -31,7 +31,8 @@ class Entries:
     @classmethod
     def of(cls, matrix, path):
         if not sparse.issparse(matrix) and np.ndim(matrix) != 2 or matrix.dtype.kind not in "fiub":
-            raise Error(f"the data are not a real matrix, but a {np.ndim(matrix)}-dimensional array of type {matrix.dtype}", path, "write a real matrix")
+            raise Error(f"the data are a {np.ndim(matrix)}-dimensional array of type {matrix.dtype}, not a real matrix", path,
+                        "write a real matrix")
         matrix = sparse.coo_matrix(matrix)
         return cls(matrix.row, matrix.col, matrix.data.astype(float), matrix.shape, False)
 

@@ -209,7 +209,7 @@ def names_of(arguments):
             all(isinstance(given.get(key, {}), dict) for key in ("volumes", "surfaces")) and
             all(isinstance(given.get(key, []), list) and all(isinstance(entry, str) for entry in given.get(key, [])) for key in ("contact", "mounts"))):
         raise Error("an entry other than unit, volumes, surfaces, contact or mounts, or one of the wrong type", arguments.names,
-                    'write, e.g., {unit: mm, volumes: {disc: [ROTOR]}, surfaces: {}, contact: [disc_top / pad_face], mounts: ["pad_back: 0, 0, 1e10"]}')
+                    'write {unit: mm, volumes: {disc: [ROTOR]}, surfaces: {}, contact: [disc_top / pad_face], mounts: ["pad_back: 0, 0, 1e10"]}')
     result = []
     for key, words, is_known in (("volumes", arguments.volume, is_volume), ("surfaces", arguments.surface, is_surface)):
         pairs = [(str(name), members if isinstance(members, list) else [members]) for name, members in given.get(key, {}).items()]

@@ -129,7 +129,7 @@ def body(content):
 def page(content):
     """The complete page. Raises Error if libraries are missing."""
     if missing := missing_packages():
-        raise Error("JavaScript libraries of the report are missing", "Results.report()", f"apt-get install {' '.join(missing)} (or scripts/setup.sh)")
+        raise Error("JavaScript libraries are missing", "Results.report()", f"apt-get install {' '.join(missing)} (or scripts/setup.sh)")
     charts = [{part: entry[part] for part in ("id", "data", "layout", "choices", "chosen") if part in entry}
               for entry in content["sections"] if is_chart(entry)]
     data = {"charts": charts, "shapes": next((entry["shapes"] for entry in content["sections"] if "shapes" in entry), None)}

@@ -83,7 +83,7 @@ def history_section(search):
         traces.append(points("refused or failed", [int(row["design [-]"]) for row in left], [worst] * len(left),
                              [f"<b>design {row['design [-]']}</b><br>{'<br>'.join(textwrap.wrap(reason, 44))}" for row, reason in zip(left, reasons)],
                              marker={"symbol": "x", "color": "#8a939c", "size": 9}))
-    caption = ("Each mark is a design; the line shows the best value so far. Samples of the ranges are followed by searches from the best two samples."
+    caption = ("Each mark is a design; the line shows the best value so far. Searches from the best two samples follow the samples of the ranges."
                + (" Crosses are designs without a value." if left else ""))
     return {"id": "history", "title": "History of the search", "caption": caption, "data": traces, "layout": layout("evaluation", GOALS[search.goal])}
 
