@@ -96,7 +96,8 @@ def write_pictures(simple, results, numbers, rows, files, titles, arguments):
     shows_energy = arguments.view == "energy"
     shown = [number for number in numbers or sorted(files) if not shows_energy or rows[number - 1]["unstable [-]"] == "1"]
     if shows_energy and (not shown or set(numbers) - set(shown)):
-        raise Error("--view energy requires growing modes" + ("" if numbers else ", and none grows"), "--mode", "choose a growing mode or another --view")
+        raise Error("--view energy requires growing modes" + ("" if numbers else ", and none grows"), "--mode",
+                    "choose a growing mode or another --view")
     arguments.pictures.mkdir(parents=True, exist_ok=True)
     scene, times = (None, {}) if shows_energy else scene_of_all(simple, results, titles, files, arguments)
     for number in shown:

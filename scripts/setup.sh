@@ -99,7 +99,7 @@ check_blas()
   blas=$(readlink -f "/usr/lib/$(uname -m)-linux-gnu/libblas.so.3" 2>/dev/null || true)
   case $blas in
     */blas/libblas.so.*)
-      complain "Note: deal.II uses the slow reference BLAS ($blas). Choose OpenBLAS by update-alternatives --config libblas.so.3-$(uname -m)-linux-gnu."
+      complain "Note: deal.II uses the slow BLAS ($blas). Select OpenBLAS: update-alternatives --config libblas.so.3-$(uname -m)-linux-gnu."
       ;;
   esac
 }

@@ -13,7 +13,8 @@
 #   --keep           keeps the chroot for inspection or a quick retry
 #   --in DIR         folder of the chroot (default: a temporary folder)
 #
-# Tests a fresh clone of the last commit. Packages are downloaded from the mirror of this machine. The times printed at the end include the installation of packages.
+# Tests a fresh clone of the last commit. Packages are downloaded from the mirror of this machine. The times printed at
+# the end include the installation of packages.
 
 set -euo pipefail
 # Mounts are visible only to this script and disappear when it ends.

@@ -51,7 +51,7 @@ namespace Squeal::Testing
     return symmetric_modes(*system.stiffness, *system.mass, omega_max * omega_max, options);
   }
 
-  /// A free disc with in-plane rigid-body motions, λ = 0; computing its frictionless modes requires a shift.
+  /// A free disc with in-plane rigid-body motions, λ = 0, whose frictionless modes require a shift.
   struct FreeDisc
   {
     explicit FreeDisc(const MaterialParameters &materials = mounted({}))

@@ -54,7 +54,7 @@ def small_friction(runs):
         yield Number(f"most damped F1, {reading} [%]", quoted, of_modes(results, "F1")[0])
 
 
-@entry("dissipation", "Seven more F1 modes have divergence rates of 0.01 to 0.04 %; divergence rates of the leading pairs decrease by up to 0.15 points")
+@entry("dissipation", "Seven more F1 modes have divergence rates of 0.01 to 0.04 %; rates of the leading pairs decrease by up to 0.15 points")
 def destabilised(runs):
     rows = rates_with_all_readings(runs)
     yield Number("F1 modes with divergence rates above 0.001 % without it", "3", sum(rate > 0.001 for rate in rates_of(rows, "F1", "no C_b [%]")))
