@@ -96,7 +96,7 @@ def main():
 
     (M, C, K), band = small_problem(arguments.directory)
     if abs(C).max() == 0.0:
-        raise Error("the problem has no damping and is linear in lambda^2", arguments.directory, "run prm/dissipation.prm")
+        raise Error("the problem has no damping and is linear in lambda^2", arguments.directory, "name a run of prm/dissipation.prm")
     methods = {"companion": by_companion, "symmetric": by_symmetric, "values": by_values}
     if slepc_modes.available():
         methods["toar"] = by_toar

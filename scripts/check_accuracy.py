@@ -46,7 +46,7 @@ def main():
     run = squeal.Results(arguments.run)
     goal = run.parameters.get("Accuracy", "as given")
     if goal == "as given" or ESTIMATED[0] not in run.modes:
-        raise squeal.Error("the run has no required accuracy or no estimated errors", arguments.run, "repeat it with `set Accuracy = 1 %`")
+        raise squeal.Error("the run has no required accuracy or no estimated errors", arguments.run, "repeat it with, e.g., `set Accuracy = 1 %`")
     goal = float(goal.replace("%", ""))
     modes = compare(run, squeal.Results(arguments.reference))
     converged = modes[modes["converged"] == 1]

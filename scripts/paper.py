@@ -229,8 +229,8 @@ def largest_shift(before, after, pattern):
 
 
 def of_frequencies(component, coupled, undamped, damped, n_pins):
-    """Statements on frequencies as tuples: section, words, number of the paper, number of squeal, unit, (verdict,
-    rule), modes."""
+    """Statements on frequencies as tuples: section, words, number in the paper, computed number, unit, (verdict, rule),
+    modes."""
     for name, paper in (("bending modes F1", 2), ("torsional modes T1", 1)):
         n = sum(mode.label == name.split()[-1] for mode in component) / n_pins
         yield "4.1", f"{name} per pin below 5 kHz", paper, n, "-", as_many(n, paper)
@@ -306,7 +306,7 @@ def of_dissipation(undamped, damped):
 
 
 def statements(without, damped):
-    """Statements in section 4 of the paper, except those on modes that the runs do not contain."""
+    """Statements in section 4 of the paper, except statements on modes that are missing in the runs."""
     modes = modes_to_compare(without, damped)
     found = (*of_frequencies(*modes, len(damped.rows("sliding_pins"))), *of_growth(modes[2]), *of_dissipation(*modes[2:]))
     return [{"section": section, "statement": words, "paper": paper, "here": here, "unit": unit, "verdict": verdict, "rule": rule,
@@ -314,8 +314,8 @@ def statements(without, damped):
 
 
 def printed_rate(label, shape, place, n):
-    """Label and divergence rate [%] that the paper prints with C_b for a mode, which is at position `place` among n
-    modes of its shape."""
+    """Label and divergence rate [%] printed in the paper with C_b for the mode at position `place` among n modes of its
+    shape."""
     for row, cells in printed_rows():
         printed = cells[-1]
         if printed and printed.rate is not None and row.split()[0] == shape:

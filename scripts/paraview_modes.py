@@ -9,7 +9,7 @@
     scripts/paraview_modes.py RESULTS --mode MODE --film FILE.gif         the motion, including its growth
 
 With all modes, the time buttons step through the modes by frequency [Hz], each deformed by its real part. With one
-mode, they play --periods of Re(phi e^(lambda t)), including growth. The largest displacement is drawn as --size times
+mode, the time buttons play --periods of Re(phi e^(lambda t)), including growth. The largest displacement is drawn as --size times
 the radius of the disc. MODE is a row of complex_modes.csv, counted from 1, or a label, which selects its fastest
 growing mode. Colours show the amplitude; the title shows mode, frequency, effective damping ratio and verdict. Views
 are iso, top, side, below; faces, the upper pins seen from below without the disc, with the normal reactions on their

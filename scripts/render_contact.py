@@ -93,7 +93,7 @@ def draw(path, picture, field, view):
     axes.plot(*places[shown[is_open]].T, linestyle="", marker="o", markersize=8, markerfacecolor="none", markeredgecolor=INK)
 
     radius = distances.max() + 0.06 * extent
-    angles = 0.175 * extent / radius * side * rotation_of(path) * np.array([1, -1])  # of tail and tip, relative to outwards
+    angles = 0.175 * extent / radius * side * rotation_of(path) * np.array([1, -1])  # angles of tail and tip from the outward direction
     tail, tip = radius * np.column_stack([np.sin(angles), np.cos(angles)])
     axes.annotate("", tip, tail, arrowprops={
         "arrowstyle": "-|>,head_length=0.8,head_width=0.3", "mutation_scale": 40, "linewidth": 5, "color": INK, "shrinkA": 0, "shrinkB": 0,

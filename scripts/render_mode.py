@@ -274,7 +274,7 @@ def rendered(actors, points, size, direction, up):
     lights.SetKeyToHeadRatio(1.6)
     lights.SetKeyToFillRatio(2.5)
     for set_warmth in (lights.SetKeyLightWarmth, lights.SetFillLightWarmth, lights.SetHeadLightWarmth, lights.SetBackLightWarmth):
-        set_warmth(0.5)  # neutral light, so that colours are not shifted
+        set_warmth(0.5)  # neutral light preserves the colours
     lights.AddLightsToRenderer(renderer)
 
     window.Render()

@@ -64,7 +64,7 @@ def read_matrices(directory):
             matrices[name] = sparse.csr_matrix((n, n))
             continue
         if not path.is_file():
-            raise Error(f"{path} is missing", directory, 'run squeal with --set "Output/Write matrices=true"')
+            raise Error(f"{path} is missing", directory, 'run squeal with --set Study=stability --set "Output/Write matrices=true"')
         matrices[name] = sparse.csr_matrix(scipy.io.mmread(path))
     return matrices
 

@@ -26,7 +26,8 @@ def find_program():
         return pathlib.Path(given).resolve()
     found = next((path for path in PLACES if path.is_file()), None) or shutil.which("squeal")
     if not found:
-        raise Error("the program squeal is not found", "squeal.run()", "build it with scripts/setup.sh, or set the environment variable SQUEAL")
+        raise Error("there is no program squeal in the installation, the source tree or PATH", "squeal.run()",
+                    "build it with scripts/setup.sh, or set the environment variable SQUEAL")
     return pathlib.Path(found)
 
 

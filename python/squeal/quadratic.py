@@ -137,8 +137,8 @@ class ShiftInvert:
         raise singular(self.where)
 
     def nearest(self, sigma, number, seed, factor=None):
-        """The finite ones of the `number` eigenvalues nearest to the shift, or all eigenvalues if n is smaller, with
-        their vectors, and the radius about the shift within which all eigenvalues have been found."""
+        """Eigenvalues nearest to the shift, their vectors, and the radius about the shift within which all eigenvalues
+        have been found: `number` eigenvalues except infinite ones, or all if `number` is at least n."""
         n, scale = self.M.shape[0], self.gamma
         if number >= n:
             return *solve_dense(self.M, self.C, self.K, self.where), math.inf
@@ -192,7 +192,7 @@ def solve_region(solver, region, seed):
 
 
 def merge(eigenvalues, vectors, tolerance=EQUAL):
-    """Indices of eigenpairs from several runs, with every mode once.
+    """Indices that select each mode once among eigenpairs from several runs.
 
     Pairs with the same eigenvalue are copies of one mode, or members of a multiple eigenvalue; a pair is kept if its
     vector is linearly independent of the vectors already kept.
@@ -220,8 +220,8 @@ def collect(solve, n_agreeing=2, n_runs=8):
     """Eigenvalues and vectors from runs with different starting vectors.
 
     A Krylov method with a single starting vector may miss members of multiple eigenvalues. Runs are therefore repeated
-    and merged until `n_agreeing` runs in a row, including the first, find nothing new. solve(seed) returns eigenvalues
-    and vectors, or None if it fails.
+    and merged until `n_agreeing` successive runs find no new eigenvalues; the first run counts as one of them.
+    solve(seed) returns eigenvalues and vectors, or None if it fails.
     """
     pairs, agreeing = None, 0
     for seed in range(1, n_runs + 1):
@@ -246,8 +246,8 @@ def solve(M, C, K, number=None, largest=None, region=None, shift=None, where="sy
     increasing Im λ.
 
     region: ((lower, upper) real part, (lower, upper) imaginary part) [1/s]; largest: maximum |λ|; number: number of
-    eigenvalues nearest to `shift` (default 0). Raises Error if M = 0, if the pencil is singular or if nothing is
-    selected in a large system.
+    eigenvalues nearest to `shift` (default 0). Raises Error if M = 0, if the pencil is singular, or if a large system is
+    solved without a selection.
     """
     n = M.shape[0]
     if M.nnz == 0 or not abs(M.data).max(initial=0.0):

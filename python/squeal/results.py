@@ -60,7 +60,7 @@ class Table:
         return [row[column] for row in self.rows]
 
     def numbers(self, column):
-        """Numbers in a column, NaN for an empty cell. Raises Error if a cell contains anything else."""
+        """Numbers in a column, NaN for empty cells. Raises Error if a cell is not a number."""
         result = []
         for line, text in enumerate(self.texts(column), start=2):
             try:

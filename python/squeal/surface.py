@@ -47,7 +47,7 @@ def edges_of(faces):
 
 
 def sharp_edges(points, faces, angle=50):
-    """Ends (n x 2) of the edges of a closed surface at which its normal turns by more than an angle [degree]."""
+    """Ends (n x 2) of the edges of a closed surface at which the normal turns by more than `angle` [degree]."""
     corners = points[faces]
     normals = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
     normals /= np.linalg.norm(normals, axis=1)[:, None]

@@ -74,9 +74,8 @@ class System:
     """A system of matrices: parameters by name, terms, groups of dofs (name -> inclusive ranges from 1), and the
     `reduction` of a reduced model with its basis.
 
-    Mode shapes are drawn at points with `positions` [m] (n_points x 3), whose displacements are `displacements` (3
-    n_points x n, sparse; rows x, y and z of each point in turn) times a vector; if `displacements` is None, dofs 3 i -
-    2 to 3 i belong to point i.
+    Mode shapes are drawn at points with `positions` [m] (n_points x 3). The matrix `displacements` (3 n_points x n,
+    sparse) maps a vector to x, y and z of each point in turn; if it is None, dofs 3 i - 2 to 3 i belong to point i.
 
     Arguments `p` are dictionaries of parameter values, which override the values of `parameters`.
     """
@@ -146,7 +145,7 @@ class System:
         if term.kind and term.kind not in KINDS:
             raise Error(f"the kind `{term.kind}` is unknown", where, f"write one of: {', '.join(KINDS)}")
         if (term.matrix is None) != (term.left is not None and term.right is not None) or (term.matrix is not None) == (term.left is not None):
-            raise Error("the term does not consist of either `matrix`, or `left` and `right`", where, "give a matrix, or both factors")
+            raise Error("the term must have either `matrix`, or `left` and `right`", where, "give the matrix or both factors")
         for name in ("matrix", "left", "right"):
             if (matrix := getattr(term, name)) is not None:
                 self._check_matrix(term, name, matrix, where)
@@ -163,7 +162,7 @@ class System:
         if matrix.shape != (self.size, n_columns) or name != "matrix" and len(term.weights) != n_columns:
             found = f"{matrix.shape[0]} x {matrix.shape[1]}" + ("" if name == "matrix" else f" with {len(term.weights)} weights")
             raise Error(f"the matrix is {found}, expected {self.size} x {n_columns}", where,
-                        "give matrices n x n and factors n x m with m weights, with the same n in all terms")
+                        "give n x n matrices and n x m factors with m weights, with the same n in all terms")
         if not np.isfinite(matrix.data).all():
             entries = matrix.tocoo()
             first = np.flatnonzero(~np.isfinite(entries.data))[0]
@@ -368,7 +367,7 @@ def as_kind(value, kind, where):
 
 def check_keys(entry, known, where):
     if unknown := [key for key in entry if key not in known]:
-        raise Error(f"the entry `{unknown[0]}` is unknown", where, f"use only: {', '.join(known)}")
+        raise Error(f"the entry `{unknown[0]}` is unknown", where, f"use only these entries: {', '.join(known)}")
 
 
 def read_entry(kind, entry, where, needed):

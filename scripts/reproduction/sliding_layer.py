@@ -16,7 +16,7 @@ import numpy as np
 import scipy.linalg
 import scipy.optimize
 
-# For waves longer than a quarter of the thickness, eigenvalues converge to 1e-6
+# For waves longer than a quarter of the thickness, eigenvalues are accurate to 1e-6
 N_POLYNOMIALS = 80
 
 

@@ -50,7 +50,7 @@ namespace
     return block;
   }
 
-  /// True if memory can be measured, but not with the address sanitizer, which keeps freed memory to detect its use.
+  /// True if memory can be measured; false with the address sanitizer, which keeps freed memory to detect its use.
   bool is_told()
   {
 #ifdef __SANITIZE_ADDRESS__

@@ -152,7 +152,7 @@ TEST_F(DiscModes, WaveSharesOfAnalyticFields)
           labels.push_back({family, 0, n});
           expected.push_back(f * f / (f * f + g * g));
         }
-  // Shares are independent of the phase, here a rotation of φ by a complex factor of modulus 1
+  // Shares do not change if φ is multiplied by a complex factor of modulus 1
   const MultiVector X = join_all(re), Y = join_all(im);
   const auto        shares = wave_shares(s.model, made->masses, labels, 0.6 * X - 0.8 * Y, 0.8 * X + 0.6 * Y);
   ASSERT_EQ(shares.size(), expected.size());
@@ -163,7 +163,7 @@ TEST_F(DiscModes, WaveSharesOfAnalyticFields)
       EXPECT_NEAR(shares[j]->negative, 1. - expected[j], 1e-10) << to_string(labels[j]);
     }
 
-  // Modes without nodal diameters, modes of pins and modes without motion in their direction have no wave shares
+  // Only disc modes with nodal diameters and motion in the direction of their label have wave shares
   const MultiVector axial = along(A, [](const double r, const double theta) { return r * std::cos(theta); });
   for (const ModeLabel &label : {ModeLabel{A, 0, 0}, pin_mode(F, 1), ModeLabel(), ModeLabel{ModeFamily::rigid_body}, ModeLabel{R, 0, 1}})
     EXPECT_FALSE(wave_shares(s.model, made->masses, {label}, axial, MultiVector(axial.map(), 1))[0]) << to_string(label);

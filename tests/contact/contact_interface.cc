@@ -111,7 +111,7 @@ TEST(ContactInterface, EveryNodeOnceWithItsFrame)
 
 TEST(ContactInterface, PadsThatEndAtTheRimPairInDegree2)
 {
-  // Pad edges on rim and bore must follow the curve, although the rest of their outline is straight
+  // Pad edges on rim and bore must follow the curve for any shape of the other edges
   const auto interface =
     pairs(extrude(polar_plan(0.15, 0.3, 3, 16, {{top, -1, 2, 1, 2}, {bottom, 3, 3, 0, 1}}), layers(1, 1)), Element::quadratic);
   const auto n_at = [&](const double radius) {

@@ -31,7 +31,7 @@ namespace
     return max_norm(*add(1., A, -1., B)) / max_norm(B);
   }
 
-  /// Largest column norm of A − B, relative to that of B.
+  /// Largest column norm of A − B, relative to the largest column norm of B.
   double difference(MultiVector A, const MultiVector &B)
   {
     A -= B;

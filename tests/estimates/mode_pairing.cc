@@ -94,7 +94,7 @@ TEST(ModePairing, MarksTurnedModesAndNoOther)
 
 TEST(ModePairing, FindsClustersOfManyModes)
 {
-  // The 12 randomly mixed modes have no counterparts; the other modes have, including a mode with a small share of the cluster
+  // Only the 12 randomly mixed modes have no counterparts; a mode with a small share of the cluster has one
   const ComplexDenseMatrix X = orthonormal(15);
   ComplexDenseMatrix       Y = mixed(X, 12);
   std::vector<Complex>     lambda;

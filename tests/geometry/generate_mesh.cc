@@ -185,7 +185,7 @@ TEST(GenerateMesh, CloseAndThinPinsAreMeshed)
   parameters.bottom     = {};
   EXPECT_GT(mesh_quality(generate_mesh(parameters)).worst_scaled_jacobian, 0.1);
 
-  // Between thin pins, element sizes increase
+  // Element sizes increase in the gaps between thin pins
   GeometryParameters thin;
   thin.pin_diameter = 0.001;
   EXPECT_LT(generate_mesh(thin).cells.size(), 30000u);

@@ -154,7 +154,7 @@ TEST(Rotation, SplitsDoubletsByTheDopplerShift)
         EXPECT_LT(std::abs(l.real()), 1e-9 * band);
         found.push_back(l.imag());
       }
-  // The two lowest doublets have n = 2 and are in-plane and out-of-plane
+  // The two lowest doublets have n = 2; one is in-plane, the other out-of-plane
   constexpr int n         = 2;
   int           n_checked = 0, n_in_plane = 0;
   for (std::size_t j = n_rigid; j + 1 < omega.size() && n_checked < 4; ++j)

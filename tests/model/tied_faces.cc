@@ -36,7 +36,7 @@ namespace
                                           {"9 and 6 nodes", Cut::tetrahedra, Cut::hexahedra, Element::quadratic},
                                           {"6 and 9 nodes", Cut::hexahedra, Cut::wedges, Element::quadratic}};
 
-  constexpr double edge = 0.1; // height of each box; its sides are three and two times as long
+  constexpr double edge = 0.1; // height of each box; the other sides are 3 and 2 times as long
 
   Mesh tied_boxes(const TieCase &c)
   {

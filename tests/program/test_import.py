@@ -257,7 +257,7 @@ class Import(ProgramTest):
         self.refused(["no set of solids `ROTER`", "ROTOR"], *given, "--volume", "disc=ROTER")
         self.refused(["in volumes disc and pin_top"], *given, "--volume", "disc=ROTOR", "--volume", "pin_top=ROTOR")
         self.refused(["`disc`"], *given, "--volume", "disc")
-        self.refused(["no such file"], "brakes.inp", "refused.msh")
+        self.refused(["is missing"], "brakes.inp", "refused.msh")
         self.refused(["`disc` is given twice"], *given, *self.ABAQUS, "--volume", "disc=PAD_T")
         self.refused(["cannot be written"], "brake.inp", "nowhere/refused.msh", "--unit", "mm", *self.ABAQUS)
         self.refused(["cannot be written"], "original.msh", "original.msh", "--unit", "m")

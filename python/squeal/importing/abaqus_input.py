@@ -195,7 +195,7 @@ class AbaqusInput:
         for member in self._known(sets, name, f"set {above[-1] if above else name}"):
             if isinstance(member, str):
                 if member in above or member == name:
-                    raise self._error(f"set {name} contains itself", "remove this reference")
+                    raise self._error(f"set {name} contains itself", "remove the reference")
                 member = self._labels(sets, known, member, (*above, name))
             elif isinstance(member, tuple):
                 member = [node for element in self._known(self.element_sets, member[0], f"set {name}") for node in self.elements[element][1]]

@@ -18,7 +18,7 @@ UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "in": 0.0254}
 READERS = {".inp": AbaqusInput, **dict.fromkeys((".bdf", ".nas", ".fem", ".dat"), NastranInput), **dict.fromkeys((".e", ".exo", ".ex2"), ExodusFile)}
 # Lines that identify Ansys, Fluent and Permas files, which have no fixed suffix
 NOT_READ = rb"(?im)^\s*(?P<Ansys>/prep7|/com\b|nblock,)|\A\s*(?P<Fluent>\()|^\s*(?P<Permas>\$enter component|\$coor\b)"
-# meshio keeps Gmsh's node order for these types; mid-face nodes are dropped, because squeal adds them itself
+# meshio keeps Gmsh's node order for these types; mid-face nodes are omitted, because squeal adds them
 GMSH_ORDER = {"wedge18": ("wedge15", (0, 1, 2, 3, 4, 5, 6, 9, 7, 12, 14, 13, 8, 10, 11)),
               "pyramid14": ("pyramid13", (0, 1, 2, 3, 4, 5, 8, 10, 6, 7, 9, 11, 12))}
 

@@ -156,7 +156,7 @@ ENDINGS = {".mat": "matlab", ".npy": "numpy", ".npz": "numpy", ".mtx": "text", "
 
 
 def read(path, variable=None, form=None):
-    """Entries of a matrix in the format `form`, by default the format of the file's suffix. Raises Error."""
+    """Entries of a matrix in the format `form`, by default the format of the file's suffix. Raises Error if the file is missing or invalid."""
     if not path.is_file():
         raise Error("the file is missing", path, "add it, or correct its name")
     form = form or ENDINGS.get(path.suffix.lower())

@@ -208,7 +208,7 @@ def names_of(arguments):
     if not (isinstance(given, dict) and given.keys() <= {"unit", "volumes", "surfaces", "contact", "mounts"} and
             all(isinstance(given.get(key, {}), dict) for key in ("volumes", "surfaces")) and
             all(isinstance(given.get(key, []), list) and all(isinstance(entry, str) for entry in given.get(key, [])) for key in ("contact", "mounts"))):
-        raise Error("an entry other than unit, volumes, surfaces, contact or mounts, or one of the wrong type", arguments.names,
+        raise Error("an entry is not unit, volumes, surfaces, contact or mounts, or has the wrong type", arguments.names,
                     'write {unit: mm, volumes: {disc: [ROTOR]}, surfaces: {}, contact: [disc_top / pad_face], mounts: ["pad_back: 0, 0, 1e10"]}')
     result = []
     for key, words, is_known in (("volumes", arguments.volume, is_volume), ("surfaces", arguments.surface, is_surface)):

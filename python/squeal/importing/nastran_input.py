@@ -11,7 +11,7 @@ from squeal.importing.mesh_shapes import SHELLS, SOLIDS, read_text
 ELEMENTS = {"CHEXA": SOLIDS, "CPENTA": SOLIDS, "CTETRA": SOLIDS, "CPYRA": SOLIDS, "CPYRAM": SOLIDS, "CQUAD4": SHELLS, "CQUAD8": SHELLS,
             "CQUADR": SHELLS, "CTRIA3": SHELLS, "CTRIA6": SHELLS, "CTRIAR": SHELLS}
 CORNERS = {"CQUAD4": 4, "CQUADR": 4, "CTRIA3": 3, "CTRIAR": 3}  # number of corner nodes; angle and offsets follow on the card
-# Nastran lists the mid-side nodes of the vertical edges before those of the top
+# Nastran lists the mid-side nodes of the vertical edges before the mid-side nodes of the top
 ORDER = {"hexahedron20": (*range(12), *range(16, 20), *range(12, 16)), "wedge15": (*range(9), *range(12, 15), *range(9, 12))}
 
 

@@ -64,7 +64,7 @@ def points_of(config, folder, numbering, where):
 
 
 def import_system(path):
-    """The system described by a configuration file, notes to print, and the numbering of its dofs. Raises Error."""
+    """The system described by a configuration file, notes to print, and the numbering of its dofs. Raises Error for invalid input."""
     path = pathlib.Path(path)
     config = as_kind(read_yaml(path, "configuration"), dict, path)
     check_keys(config, KNOWN, path)

@@ -17,7 +17,7 @@ MOST_STEPS = 12  # maximum number of unstable modes for which each number has it
 
 
 def draw_cells(panel, stability, values, norm):
-    """Draws unstable cells in colour, stable cells white, and undecided and missing cells hatched."""
+    """Draws unstable cells in colour, stable cells in white, and undecided and missing cells with hatching."""
     x, y = stability.x_edges, stability.y_edges
     shown = np.where(stability.is_unstable, values, np.nan)
     panel.pcolormesh(x, y, np.ma.masked_invalid(shown), cmap=SCALE, norm=norm, edgecolors="face", linewidth=0.3)
