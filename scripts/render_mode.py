@@ -140,7 +140,6 @@ def colour_table(scale):
 
 
 def sphere_actor(data, radius, colour):
-    """Actor of spheres at points."""
     sphere, mapper = vtk.vtkSphereSource(), vtk.vtkGlyph3DMapper()
     sphere.SetRadius(radius)
     sphere.SetThetaResolution(12)

@@ -28,7 +28,7 @@ PACKAGES = {"PIL": "python3-pil", "netCDF4": "python3-netcdf4", "paraview": "par
 
 @contextlib.contextmanager
 def exit_on_error():
-    """Prints the message of an Error, an OSError or a missing module and exits with status 1."""
+    """Prints errors and exits with status 1."""
     try:
         yield
     except Error as error:

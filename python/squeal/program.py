@@ -18,8 +18,8 @@ PLACES = (PACKAGE.parents[3] / "bin" / "squeal", SOURCE / "build" / "release" / 
 
 
 def find_program():
-    """Path of the executable, from the environment variable SQUEAL, the installation, the source tree or PATH. Raises
-    Error if there is none."""
+    """Path of the executable, from the variable SQUEAL, the installation, the source tree or PATH. Raises Error if there
+    is none."""
     if given := os.environ.get("SQUEAL"):
         if not pathlib.Path(given).is_file():
             raise Error(f"there is no program {given}", "environment variable SQUEAL", "set it to the path of the executable")
@@ -66,4 +66,4 @@ def error_of(process, prm):
         return Error(*(part.strip() for part in match.groups()))
     last = process.stderr.strip().splitlines()[-10:]
     return Error("\n".join([f"squeal ended with exit status {process.returncode}", *last]), prm,
-                 "read the output above; without output, run squeal in a terminal")
+                 "read this output, or run squeal in a terminal")

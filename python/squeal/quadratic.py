@@ -103,7 +103,7 @@ def singular(where):
 
 
 class ShiftInvert:
-    """Shift-invert ARPACK on the companion form; it finds the eigenvalues λ nearest to a shift σ."""
+    """Shift-invert ARPACK on the companion form."""
 
     def __init__(self, M, C, K, where):
         self.M, self.C, self.K, self.where = M, C, K, where
@@ -137,8 +137,8 @@ class ShiftInvert:
         raise singular(self.where)
 
     def nearest(self, sigma, number, seed, factor=None):
-        """Eigenvalues nearest to the shift, their vectors, and the radius about the shift within which all eigenvalues
-        have been found: `number` eigenvalues except infinite ones, or all if `number` is at least n."""
+        """Finite eigenvalues among the `number` nearest to the shift, or all eigenvalues if `number` is at least n; their
+        vectors; and the radius about the shift within which no eigenvalue is missing."""
         n, scale = self.M.shape[0], self.gamma
         if number >= n:
             return *solve_dense(self.M, self.C, self.K, self.where), math.inf

@@ -140,7 +140,6 @@ class Results:
         return Table(self.folder / f"{name}.csv")
 
     def names(self):
-        """Names of the tables."""
         return sorted(path.stem for path in self.folder.glob("*.csv"))
 
     def frame(self, name):

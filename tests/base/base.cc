@@ -23,7 +23,7 @@ TEST(Conventions, OfAMode)
   EXPECT_DOUBLE_EQ(mode.growth_rate, R);
   EXPECT_DOUBLE_EQ(mode.divergence_rate, R / omega);
   EXPECT_DOUBLE_EQ(mode.damping_ratio, -2. * R / omega);
-  // A real eigenvalue has no frequency, and its rates relative to the frequency are defined as zero
+  // Rates relative to a zero frequency are defined as zero
   const auto decay = modal_quantities({-3., 0.});
   EXPECT_EQ(decay.frequency, 0.);
   EXPECT_EQ(decay.growth_rate, -3.);
@@ -82,7 +82,7 @@ TEST(ProgressChannel, PrintsALinePerStepAndNote)
     progress.note("a note");
     EXPECT_EQ(progress.steps().size(), 3u);
   }
-  // Control characters and intermediate texts are printed only to terminals
+  // Control characters are printed only to terminals
   const std::string text = stream.str();
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 4);
   EXPECT_EQ(text.find('\033'), std::string::npos);

@@ -51,7 +51,7 @@ namespace
 TEST(Tasks, AreDoneAtATime)
 {
   set_task_threads(2);
-  // Each task waits until the other has begun, which requires that both run concurrently
+  // Each task waits until the other has begun
   std::atomic<int> n_begun = 0;
   run_tasks(2, [&](const int) {
     ++n_begun;
@@ -112,7 +112,7 @@ TEST(MpiEnvironment, DependsOnMpirunAndCores)
   EXPECT_EQ(value("OMPI_MCA_ess_singleton_isolated"), "none");
   EXPECT_EQ(value("OMPI_MCA_orte_create_session_dirs"), "none");
 
-  // Without mpirun, Open MPI runs isolated and without a session directory
+  // Without mpirun, Open MPI runs isolated
   n_processes.set(nullptr);
   yields.set(nullptr);
   prepare_mpi_environment();

@@ -107,7 +107,7 @@ namespace
 
 TEST_F(DiscModes, LabelsOfAnalyticFields)
 {
-  // Fields in one direction with m nodal circles, cos(π m s) along the radius, and n nodal diameters of a rotated pattern
+  // Fields in one direction with m nodal circles, cos(π m s), and n rotated nodal diameters
   std::vector<MultiVector> fields;
   std::vector<std::string> expected;
   for (const ModeFamily family : {A, R, C})
@@ -183,7 +183,7 @@ TEST(PinLabels, ModesOfRoundPinsInOrder)
       EXPECT_NEAR(modes.eigenvalues[0] / modes.eigenvalues[1], 1., 1e-9); // threefold symmetry of the O-grid
       ASSERT_EQ(std::count(labels.begin(), labels.end(), pin_mode(T, 1)), 1);
       torsion.push_back(modes.eigenvalues[std::find(labels.begin(), labels.end(), pin_mode(T, 1)) - labels.begin()]);
-      // With both ends held, the first longitudinal mode is a half wave at c / (2 L) = 12 kHz, above the limit
+      // With both ends held, the first longitudinal mode lies at c / (2 L) = 12 kHz, above the limit
       EXPECT_EQ(std::count(labels.begin(), labels.end(), pin_mode(L, 1)), boundary == ContactBoundary::free);
 
       // Vectors are M-orthonormal, vanish on the disc and do not move sliding faces in the normal direction

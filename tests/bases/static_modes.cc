@@ -81,7 +81,7 @@ TEST_P(StaticModesOf, AttachmentModesAreStaticResponses)
   EXPECT_LT(residual(m, m.modes.normal_attachment(), f(*P.normal)), is_simple ? 1e-11 : 1e-9);
   EXPECT_LT(residual(m, m.modes.tangential_attachment(), f(*P.tangential)), 1e-9);
 
-  // The responses to forces on each component add up to the response to forces on both
+  // Responses to forces on the two components add up
   MultiVector rest = m.modes.normal_attachment(), f_pins = forces(m.s, *P.normal, Component::pins);
   f_pins *= -1.;
   EXPECT_LT(residual(m, m.modes.normal_attachment(Component::disc), forces(m.s, *P.normal, Component::disc)), 1e-9);
@@ -89,7 +89,7 @@ TEST_P(StaticModesOf, AttachmentModesAreStaticResponses)
   rest.local() -= m.modes.normal_attachment(Component::disc).local() - m.modes.normal_attachment(Component::pins).local();
   EXPECT_EQ(max_norm(replicate(rest)), 0.);
 
-  // A rubbing mode is the response to a normal force and the friction force that it causes
+  // Rubbing modes are responses to a normal force and its friction force
   const double mu      = 0.37;
   MultiVector  rubbing = f(*P.normal);
   rubbing.local() += mu * f(*P.tangential).local();

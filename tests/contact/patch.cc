@@ -70,7 +70,7 @@ TEST_P(Blocks, ConstantPressureIsInEquilibrium)
       });
     }
 
-  // Compute contact forces K u − f with the forces f on both ends
+  // Contact forces K u − f with the forces f on both ends
   MultiVector forces = *s.system.stiffness * u;
   for (const Node &node : s.model.nodes())
     for (const int dof : node.dofs)

@@ -85,7 +85,7 @@ TEST(Travel, ShoesOutsideAndInsideOfARingAreSidesOfTheirOwn)
       EXPECT_EQ(backplate_numbers(e, false), (std::vector<int>{-1, 0, 1, 2}));
       for (const unsigned int pin : {1, 2, 3})
         {
-          // Travel is towards the ring: inwards for shoes outside the ring, outwards for shoes inside
+          // Shoes outside the ring travel inwards, shoes inside travel outwards
           Eigen::Vector3d middle(0., 0., 0.);
           for (const ContactNode &node : s.interface)
             if (node.pin == pin)

@@ -50,7 +50,6 @@ namespace
     ASSERT_EQ(modes.vectors->n_columns(), n_modes);
     EXPECT_LT(orthonormality_defect(M, *modes.vectors), 1e-12);
 
-    // Recompute the residuals
     for (int j = 0; j < n_modes; ++j)
       {
         const MultiVector x  = view(*modes.vectors, j, 1);
@@ -114,7 +113,6 @@ TEST_P(SymmetricModesBy, FreeBodyHasSixRigidModes)
   EXPECT_GT(modes.eigenvalues[6], 1e-4 * limit);
   check_modes(*body.stiffness, *body.mass, limit, modes);
 
-  // Repeat with a prescribed shift
   options.shift       = 0.2 * limit;
   const auto by_shift = symmetric_modes(*body.stiffness, *body.mass, limit, options);
   ASSERT_EQ(by_shift.n_counted, modes.n_counted);
@@ -203,7 +201,7 @@ TEST(SymmetricModes, DoNotDependOnThreads)
 
 TEST(SymmetricModes, ModesOnTheLimitAreCountedAgain)
 {
-  // Place twelve modes at the end of the band, and just above it a thirteenth, which the given count includes
+  // Twelve modes lie at the end of the band, and a thirteenth, included in the given count, just above it
   const auto            K = diagonal(rows(400), [](const int i) { return i < 12 ? 1. : i == 12 ? 1. + 5e-9 : 5. + i; });
   const auto            M = diagonal(K->rows(), [](int) { return 1.; });
   SymmetricModesOptions options;

@@ -139,7 +139,7 @@ TEST(GenerateMesh, PinsThatAreNotOppositeAreAtTheirPlaces)
         angle += shift;
       expect(parameters, 0.15);
     }
-  // Spread the upper pins more widely than the lower pins, which they then overlap obliquely
+  // Upper pins at larger angles overlap the lower pins obliquely
   for (const double spread : {27., 30., 33.})
     for (const unsigned int nodes : {7, 19})
       for (const double size : {0.012, 0.02, 0.03})
@@ -248,7 +248,7 @@ TEST(GenerateMesh, SolidsAreTakenAsTheyAreWithFacesOfSeveralNamesAndGroupsOfOneN
   expect_mentions(message<MeshError>([&] { generate_mesh(of_file(file.string()), {"wall"}); }),
                   {"'ground'", "disc_contact, pin_contact, pin_clamp, pin_side, disc_bore, disc_rim"});
 
-  // A round trip through a file, which lists a face with two names twice, preserves the mesh
+  // The file lists a face with two names twice
   const File written("mesh.msh", text_of(mesh));
   EXPECT_EQ(text_of(generate_mesh(of_file(written.string()), {"ground", "wall"})), text_of(mesh));
   // Groups of the same name form one surface

@@ -14,7 +14,6 @@ namespace
   /// Area [m²] and polar moment about the centroid [m⁴] of an outline.
   std::pair<double, double> area_and_polar_moment(const std::vector<Plan::Edge> &outline, const std::vector<Plan::Point> &points)
   {
-    // Apply Green's theorem to each edge
     double      area = 0., moment = 0.;
     Plan::Point first;
     for (const auto &[i, j] : outline)

@@ -29,7 +29,7 @@ TEST(DiscAxes, OnesThatAreNotTheZAxisAreRefusedByName)
     expect_mentions(message<MeshError>([&, map = map] { check(map); }), {text, "here", "Translate and Rotate"});
 
   EXPECT_TRUE(check([](const Point &p) { return p; }));
-  // Stretch radii within a 60° sector, as for a disc with an ear
+  // Stretch a 60° sector into an ear
   EXPECT_TRUE(check([](const Point &p) {
     const double factor = std::abs(std::atan2(p[1], -p[0])) < std::acos(-1.) / 6. ? 1.2 : 1.;
     return Point{factor * p[0], factor * p[1], p[2]};
@@ -87,7 +87,7 @@ TEST(WaveResolution, RefusesElementsLongerThanAShearWave)
     {{1.9e9, 0.25, 3070., 0., 0., Orthotropy{1.9e9, 1.9e9, 0.25, 0.25, 1e9, soft_pins.pin.least_wave_modulus(), 1e9}}, "pin_top_1"}};
   EXPECT_TRUE(refused(soft_in_shear, 1, limit));
   EXPECT_FALSE(refused(soft_in_shear, 1, limit / 1.1));
-  // Quadratic elements with twice the number of nodes per length double the limit
+  // Quadratic elements double the limit
   EXPECT_FALSE(refused(soft_pins, 2, limit));
   EXPECT_TRUE(refused(soft_pins, 2, 2. * limit));
 }

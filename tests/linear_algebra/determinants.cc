@@ -28,14 +28,14 @@ namespace
 
 TEST(Determinants, OfADenseComplexMatrix)
 {
-  // The largest entry of the first column is not on the diagonal, so that rows are exchanged
+  // The pivot of the first column is not on the diagonal
   ComplexDenseMatrix A = ComplexDenseMatrix::Zero(3, 3);
   A(0, 1)              = {0., 2.};
   A(1, 2)              = {3., 0.};
   A(2, 0)              = {1., 1.};
   A(0, 0)              = 0.5;
   const ComplexLU lu(A);
-  // The cyclic permutation is even, and the determinant is 2i · 3 · (1 + i)
+  // The cyclic permutation of the rows is even
   EXPECT_LT(distance(lu.log_determinant(), std::log(Complex(0., 6.) * Complex(1., 1.))), 1e-14);
 
   const ComplexDenseMatrix I = ComplexDenseMatrix::Identity(3, 3);

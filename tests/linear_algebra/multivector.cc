@@ -118,7 +118,7 @@ TEST_P(MultiVectors, OrthonormalizeFindsTheRank)
   ASSERT_EQ(Q.n_columns(), 5);
   EXPECT_LT(orthonormality_defect(*M, Q), 1e-13);
 
-  // X consists of three new directions with very different norms, a vector in the span of Q, a zero vector and a repeated vector
+  // X: three new directions with very different norms, a vector in the span of Q, a zero vector and a repeated vector
   const MultiVector fresh = random_vectors(map, 3, 2);
   MultiVector       X(map, 6);
   X.col(0)            = 1e6 * fresh.col(0);

@@ -142,7 +142,7 @@ TEST_P(Elasticity, MountsResistInTheirDirections)
   const Mesh  mesh = extrude(polar_plan(0.15, 0.3, 3, 12, two_pins, "inner", "outer"), layers(2, 2));
   const Model model(mesh, GetParam(), MPI_COMM_WORLD);
 
-  // Compute the area of the polygonal bore and ∫r² dA
+  // Area of the polygonal bore and ∫r² dA
   double       area = 0., r2_area = 0.;
   const double t = GeometryParameters().disc_thickness, side = 2. * 0.15 * std::sin(M_PI / 12.), apothem = 0.15 * std::cos(M_PI / 12.);
   area    = 12. * side * t;
@@ -271,7 +271,7 @@ TEST(Assembly, CurvedElementsHaveTheVolumeOfTheAnnulus)
 
 TEST_P(Elasticity, VolumesOfABodyHaveTermsOfTheirOwn)
 {
-  // A separate volume for the upper half of a pin does not change results with the same material, but can have its own parameters
+  // A separate volume of a pin changes results only with a different material
   Mesh halves = mesh;
   halves.volume_names.push_back("pin_top_1_backplate");
   halves.body_of_volume.push_back(1);

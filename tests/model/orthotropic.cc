@@ -65,7 +65,7 @@ TEST(ElasticLaws, TurnWithTheirAxes)
 
 TEST(ElasticLaws, BarsStretchByTheFormulaOfTheirAngle)
 {
-  // Compute uniaxial stress along x, with material axis 1 at an angle to x
+  // Uniaxial stress along x, with material axis 1 at an angle to x
   const Orthotropy o = skew_orthotropy();
   for (const double angle : {0., 0.3, 0.8, 0.5 * M_PI})
     {

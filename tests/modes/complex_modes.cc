@@ -41,7 +41,7 @@ TEST(ComplexModes, NormalisedSortedAndWithTheirResiduals)
           const auto        times = [&](const SparseMatrix &A) { return from_halves(replicate(A * X)); };
           const auto        R     = force_residuals(s.coupled, s.coupled.at(mu), modes.lambda, *modes.real_part, *modes.imaginary_part);
 
-          // Compute the residual Q(λ)φ from the sparse matrices at this μ
+          // Residual Q(λ)φ from the sparse matrices at this μ
           const SecondOrderSystem  matrices = with_friction(s.coupled, mu);
           const Eigen::VectorXcd   lambda = as_column(modes.lambda), squares = lambda.array().square();
           const ComplexDenseMatrix phi = from_halves(replicate(X)), M_phi = times(*s.coupled.mass), K_phi = times(*s.coupled.stiffness);

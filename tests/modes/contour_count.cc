@@ -82,7 +82,7 @@ TEST(ContourCount, FlutterOfTwoDegreesOfFreedom)
       EXPECT_EQ(count(system, {stable}, contour(1.0001 * omega, 0.01, method))[0].n_modes, 2);
       EXPECT_EQ(count(system, {stable}, contour(0.9999 * omega, 0.01, method))[0].n_modes, 1);
 
-      // Above the threshold, the eigenvalues are −R + iω and R + iω
+      // Above the threshold, eigenvalues are ∓R + iω
       const double  unstable = 1.3 * flutter.coalescence();
       const Complex l        = flutter.lambda(unstable).back();
       ASSERT_GT(std::abs(l.real()), 0.05);

@@ -38,7 +38,6 @@ namespace
     return ratios;
   }
 
-  /// The system with modal damping.
   CoupledSystem with_modal_damping(CoupledSystem system, const SymmetricModes &real)
   {
     add_modal_damping(system, *real.vectors, real.eigenvalues, ratios_of(real));
@@ -216,7 +215,6 @@ TEST(ModalDamping, GivesEachModeItsRatioAndTheRestNothing)
 
 TEST(ModalDamping, BothSolversAgreeWithFriction)
 {
-  // Combine modal damping with all other damping
   const Scene         s(mesh_of(skewed_pins), damped(mounted()), operating());
   const CoupledSystem bare =
     couple(s.system, s.contact, {std::vector<double>(s.interface.size(), 50.), std::vector<double>(s.interface.size(), -20.)});

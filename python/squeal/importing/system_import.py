@@ -43,7 +43,7 @@ def groups_of(entries, numbering, where):
 
 
 def points_of(config, folder, numbering, where):
-    """Positions of the nodes and the matrix of their displacements (dofs 1 to 3), if `nodes` names a file."""
+    """Positions of nodes and the matrix of their displacements (dofs 1 to 3), if `nodes` is given."""
     if "nodes" not in config:
         return {}
     if numbering.labels is None or config.get("unit") not in foreign_mesh.UNITS:

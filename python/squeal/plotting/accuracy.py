@@ -64,6 +64,5 @@ def kind_figure(solutions):
 
 
 def figures(results):
-    """Figures of an accuracy study."""
     solutions = [Solution(row) for row in results.table("accuracy").rows]
     return {"accuracy": cost_figure(solutions), "accuracy_kinds": kind_figure(solutions)}

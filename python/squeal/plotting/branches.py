@@ -161,7 +161,6 @@ def overview_figure(all_charts, band_end):
 
 
 def figures(results):
-    """Figures of a sweep."""
     all_charts = charts.read_charts(results)
     band_end = results.number("Band/Maximum frequency")
     return {**family_figures(all_charts), "complex_plane": complex_plane.sweep_figure(results, all_charts, band_end),

@@ -177,5 +177,4 @@ def run_figure(results):
 
 
 def figures(results):
-    """Figures of a run at one friction coefficient."""
     return {"complex_plane": run_figure(results)}

@@ -22,7 +22,6 @@ def draw_bars(panel, values, changed):
 
 
 def figures(results):
-    """Figures of a study of ingredients."""
     table = results.table("ingredients")
     names = [f"{ingredient}: {tried}" if reason == "" else f"{ingredient}: not tried"
              for ingredient, tried, reason in zip(table.texts("ingredient"), table.texts("variant"), table.texts("reason not tried"))]

@@ -116,7 +116,6 @@ def cost_figure(candidates, with_friction):
 
 
 def figures(results):
-    """Figures of a study of reduced bases."""
     candidates = read_candidates(results)
     return {"reduction_errors": error_figure(candidates),
             "reduction_cost": cost_figure(candidates, results.parameter("Reduction/Problem") == "friction")}

@@ -12,7 +12,6 @@ N_BINS, MOST_SCATTERS = 30, 4
 
 
 def figures(results):
-    """Figures of a study of uncertain parameters."""
     modes, samples = results.table("sample_modes"), results.table("samples")
     indices = results.table("sobol_indices").rows if results.has("sobol_indices") else []
     indices = [row for row in indices if row["quantity"] == "largest divergence rate"]

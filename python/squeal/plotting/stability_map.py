@@ -99,5 +99,4 @@ def map_figure(table):
 
 
 def figures(results):
-    """Figures of a sweep with a map."""
     return {"map": map_figure(results.table("map"))}

@@ -75,7 +75,6 @@ def checks(results):
 
 
 def about(row, variables, end):
-    """Hover text of a solved design."""
     return "<br>".join([f"<b>design {row['design [-]']}</b>", *(f"{name}: {plain(row[name])}" for name in variables),
                         f"onset at μ = {digits(number(row[ONSET]))} ({row['label at 0.01 %']})" if row[ONSET] else
                         f"quiet up to μ = {end:g}",
