@@ -99,12 +99,13 @@ check_blas()
   blas=$(readlink -f "/usr/lib/$(uname -m)-linux-gnu/libblas.so.3" 2>/dev/null || true)
   case $blas in
     */blas/libblas.so.*)
-      complain "Note: deal.II uses the slow BLAS ($blas). Select OpenBLAS: update-alternatives --config libblas.so.3-$(uname -m)-linux-gnu."
+      complain "Note: deal.II uses the slow reference BLAS ($blas)." \
+               "Select OpenBLAS: update-alternatives --config libblas.so.3-$(uname -m)-linux-gnu."
       ;;
   esac
 }
 
-# Number of parallel compilations: one per core, limited to one per 2 GB of memory.
+# Prints the number of parallel compilations: one per core, but at most one per 2 GB of memory.
 build_jobs()
 {
   local cores memory limit jobs
