@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Compares the CPU times of linearisations of the small quadratic eigenproblem of a chart with dissipation.
+"""Compares the CPU times of linearisations of a reduced quadratic eigenproblem with dissipation.
 
     scripts/benchmark_linearisations.py DIRECTORY [--runs 3] [--core 0]
 
@@ -14,9 +14,9 @@ nonsymmetric K. Right and left eigenvectors of the band are computed
     values       by the QR algorithm for the eigenvalues of the companion form only, and two steps of inverse iteration with
                  lambda^2 M + lambda C + K for each eigenvalue of the band
     toar         by SLEPc's two-level orthogonal Arnoldi method, a Krylov method that preserves the structure of the companion form;
-                 once for right vectors, once for left ones (requires scripts/setup.sh peers)
+                 once for right and once for left vectors (requires scripts/setup.sh peers)
 
-Prints medians of the CPU seconds on one core, and the largest relative distance of an eigenvalue of the band from the first method's.
+Prints medians of the CPU seconds on one core, and the largest relative difference from the eigenvalues of the first method in the band.
 """
 
 import os
@@ -96,7 +96,7 @@ def main():
 
     (M, C, K), band = small_problem(arguments.directory)
     if abs(C).max() == 0.0:
-        raise Error("the problem has no damping and is linear in lambda^2", arguments.directory, "take prm/dissipation.prm")
+        raise Error("the problem has no damping and is linear in lambda^2", arguments.directory, "name a run of prm/dissipation.prm")
     methods = {"companion": by_companion, "symmetric": by_symmetric, "values": by_values}
     if slepc_modes.available():
         methods["toar"] = by_toar

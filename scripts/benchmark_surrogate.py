@@ -1,12 +1,12 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Compares one reduced model for all samples with surrogates trained on full-order solutions: polynomial chaos and Kriging.
+"""Compares one reduced model for all samples with polynomial chaos and Kriging, trained on full-order solutions.
 
     scripts/benchmark_surrogate.py [--fresh 500] [--core 0]
 
 The study of prm/robustness.prm, without Sobol' indices, computes all modes of the samples to a tolerance of 1e-6. These
-modes are taken as exact; the first samples are used for training, the last ones for testing. OpenTURNS builds
+modes are taken as exact; the first samples are used for training, the last samples for testing. OpenTURNS builds
 surrogates of Re lambda and Im lambda of every mode whose name is unique in all training samples: sparse polynomial
 chaos (least angle regression, hyperbolic truncation, degree 6) and Kriging (linear trend, Matern 5/2). Errors of lambda
 are evaluated for test samples in which the name is also unique. A sample squeals if a divergence rate exceeds 0.01 %.
@@ -125,7 +125,7 @@ def main():
         directory = pathlib.Path(name)
         full, _ = run("full", "Study=stability", "Complex modes/Solver=Krylov", "Output/Mode shapes=none")
         solution = benchmarking.cpu_seconds(full, benchmarking.FULL_ORDER)
-        print(f"steps of a full-order run: {', '.join(step['name'] for step in full['steps'])}; {solution:.1f} s are its solution")
+        print(f"steps of a full-order run: {', '.join(step['name'] for step in full['steps'])}; solution: {solution:.1f} s")
         sampling = (f"Robustness/Number of samples={max(SIZES) + arguments.fresh}", "Robustness/Sobol indices=false",
                     "Robustness/Worst samples=0")
         numbers, by_sample = read_samples(run("exact", "Robustness/Tolerance=1e-6", *sampling)[1])
@@ -138,7 +138,7 @@ def main():
     n_names = len({label for modes in by_sample for label in modes})
     print("| surrogate | full-order solutions | training [s] | modes of | relative error of lambda: median | 95 % | largest | wrong verdicts [%] |")
     print("|---|---|---|---|---|---|---|---|")
-    # Pair modes by distance: names of mixed modes may differ between two bases
+    # Pair modes by distance, because names of mixed modes may differ between two bases
     pairs = []
     for exact, found in list(zip(by_sample, reduced))[fresh]:
         exact, found = (np.array(sum(modes.values(), [])) for modes in (exact, found))

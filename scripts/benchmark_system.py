@@ -7,8 +7,8 @@ one core.
     scripts/benchmark_system.py PRM [--set "Section/Name=value"]... [--runs 3] [--core 0]
 
 PRM is a parameter file with Study = sweep, System and one parameter in the section Sweep; the settings are passed to
-squeal. SLEPc uses TOAR about zero with the smallest number of eigenvalues, in steps of two, with which it covers the
-band at both ends and in the middle of the sweep.
+squeal. SLEPc uses TOAR at the shift zero with the smallest number of eigenvalues, in steps of two, that covers the band
+at both ends and in the middle of the sweep.
 
 Times of squeal cover the whole run from the files to branches and thresholds; times of SLEPc cover the solutions from
 M, C and K in memory. The two programs run alternately. Modes in the band with Re lambda of at least -0.1 times the
@@ -37,13 +37,13 @@ def swept(results):
     """Name of the parameter of a sweep and its values."""
     words = [word.strip() for word in results.parameter("Sweep/Parameter").split(",")]
     if len(words) != 4:
-        raise Error("the sweep has no parameter of a system", results.folder,
+        raise Error("Sweep/Parameter does not have four entries", results.folder,
                     "set Sweep/Parameter = NAME, FIRST, LAST, NUMBER")
     return words[0], np.linspace(float(words[1]), float(words[2]), int(words[3]))
 
 
 def modes_by_value(results, values):
-    """The eigenvalues of the sweep at each of the values, without values added by refinement."""
+    """The eigenvalues of the sweep at each of the planned values."""
     table = results.table("branches")
     at, planned = np.array(table.numbers(table.parameter)), ~np.array(table.flags("refinement [-]"), dtype=bool)
     eigenvalues = np.array(table.eigenvalues(), dtype=complex)
@@ -52,7 +52,7 @@ def modes_by_value(results, values):
 
 
 def listed(eigenvalues, band):
-    """Eigenvalues in the band with Re lambda of at least -0.1 times its end."""
+    """Eigenvalues in the band with Re lambda of at least -0.1 times the circular frequency at its end."""
     return eigenvalues[exported_matrices.in_band(eigenvalues, band) & (eigenvalues.real >= -0.2 * np.pi * band)]
 
 

@@ -14,8 +14,8 @@ Each row is a run of squeal from the mesh to its tables and, in the same round, 
              SLEPc in every applicable formulation of scripts/slepc_modes.py
     default  prm/disc_pins.prm with all fields, without SLEPc
 
-Times on one core are CPU seconds; times of SLEPc are from the assembled matrices in memory to the modes, whose number
-it is given. On two cores, the wall time of the same run is measured with one and with two threads; the ratio is the
+Times on one core are CPU seconds. SLEPc is given the number of modes; its times cover the solution from the assembled
+matrices in memory. On two cores, the wall time of the same run is measured with one and with two threads; the ratio is the
 speed-up. Prints medians of all rounds with the smallest and largest values. All rows except the last require SLEPc
 (scripts/setup.sh peers).
 """
@@ -50,7 +50,7 @@ def gain_of_cores(rounds, cores, parameter_file, folder, settings):
 
 
 def model_of(folder, damped, core):
-    """The results of the default model with its matrices, which are written once."""
+    """The results of the default model with its matrices, computed once."""
     folder = folder / ("damped" if damped else "undamped")
     if not folder.exists():
         settings = [*NO_FIELDS, "Study=stability", "Output/Write matrices=true", *([DISSIPATION] if damped else [])]
@@ -59,7 +59,7 @@ def model_of(folder, damped, core):
 
 
 def mean_of_slepc(rounds, core, model, options):
-    """Mean CPU seconds of solutions by SLEPc; each has its list of options of scripts/slepc_modes.py."""
+    """Mean CPU seconds of solutions by SLEPc, one for each list of options of scripts/slepc_modes.py."""
     solutions = [solution_by_slepc(core, model, own) for own in options]
     mean = statistics.mean(solution["CPU time [s]"] for solution in solutions)
     rounds.add(f"SLEPc {solutions[0]['formulation']}, one friction coefficient, CPU [s]", mean)
@@ -141,7 +141,7 @@ def main():
     arguments = parser.parse_args()
     rows = arguments.rows.split(",")
     if unknown := [row for row in rows if row not in ROWS]:
-        raise Error(f"there is no row {unknown[0]}", "command line", f"choose from {', '.join(ROWS)}")
+        raise Error(f"there is no row {unknown[0]}", "--rows", f"choose from {', '.join(ROWS)}")
     if rows != ["default"] and not slepc_modes.available():
         raise slepc_modes.missing()
     cores = [int(core) for core in arguments.cores.split(",")]

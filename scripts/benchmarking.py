@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Functions shared by the benchmarks: the machine, medians, and runs of squeal and SLEPc on one core with the same BLAS
-kernels."""
+"""Functions shared by the benchmarks: description of the machine, medians, and runs of squeal and SLEPc with the same
+BLAS kernels."""
 
 import json
 import os
@@ -28,7 +28,7 @@ def cpu():
 
 
 def kernels():
-    """The OpenBLAS kernels for both programs: chosen by the user, or the widest that the processor supports."""
+    """The OpenBLAS kernels for both programs: the user's choice, or the widest that the processor supports."""
     _, flags = cpu()
     widest = "SkylakeX" if "avx512vl" in flags else "Haswell" if "avx2" in flags else None
     return os.environ.get("OPENBLAS_CORETYPE", widest)
@@ -57,12 +57,11 @@ def parser_of(description):
 
 
 def run_on_cores(cores, command):
-    """The output of a command on the given cores, with one thread per core. Raises Error with its messages if it fails.
-    """
+    """The output of a command on the given cores, with one thread per core. Raises Error with the output on failure."""
     words = ["taskset", "-c", ",".join(map(str, cores)), *map(str, command)]
     process = subprocess.run(words, env=environment(len(cores)), text=True, capture_output=True, check=False)
     if process.returncode != 0:
-        raise Error(f"{process.stdout}{process.stderr}the command failed", " ".join(map(str, command)), "see the messages")
+        raise Error(f"{process.stdout}{process.stderr}the command failed", " ".join(map(str, command)), "read the output above")
     return process.stdout
 
 

@@ -1,15 +1,15 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Compares the errors estimated by a run with `set Accuracy` with a run on a much finer mesh.
+"""Compares the errors estimated by a run with `set Accuracy` with its differences from a run on a much finer mesh.
 
     scripts/check_accuracy.py RUN REFERENCE
 
-RUN and REFERENCE are result folders. Unlike in the program, modes are not paired by shape, but by minimising the sum of
-the distances of λ, with a penalty for different kinds (the letters of the labels). Prints the largest errors of
-frequencies and divergence rates of all modes, and of the modes that RUN reports as converged, the number of errors
-larger than estimated, and every mode reported as converged whose frequency error exceeds the accuracy, or whose
-divergence rate error in percentage points exceeds a tenth of it. The exit status is 1 if there is such a mode.
+RUN and REFERENCE are result folders. Modes are paired by the smallest sum of distances of λ, with a penalty for
+different kinds (the letters of the labels), and not by shape as in the program. Prints the largest errors of frequencies
+and divergence rates of all modes and of converged modes, and the number of errors larger than estimated. Lists
+converged modes with a frequency error above the accuracy, or a divergence rate error in percentage points above a tenth
+of it; the exit status is 1 if there are any.
 """
 
 import pathlib
@@ -46,7 +46,7 @@ def main():
     run = squeal.Results(arguments.run)
     goal = run.parameters.get("Accuracy", "as given")
     if goal == "as given" or ESTIMATED[0] not in run.modes:
-        raise squeal.Error("the run has no `set Accuracy`", arguments.run, "run with `set Accuracy = ...`")
+        raise squeal.Error("the run has no required accuracy or no estimated errors", arguments.run, "repeat it with, e.g., `set Accuracy = 1 %`")
     goal = float(goal.replace("%", ""))
     modes = compare(run, squeal.Results(arguments.reference))
     converged = modes[modes["converged"] == 1]

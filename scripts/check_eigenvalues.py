@@ -12,8 +12,8 @@ orthogonal Arnoldi with damping). The eigenvalues in the table are compared one 
 found. The exit status is 1 if a difference exceeds the tolerance, if the numbers of eigenvalues differ, or if the
 matrices do not have the required structure.
 
-If a body can move freely, the stiffness is singular and a real shift is chosen. If the table estimates the errors of its eigenvalues, as
-for the residual iteration, differences up to three times the largest estimate are accepted.
+If a body can move freely, the stiffness is singular and a nonzero real shift is chosen. If the table contains estimated errors of the
+eigenvalues, as for the residual iteration, differences up to three times the largest estimate are accepted.
 """
 
 import math
@@ -75,7 +75,7 @@ def solve_by_scipy(problem, band, n_modes, shift=0.0):
 
 
 def problem_of_system(arguments):
-    """The quadratic problem of a system of matrices, and True, because System.read() has checked its structure."""
+    """The quadratic problem of a system of matrices, and True, because System.read() checks its structure."""
     system = System.read(arguments.system)
     p = {name: float(value) for name, _, value in (word.partition("=") for word in arguments.parameter)}
     print(f"{system.size} dofs, {len(system.terms)} terms, " + "".join(f"{name} = {value:g}, " for name, value in system.values(p).items()), end="")
@@ -97,7 +97,7 @@ def problem_of_run(arguments):
 
 
 def compare(name, labels, eigenvalues, found, tolerance):
-    """Prints the differences from the eigenvalues found; returns True if the eigenvalues and their number agree."""
+    """Prints the differences from the independent eigenvalues `found`; returns True if values and numbers agree."""
     rows, columns, differences = quadratic.match(eigenvalues, found)
     matched = {row: pair for row, *pair in zip(rows, found[columns], differences)}
 
@@ -116,7 +116,7 @@ def compare(name, labels, eigenvalues, found, tolerance):
     largest = differences.max(initial=0)
     right = len(found) == len(eigenvalues) and largest <= tolerance
     print(f"{name}: {len(found)} modes, the table has {len(eigenvalues)}; largest relative difference {largest:.1e}, "
-          f"{'passed' if right else f'too much (tolerance {tolerance:g})' if largest > tolerance else 'the counts differ'}")
+          f"{'passed' if right else f'too large (tolerance {tolerance:g})' if largest > tolerance else 'the counts differ'}")
     return right
 
 
@@ -127,8 +127,8 @@ def main():
     parser.add_argument("--solver", choices=("scipy", "slepc", "both"), default="both", help="(default: %(default)s)")
     parser.add_argument("--system", metavar="FOLDER", help="system of matrices of the run, instead of exported matrices")
     parser.add_argument("--parameter", action="append", default=[], metavar="NAME=VALUE", help="overrides a parameter of the system")
-    parser.add_argument("--mu", type=float, help="friction coefficient (default: that of the run)")
-    parser.add_argument("--shift", type=float, help="real shift in 1/s (default: 0, or chosen if a body can move freely)")
+    parser.add_argument("--mu", type=float, help="friction coefficient (default: from the run)")
+    parser.add_argument("--shift", type=float, help="real shift in 1/s (default: 0, or chosen if the stiffness is singular)")
     parser.add_argument("--tolerance", type=float,
                         help=f"largest relative difference (default: {TOLERANCE:g}, or from the errors estimated in the table)")
     arguments = parser.parse_args()
@@ -145,7 +145,7 @@ def main():
     print(f"modes up to {band:g} Hz")
     shift = arguments.shift if arguments.shift is not None else choose_shift(problem, band)
     if arguments.shift is None and shift != 0:
-        print(f"  a body can move freely: the shift is {shift:.0f} 1/s")
+        print(f"  the stiffness is singular (a body can move freely): the shift is {shift:.0f} 1/s")
     error = "estimated error of lambda [-]"
     estimate = ESTIMATE_SAFETY * max(table.numbers(error), default=0.0) if error in table.columns else 0.0
     tolerance, source = TOLERANCE, "for converged eigenvalues"

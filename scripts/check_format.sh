@@ -1,8 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-# Checks the layout of the sources with .clang-format (clang-format 14, the version in Debian 12), and
-# the licence headers:
+# Checks the licence headers and, with clang-format 14 (the version in Debian 12), the layout of the sources:
 #
 #   scripts/check_format.sh          lists the files with errors
 #   scripts/check_format.sh --fix    corrects the layout
@@ -19,6 +18,6 @@ find include source tests -name '*.h' -print0 -o -name '*.cc' -print0 | xargs -0
 unlicensed=$(git ls-files -z | grep -zE '\.(cc|h|in|py|sh|cmake|geo)$|CMakeLists.txt$|^\.ci/run$' |
   xargs -0 grep -L 'SPDX-License-Identifier: GPL-3.0-or-later' || true)
 if [[ -n $unlicensed ]]; then
-  complain "No line of the licence in:" "$unlicensed"
+  complain "The licence line is missing in:" "$unlicensed"
   exit 1
 fi

@@ -28,7 +28,7 @@ VARYING = re.compile(r"time|CPU|wall|memory|residual|eps_res|speed-up|orthonorma
 
 
 def read_texts(path):
-    """Cells of a table as texts; pandas appends a number to repeated column names."""
+    """Cells of a table as texts, with numbers appended to repeated column names."""
     lines = [line for line in path.read_text(encoding="utf-8").splitlines(keepends=True) if line.strip() and not line.startswith("#")]
     return pandas.read_csv(io.StringIO("".join(lines)), dtype=str, keep_default_na=False) if lines else pandas.DataFrame()
 
@@ -58,13 +58,13 @@ def main():
     parser = Parser(__doc__)
     parser.add_argument("old", metavar="OLD", type=pathlib.Path)
     parser.add_argument("new", metavar="NEW", type=pathlib.Path)
-    parser.add_argument("--tolerance", type=float, default=1e-9, help="relative to the largest of a column (default: %(default)s)")
+    parser.add_argument("--tolerance", type=float, default=1e-9, help="relative to the largest number of a column (default: %(default)s)")
     parser.add_argument("--all", action="store_true", help="includes the columns that vary from run to run")
     arguments = parser.parse_args()
 
     files = sorted(path.relative_to(arguments.old) for path in arguments.old.rglob("*.csv"))
     if not files:
-        raise Error("there is no table", arguments.old, "name a folder of results")
+        raise Error("the folder contains no tables", arguments.old, "name a results folder")
     agree = True
     for file in files:
         if not (arguments.new / file).is_file():

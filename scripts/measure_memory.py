@@ -1,14 +1,13 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Measures the memory of the processes of a run in each step: the largest resident size of each process, and the
-largest sum over all processes.
+"""Measures the memory of a run in each step: the largest resident size of each process, and the largest sum over all
+processes.
 
     scripts/measure_memory.py N PRM [ARGUMENT]...
 
-Runs `squeal PRM ARGUMENT...` on N processes of this machine (mpirun, possibly more than cores) and prints a table in
-megabytes. The sizes are sampled twenty times a second; the first line shows the sizes at the start, mainly memory of
-libraries.
+Runs `squeal PRM ARGUMENT...` with mpirun on N processes, which may exceed the number of cores, and prints a table in
+megabytes. Sizes are sampled twenty times a second. The first line shows the sizes at the start, mainly of libraries.
 """
 
 import os
@@ -50,7 +49,7 @@ def ranks(program, measurement):
 
 
 class Sampler(threading.Thread):
-    """Samples the sizes of the processes. `samples` has a row for each time since the end of the last step."""
+    """Samples the sizes of the processes; `samples` contains a row for each sample since the end of the last step."""
 
     def __init__(self, program, n):
         super().__init__(daemon=True)
@@ -93,7 +92,7 @@ def main():
         elif "error" in line.lower():
             print(line, end="")
     if process.wait() != 0:
-        sys.exit(f"the program ended with {process.returncode}")
+        sys.exit(f"squeal ended with exit status {process.returncode}")
     if sampler.first:
         rows.insert(0, ("at the start", sampler.first, sum(sampler.first)))
     largest = [max(sizes) for sizes in zip(*(sizes for _, sizes, _ in rows))]

@@ -1,12 +1,11 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Measures time and memory over the size of the mesh: the default model on successively finer meshes, in one process
-that uses all cores.
+"""Measures time and memory of the default model on successively finer meshes, in one process that uses all cores.
 
     scripts/measure_scaling.py [--sizes 32,78,138,281,670,1000] [--study stability|sweep]
 
-Sizes are thousands of coupled dofs, the names of MESHES. Each size is one run in a separate process, without fields.
+Sizes are given in thousands of coupled dofs. Each size is one run in a separate process, without fields.
 Prints for each run the wall time, the peak memory and the memory expected by `squeal --dry-run`, the steps, and the
 exponent of a power law through the last two sizes.
 """
@@ -51,7 +50,7 @@ def columns(record):
 @exit_on_error()
 def main():
     parser = Parser(__doc__)
-    parser.add_argument("--sizes", default="32,78,138,281", help="names of meshes (default: %(default)s)")
+    parser.add_argument("--sizes", default="32,78,138,281", help="thousands of coupled dofs (default: %(default)s)")
     parser.add_argument("--study", default="stability", choices=STUDIES)
     arguments = parser.parse_args()
     names = arguments.sizes.split(",")

@@ -38,10 +38,10 @@ READINGS = {  # form of C_b -> arguments of the run
     "steady sliding published": ("sliding_published", "sliding.prm", NO_SHAPES, PUBLISHED)}
 
 # The paper's Table 1: label, component, coupled, complex without and with C_b. A cell is [HOW] FREQUENCY [DIVERGENCE RATE], in Hz and %.
-# HOW selects the mode of squeal. Default: the mode with the label of the row. + and -: the growing mode, and the other mode, of this shape
-# (the paper prints A0-4 - as growing with C_b). ~: the mode with the nearest frequency, if its label is unclear. A slice selects pin modes
-# of this shape ordered by divergence rate; a row `highest` compares their largest frequency and rate, other rows the smallest. The half of
-# the 24 F1 modes that bends radially has the most damping. The component frequency of F1, printed as 3353 Hz, is read as 3553 Hz.
+# HOW selects the computed mode. Default: the mode with the label of the row. + and -: the growing mode and the other mode of this shape
+# (in the paper, A0-4 - grows with C_b). ~: the mode with the nearest frequency, if its label is unclear. A slice selects pin modes of this
+# shape ordered by divergence rate; a row `highest` compares their largest frequency and rate, other rows the smallest. The 12 of 24 F1
+# modes that bend radially have the most damping. The component frequency of F1, printed as 3353 Hz, is read as 3553 Hz.
 TABLE_1 = """\
 A0-1 -,251,295,295,296
 A0-1 +,251,~ 312,~ 312,~ 313
@@ -112,7 +112,7 @@ class Mode:
 
 
 def modes_of(results, table):
-    """Modes in a table of a run by frequency; of component modes, only those of the free disc and of sliding pins."""
+    """Modes in a table of a run by frequency; component modes only of the free disc and of sliding pins."""
     return [Mode(row["label"], row["frequency [Hz]"], row.get("divergence rate [%]", 0.0), row.get("unstable [-]") == 1,
                  (row.get("wave with rotation [-]"), row.get("wave against rotation [-]"))) for row in results.rows(table)
             if (row.get("component"), row.get("contact")) in ((None, None), ("disc", "free"), ("pins", "sliding"))]
@@ -168,8 +168,8 @@ def measured_modes():
 
 
 def table_one(without, damped):
-    """Rows of Table 1 with the modes of a run without C_b and of a run with it; None if the paper prints no number or
-    the run has no such mode."""
+    """Rows of Table 1 with the modes of runs without and with C_b; None if the paper prints no number or the run has no
+    such mode."""
     found = modes_to_compare(without, damped)
     for label, cells in printed_rows():
         row = {"label": label}
@@ -229,8 +229,8 @@ def largest_shift(before, after, pattern):
 
 
 def of_frequencies(component, coupled, undamped, damped, n_pins):
-    """Statements on frequencies as tuples: section, words, number of the paper, number of squeal, unit, (verdict,
-    rule), modes."""
+    """Statements on frequencies as tuples: section, words, number in the paper, computed number, unit, (verdict, rule),
+    modes."""
     for name, paper in (("bending modes F1", 2), ("torsional modes T1", 1)):
         n = sum(mode.label == name.split()[-1] for mode in component) / n_pins
         yield "4.1", f"{name} per pin below 5 kHz", paper, n, "-", as_many(n, paper)
@@ -306,7 +306,7 @@ def of_dissipation(undamped, damped):
 
 
 def statements(without, damped):
-    """Statements in section 4 of the paper, except those on modes that the runs do not contain."""
+    """Statements in section 4 of the paper, except statements on modes that are missing in the runs."""
     modes = modes_to_compare(without, damped)
     found = (*of_frequencies(*modes, len(damped.rows("sliding_pins"))), *of_growth(modes[2]), *of_dissipation(*modes[2:]))
     return [{"section": section, "statement": words, "paper": paper, "here": here, "unit": unit, "verdict": verdict, "rule": rule,
@@ -314,8 +314,8 @@ def statements(without, damped):
 
 
 def printed_rate(label, shape, place, n):
-    """Label and divergence rate [%] that the paper prints with C_b for a mode, which is at position `place` among n
-    modes of its shape."""
+    """Label and divergence rate [%] printed in the paper with C_b for the mode at position `place` among n modes of its
+    shape."""
     for row, cells in printed_rows():
         printed = cells[-1]
         if printed and printed.rate is not None and row.split()[0] == shape:
@@ -392,7 +392,7 @@ def compare(folder, settings):
         print(f"{name}: difference of {n} frequencies {rms:.3f} % rms, largest {largest:+.2f} % ({label})")
     show("Section 4", section, [("section", "section", None), ("statement", "statement", None), ("paper", "paper", 2), ("here", "here", 3),
                                 ("unit", "unit", None), ("verdict", "verdict", None)])
-    show("Divergence rates [%] with each form of C_b, for modes with one in the paper",
+    show("Divergence rates [%] with each form of C_b, for modes whose rate the paper prints",
          [row for row in rates if row["paper with C_b [%]"] is not None],
          [("label", "label", None), ("in the paper", "label in the paper", None), ("paper", "paper with C_b [%]", 3),
            *((reading, f"{reading} [%]", 3) for reading in READINGS)])

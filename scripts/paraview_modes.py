@@ -9,7 +9,7 @@
     scripts/paraview_modes.py RESULTS --mode MODE --film FILE.gif         the motion, including its growth
 
 With all modes, the time buttons step through the modes by frequency [Hz], each deformed by its real part. With one
-mode, they play --periods of Re(phi e^(lambda t)), including growth. The largest displacement is drawn as --size times
+mode, the time buttons play --periods of Re(phi e^(lambda t)), including growth. The largest displacement is drawn as --size times
 the radius of the disc. MODE is a row of complex_modes.csv, counted from 1, or a label, which selects its fastest
 growing mode. Colours show the amplitude; the title shows mode, frequency, effective damping ratio and verdict. Views
 are iso, top, side, below; faces, the upper pins seen from below without the disc, with the normal reactions on their
@@ -55,11 +55,11 @@ def chosen(name, rows, files):
     if name.isdigit():
         number = int(name)
         if not 1 <= number <= len(rows):
-            raise Error(f"there is no row {name}", "--mode", f"complex_modes.csv has rows 1 to {len(rows)}")
+            raise Error(f"there is no row {name}", "--mode", f"choose from rows 1 to {len(rows)} of complex_modes.csv")
     else:
         own = [number for number, row in enumerate(rows, start=1) if name in (row["label"], row["label"].split(" ")[0])]
         if not own:
-            raise Error(f"no mode has that label: {name}", "--mode", f"name one of: {', '.join(sorted({row['label'] for row in rows}))}")
+            raise Error(f"no mode has the label {name}", "--mode", f"name one of: {', '.join(sorted({row['label'] for row in rows}))}")
         number = max(own, key=lambda one: float(rows[one - 1]["growth rate [1/s]"]))
     if number not in files:
         raise Error(f"the shape of row {number} was not written", f"--mode {name}", "run again with Output/Mode shapes = all")
@@ -81,23 +81,23 @@ def parsed():
     if not (arguments.state or arguments.pictures or arguments.film):
         parser.error("nothing to do: give --state, --pictures or --film")
     if arguments.film and len(arguments.mode or ()) != 1:
-        parser.error("--film shows one mode: give --mode")
+        parser.error("--film shows one mode: give --mode once")
     if arguments.state and len(arguments.mode or ()) > 1:
-        parser.error("--state shows all modes, or one")
+        parser.error("--state shows all modes or one: give --mode at most once")
     if arguments.view in ("faces", "energy") and (arguments.film or arguments.state and (arguments.mode or arguments.view == "energy")):
-        parser.error(f"--view {arguments.view} cannot show motion: use --pictures")
+        parser.error(f"--view {arguments.view} is not available for this film or session: use --pictures")
     if arguments.periods < 1 or arguments.width < 1 or not arguments.size > 0:
-        parser.error("--periods, --width and --size are positive")
+        parser.error("--periods, --width and --size must be positive")
     return arguments
 
 
 def write_pictures(simple, results, numbers, rows, files, titles, arguments):
-    """Writes pictures of the chosen modes, or of all modes with shapes; with the view `energy`, of growing modes only.
-    """
+    """Writes pictures of the chosen modes or of all modes with shapes; the view `energy` shows growing modes only."""
     shows_energy = arguments.view == "energy"
     shown = [number for number in numbers or sorted(files) if not shows_energy or rows[number - 1]["unstable [-]"] == "1"]
     if shows_energy and (not shown or set(numbers) - set(shown)):
-        raise Error("--view energy requires growing modes" + ("" if numbers else ", and none grows"), "--mode", "name one that grows")
+        raise Error("--view energy requires growing modes" + ("" if numbers else ", and none grows"), "--mode",
+                    "choose a growing mode or another --view")
     arguments.pictures.mkdir(parents=True, exist_ok=True)
     scene, times = (None, {}) if shows_energy else scene_of_all(simple, results, titles, files, arguments)
     for number in shown:

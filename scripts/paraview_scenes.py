@@ -58,7 +58,7 @@ class Scene:
         self.view.UseColorPaletteForBackground = 0
         self.view.Background = (1, 1, 1)
         self.font = width / WIDTH  # size of texts relative to a picture of default width
-        # Light mainly from the eye, less from above, so that faces that point downwards show their colours
+        # Light mainly from the eye and less from above, to show the colours of faces that point downwards
         self.view.KeyLightElevation, self.view.KeyLightAzimuth = 25, 15
         self.view.HeadLightKHRatio, self.view.FillLightKFRatio = 2, 2
         self.view.KeyLightWarmth = self.view.FillLightWarmth = self.view.HeadLightWarmth = self.view.BackLightWarmth = 0.5
@@ -101,7 +101,7 @@ class Scene:
         simple = self.simple
         faces.UpdatePipeline(max(faces.TimestepValues or [0]))
         if field not in faces.PointData.keys():
-            raise Error(f"the contact faces have no field {field}", "--view", "choose a mode that grows")
+            raise Error(f"the contact faces have no field {field}", "--view", "choose another --view, or a growing mode for `energy`")
         bounds = faces.GetDataInformation().GetBounds()
         middle = [0, 0, (bounds[4] + bounds[5]) / 2]
         pins = simple.Threshold(Input=bodies)

@@ -50,7 +50,7 @@ def rotation_of(path):
     for folder in path.resolve().parents[:2]:
         if (folder / "parameters.prm").is_file():
             return -1 if read_parameters(folder / "parameters.prm").get("Operation/Rotation") == "negative" else 1
-    raise Error("there is no parameters.prm with the sliding direction", path, "name a file in a folder of results")
+    raise Error("there is no parameters.prm with the sliding direction", path, "name a file in a results folder")
 
 
 def draw(path, picture, field, view):
@@ -63,7 +63,7 @@ def draw(path, picture, field, view):
     points, faces = contact.points, outer_faces(contact)
     faces = faces[(side * points[faces, 2] > 0).all(axis=1)]
     if not len(faces):
-        raise Error(f"no contact face is seen from {view}", path, "choose another --view")
+        raise Error(f"no contact face is visible from {view}", path, "choose another --view")
     shown, mesh = np.unique(faces), VtuFile(bodies)
     disc, disc_points = outer_faces(mesh, [0]), mesh.points
 
@@ -93,7 +93,7 @@ def draw(path, picture, field, view):
     axes.plot(*places[shown[is_open]].T, linestyle="", marker="o", markersize=8, markerfacecolor="none", markeredgecolor=INK)
 
     radius = distances.max() + 0.06 * extent
-    angles = 0.175 * extent / radius * side * rotation_of(path) * np.array([1, -1])  # of tail and tip, relative to outwards
+    angles = 0.175 * extent / radius * side * rotation_of(path) * np.array([1, -1])  # angles of tail and tip from the outward direction
     tail, tip = radius * np.column_stack([np.sin(angles), np.cos(angles)])
     axes.annotate("", tip, tail, arrowprops={
         "arrowstyle": "-|>,head_length=0.8,head_width=0.3", "mutation_scale": 40, "linewidth": 5, "color": INK, "shrinkA": 0, "shrinkB": 0,
@@ -121,7 +121,7 @@ def main():
     parser.add_argument("--view", choices=tuple(VIEWS), default="above", help="(default: %(default)s)")
     arguments = parser.parse_args()
     if not arguments.contact.is_file():
-        raise Error(f"there is no file {arguments.contact}", "CONTACT.vtu", "name a file of results")
+        raise Error(f"there is no file {arguments.contact}", "CONTACT.vtu", "name a contact file in a results folder")
     picture = arguments.output or arguments.contact.with_suffix(".png")
     draw(arguments.contact, picture, arguments.field, arguments.view)
     print(picture)

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Draws modes: coloured deformed bodies over the outline of the undeformed ones, or points if there are no cells.
+"""Draws modes as coloured deformed bodies over the outline of the undeformed bodies, or as points if there are no cells.
 
     scripts/render_mode.py MODE... [-o PICTURE] [--field FIELD] [--view VIEW] [--bodies all|moving]
 
@@ -50,7 +50,7 @@ FROM_BELOW = ((0.62, -0.52, -0.62), (0, 0, 1))
 
 @dataclasses.dataclass
 class Colours:
-    """Values to draw with their caption and colour map, and limits if they do not follow from the values."""
+    """Values to draw with caption and colour map, and limits unless they follow from the values."""
 
     values: np.ndarray
     caption: str
@@ -69,7 +69,7 @@ def colours_of(mesh, mode, field):
     largest = amplitude.max() or 1.0
     if field == "amplitude":
         return Colours(amplitude / largest, "amplitude, share of the largest", ONE_SIGN, (0, 1))
-    # The dominant component, with its sign or phase, shows the shape
+    # Show the dominant component, because its sign or phase reveals the shape
     azimuth = np.arctan2(*mesh.points[:, [1, 0]].T)
     components = {"axial": mode[:, 2],
                   "radial": mode[:, 0] * np.cos(azimuth) + mode[:, 1] * np.sin(azimuth),
@@ -140,7 +140,6 @@ def colour_table(scale):
 
 
 def sphere_actor(data, radius, colour):
-    """Actor of spheres at points."""
     sphere, mapper = vtk.vtkSphereSource(), vtk.vtkGlyph3DMapper()
     sphere.SetRadius(radius)
     sphere.SetThetaResolution(12)
@@ -152,7 +151,7 @@ def sphere_actor(data, radius, colour):
 
 
 class Mode:
-    """A mode to be drawn: surface of its bodies or points, real part of its shape, magnification and colours."""
+    """A mode to be drawn: surfaces of bodies or points, real part of the shape, magnification and colours."""
 
     def __init__(self, path, field, scale, bodies):
         mesh = VtuFile(path)
@@ -274,7 +273,7 @@ def rendered(actors, points, size, direction, up):
     lights.SetKeyToHeadRatio(1.6)
     lights.SetKeyToFillRatio(2.5)
     for set_warmth in (lights.SetKeyLightWarmth, lights.SetFillLightWarmth, lights.SetHeadLightWarmth, lights.SetBackLightWarmth):
-        set_warmth(0.5)  # neutral light, so that colours are not shifted
+        set_warmth(0.5)  # neutral light preserves the colours
     lights.AddLightsToRenderer(renderer)
 
     window.Render()
@@ -335,7 +334,7 @@ def main():
     arguments = parser.parse_args()
     for path in arguments.modes:
         if not path.is_file():
-            raise Error(f"there is no file {path}", "MODE", "name a file of results")
+            raise Error(f"there is no file {path}", "MODE", "name a file modes/NAME.vtu in a results folder")
     if arguments.width < 1:
         parser.error(f"--width takes a positive number, not {arguments.width}")
     ensure_display("pictures")

@@ -5,8 +5,8 @@
 
     scripts/report.py RESULTS [-o FILE.html]
 
-It contains the verdict, charts, animated growing modes, their energy sources, sortable tables, checks, and how to
-repeat the run. The default file RESULTS/report.html is listed in RESULTS/run.json, so that a repeated run removes it; a
+The file contains the verdict, charts, animations and energy sources of growing modes, sortable tables, checks, and how
+to repeat the run. The default file RESULTS/report.html is listed in RESULTS/run.json, so that a repeated run removes it; a
 file given by -o is not listed. Requires Debian's python3-plotly, libjs-three, libjs-jquery, libjs-jquery-datatables and
 python3-scipy (scripts/setup.sh).
 """

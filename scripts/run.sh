@@ -20,7 +20,7 @@ while (($# > 0)); do
   case $1 in
     --) shift; break ;;
     -h | --help) echo "$usage"; exit 0 ;;
-    -*) complain "$usage"; complain "Options of squeal go after --: $1"; exit 2 ;;
+    -*) complain "$usage"; complain "Put options of squeal after --: $1"; exit 2 ;;
     *)
       if [[ ! -f $1 ]]; then
         complain "There is no parameter file $1."
@@ -34,10 +34,10 @@ done
 options=("$@")
 ((${#parameter_files[@]} > 0)) || parameter_files=("$squeal_root/prm/disc_pins.prm")
 
-# Identifies the results in a folder; empty if there are none.
+# Prints an identifier of the results in a folder; nothing if there are none.
 state_of() { stat --format '%i %y' "$1/run.json" 2>/dev/null || true; }
 
-# Draws plots and writes the report; errors do not make the run fail.
+# Draws plots and writes the report; ignores errors.
 draw_plots()
 {
   local python
@@ -45,7 +45,7 @@ draw_plots()
     "$python" scripts/plot_results.py "$1" || true
     "$python" scripts/report.py "$1" || true
   else
-    complain "No plots: Python is missing. Install python3-matplotlib, then: scripts/plot_results.py $1"
+    complain "No plots: Python is missing. Install python3-matplotlib, then run scripts/plot_results.py $1"
   fi
 }
 
@@ -56,6 +56,6 @@ for parameter_file in "${parameter_files[@]}"; do
   name=$(basename "$parameter_file" .prm)
   former=$(state_of "results/$name")
   build/release/squeal "${parameter_file#"$squeal_root/"}" --output "results/$name" "${options[@]}"
-  # With options such as --dry-run, no results are written
+  # Skip plots if options such as --dry-run write no results
   [[ $(state_of "results/$name") == "$former" ]] || draw_plots "results/$name"
 done

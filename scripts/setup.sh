@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-# Prepares the checkout: installs missing Debian packages, configures and builds. run.sh and test.sh source this
-# file; called directly, it only builds the program:
+# Installs missing Debian packages, configures and builds. run.sh and test.sh source this file; called directly, it
+# builds only the program:
 #
 #   scripts/setup.sh              packages for building, running and most tests
 #   scripts/setup.sh browser      also the browser in which scripts/test.sh tests the pages of scripts/report.py
@@ -35,7 +35,7 @@ packages_package=(dpkg-dev file)
 
 complain() { printf '%s\n' "$*" >&2; }
 
-# Prints those of the given packages that are not installed.
+# Prints the given packages that are not installed.
 missing_packages()
 {
   local installed package
@@ -51,7 +51,7 @@ install_packages()
   local missing privilege=()
   (($# > 0)) || return 0
   if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
-    complain "This is not a Debian system: packages are not checked here, CMake reports what it does not find."
+    complain "Packages are checked only on Debian systems. CMake reports missing libraries."
     return
   fi
   mapfile -t missing < <(missing_packages "$@")
@@ -62,7 +62,7 @@ install_packages()
       privilege=(sudo -n)
     else
       complain "Missing packages: ${missing[*]}"
-      complain "Install them, then call this script again:"
+      complain "Install them, then run this script again:"
       complain "  sudo apt-get update && sudo apt-get install --no-install-recommends ${missing[*]}"
       exit 1
     fi
@@ -99,12 +99,13 @@ check_blas()
   blas=$(readlink -f "/usr/lib/$(uname -m)-linux-gnu/libblas.so.3" 2>/dev/null || true)
   case $blas in
     */blas/libblas.so.*)
-      complain "Note: the BLAS in use is the slow reference ($blas); see update-alternatives --config libblas.so.3-$(uname -m)-linux-gnu."
+      complain "Note: deal.II uses the slow reference BLAS ($blas)." \
+               "Select OpenBLAS: update-alternatives --config libblas.so.3-$(uname -m)-linux-gnu."
       ;;
   esac
 }
 
-# Number of parallel compilations: one per core, limited to one per 2 GB of memory.
+# Prints the number of parallel compilations: one per core, but at most one per 2 GB of memory.
 build_jobs()
 {
   local cores memory limit jobs
@@ -131,7 +132,7 @@ build()
   local directory=$squeal_root/build/$preset
   local log=$directory/build.log fresh=()
   mkdir -p "$directory"
-  # In a copy of the checkout, an existing build directory would build the original sources.
+  # Configure again in a copied source tree, whose build directory would build the original sources.
   if [[ -f $directory/CMakeCache.txt ]] &&
      ! grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$squeal_root" "$directory/CMakeCache.txt"; then
     fresh=(--fresh)
@@ -150,7 +151,7 @@ build()
   fi
 }
 
-# OpenBLAS uses SSE3 kernels on processors that it does not know: select kernels by the flags of the processor.
+# Selects OpenBLAS kernels by the flags of the processor, because OpenBLAS uses SSE3 kernels on unknown processors.
 set_blas_kernels()
 {
   local flags
@@ -163,9 +164,9 @@ set_blas_kernels()
   esac
 }
 
-# Sets the environment of the programs: one BLAS thread per process, because threads that share cores
-# with other processes slow down factorisations many times; and settings of Open MPI for containers,
-# for root, and for more processes than cores, where waiting processes must yield the core.
+# Sets the environment of the programs: one BLAS thread per process, because threads that share cores with other
+# processes slow down factorisations many times; and settings of Open MPI for containers, for root, and for more
+# processes than cores.
 set_environment()
 {
   set_blas_kernels

@@ -25,7 +25,7 @@ if [[ ${1:-} == --serve ]]; then
 fi
 mkdocs build --quiet --clean
 
-# Check that files outside the site to which pages refer exist
+# Check links to files outside the site
 n_missing=0
 for page in README.md CONTRIBUTING.md SECURITY.md CHANGELOG.md; do
   while read -r link; do
@@ -36,8 +36,8 @@ for page in README.md CONTRIBUTING.md SECURITY.md CHANGELOG.md; do
   done < <(grep -oP '\]\(\K[^)#:]+(?=[)#])' "$page")
 done
 
-# Check links and anchors of the site. If linkchecker is run as root, it switches to the user nobody, who may not have
-# access to the checkout
+# Check links and anchors of a copy of the site, because linkchecker run as root switches to the user nobody, who may not
+# have access to the source tree
 readable=$(mktemp -d)
 trap 'rm -rf "$readable"' EXIT
 cp -r build/site/. "$readable"

@@ -14,7 +14,7 @@ DIRECTORY is the output of a run with Output/Write matrices = true. The formulat
     linearised  the same by Krylov-Schur on the companion form
 
 The default is the fastest formulation: linear, or toar with damping. Prints for each run the time from the coupled matrices in memory to
-the eigenvalues and eigenvectors, and the number of modes: a Krylov method with one starting vector may miss multiple eigenvalues.
+the eigenvalues and eigenvectors, and the number of modes. A Krylov method with one starting vector may miss multiple eigenvalues.
 Requires Debian's python3-slepc4py (real scalars).
 """
 
@@ -47,11 +47,11 @@ def available():
 
 
 def missing():
-    return Error("SLEPc is missing", "slepc4py", "apt-get install python3-petsc4py python3-slepc4py (or scripts/setup.sh peers)")
+    return Error("slepc4py or petsc4py is missing", "SLEPc", "apt-get install python3-petsc4py python3-slepc4py (or scripts/setup.sh peers)")
 
 
 def is_undamped(problem):
-    """True if there is no damping, so that the problem is linear in lambda^2."""
+    """True if there is no damping and the problem is therefore linear in lambda^2."""
     return problem.damping.nnz == 0 or abs(problem.damping).max() == 0
 
 
@@ -75,7 +75,7 @@ class Solution:
         from petsc4py import PETSc
 
         if np.issubdtype(PETSc.ScalarType, np.complexfloating):
-            raise Error("PETSc has complex scalars", "petsc4py", "choose the PETSc for real scalars")
+            raise Error("PETSc has complex scalars", "petsc4py", "choose a PETSc build with real scalars")
         self.formulation = formulation or applicable(problem)[0]
         self.shift = shift
         start = time.perf_counter(), time.process_time()
@@ -134,8 +134,7 @@ class Solution:
         return solver
 
     def covers(self, band):
-        """True if eigenvalues beyond the band were found, so that the band is complete except for multiple eigenvalues.
-        """
+        """True if eigenvalues beyond the band were found; the band is then complete except for multiple eigenvalues."""
         end = 2 * math.pi * band
         if self.formulation == "linear":
             return abs(self.found + self.shift**2).max(initial=0.0) > end**2 + self.shift**2
@@ -151,7 +150,7 @@ def petsc_matrix(matrix):
 
 
 def n_wanted(formulation, n_modes):
-    """Number of eigenvalues to request so that some of them lie beyond the band."""
+    """Number of eigenvalues to request, some of them beyond the band."""
     return n_modes + 4 if formulation == "linear" else 2 * n_modes + 4
 
 
@@ -185,7 +184,7 @@ def main():
     parser = Parser(__doc__)
     parser.add_argument("directory", metavar="DIRECTORY", help="output of a run with Output/Write matrices = true")
     parser.add_argument("--formulation", choices=FORMULATIONS, help="(default: the fastest one)")
-    parser.add_argument("--mu", type=float, help="friction coefficient (default: that of the run)")
+    parser.add_argument("--mu", type=float, help="friction coefficient (default: from the run)")
     parser.add_argument("--modes", type=int, default=66, help="number of modes (default: %(default)s)")
     parser.add_argument("--runs", type=int, default=3, help="repetitions (default: %(default)s)")
     parser.add_argument("--tolerance", type=float, default=1e-12, help="SLEPc's tolerance (default: %(default)s)")
@@ -205,7 +204,7 @@ def main():
     problem = exported_matrices.couple(exported_matrices.read_matrices(arguments.directory), friction_coefficient)
     print(f"{problem.size} dofs, {problem.stiffness.nnz} entries in the stiffness")
     if arguments.formulation == "linear" and not is_undamped(problem):
-        raise Error("with damping the problem is not linear in lambda^2", "--formulation", "choose another one")
+        raise Error("the problem has damping and is not linear in lambda^2", "--formulation", "choose another formulation")
     formulation = arguments.formulation or applicable(problem)[0]
 
     records = []
@@ -214,7 +213,7 @@ def main():
             solution = Solution(problem, n_wanted(formulation, arguments.modes), formulation, tolerance=arguments.tolerance,
                                 basis=arguments.basis, seed=run + 1)
         except PETSc.Error as error:
-            raise Error(f"SLEPc failed: {error}", arguments.directory, "give another --basis") from error
+            raise Error(f"SLEPc failed: {error}", arguments.directory, "try another --basis, --formulation or --modes") from error
         listed = exported_matrices.in_band(solution.eigenvalues, band)
         found, vectors = solution.eigenvalues[listed], solution.vectors[:, listed]
         records.append({"formulation": formulation, "CPU time [s]": solution.cpu, "wall time [s]": solution.wall, "modes": len(found),

@@ -5,7 +5,7 @@
 #
 #   scripts/test.sh
 #   scripts/test.sh -R contact
-#   scripts/test.sh --extended        the long tests, which are omitted otherwise, with their times
+#   scripts/test.sh --extended        only the long tests, which are omitted otherwise
 
 set -euo pipefail
 # shellcheck source=scripts/setup.sh

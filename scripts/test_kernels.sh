@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-# Builds, and runs the tests that depend on dense decompositions with several sets of OpenBLAS kernels, which round differently:
+# Builds, and runs tests of dense decompositions with several sets of OpenBLAS kernels, whose rounding differs:
 #
 #   scripts/test_kernels.sh
 #   scripts/test_kernels.sh -R sliding

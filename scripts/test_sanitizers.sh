@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-# Builds with the assertions of deal.II and squeal and with the address and undefined-behaviour sanitizers, and runs the quick
-# tests. Arguments are passed to ctest:
+# Builds with assertions and with the address and undefined-behaviour sanitizers, and runs the quick tests. Arguments are
+# passed to ctest:
 #
 #   scripts/test_sanitizers.sh
 #   scripts/test_sanitizers.sh -R contact

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-# Runs the two commands of the README on a minimal Debian in a chroot, to reveal missing dependencies. Requires root
+# Runs the two commands of the README in a chroot with a minimal Debian, to reveal missing dependencies. Requires root
 # and debootstrap.
 #
 #   scripts/try_debian.sh [RELEASE] [--kernels NAME]... [--run-only | --package DEB] [--keep] [--in DIR]
@@ -13,8 +13,8 @@
 #   --keep           keeps the chroot for inspection or a quick retry
 #   --in DIR         folder of the chroot (default: a temporary folder)
 #
-# Tests a fresh clone of the last commit of this checkout. Packages are downloaded from the mirror that this machine
-# uses. The times printed at the end include the installation of packages.
+# Tests a fresh clone of the last commit. Packages are downloaded from the mirror of this machine. The times printed at
+# the end include the installation of packages.
 
 set -euo pipefail
 # Mounts are visible only to this script and disappear when it ends.
@@ -45,10 +45,10 @@ while (($# > 0)); do
   esac
 done
 ((${#kernels[@]} > 0)) || kernels=("")
-if (($(id -u) != 0)); then complain "A chroot needs root."; exit 1; fi
+if (($(id -u) != 0)); then complain "A chroot requires root: run this script as root."; exit 1; fi
 if ! command -v debootstrap >/dev/null; then complain "debootstrap is missing: apt-get install debootstrap"; exit 1; fi
 mirror=$(apt-get indextargets 'Created-By: Packages' --format '$(REPO_URI)' | grep -E '/debian/?$' | head -n 1)
-if [[ -z $mirror ]]; then complain "apt-get names no Debian mirror; see /etc/apt/sources.list."; exit 1; fi
+if [[ -z $mirror ]]; then complain "apt-get lists no Debian mirror. Check /etc/apt/sources.list."; exit 1; fi
 
 directory=${directory:-$(mktemp -d)}
 root=$directory/$release

@@ -38,7 +38,7 @@ namespace Squeal::Testing
     unsigned int                seed = 1;
   };
 
-  /// Adds a volume of bricks that are all cut in the same way; its lower and upper faces in z become surfaces with the given names.
+  /// Adds a volume of bricks, all cut in the same way, with the given names for its lower and upper faces in z.
   inline void add_box(Mesh &mesh, const Box &box, const std::string &volume, const std::array<std::string, 2> &surfaces)
   {
     std::mt19937                     random(box.seed);
@@ -80,8 +80,8 @@ namespace Squeal::Testing
               }
             else
               {
-                // Divide around a central node: each face gets a pyramid, or two tetrahedra with the diagonal from its first node. The face
-                // towards hexahedra begins with nodes 0, 4
+                // Divide around a central node into pyramids, or pairs of tetrahedra with the diagonal from the first node of the face. The
+                // face towards hexahedra begins with nodes 0, 4
                 const unsigned int centre = add_point({{i + 0.5, j + 0.5, k + 0.5}});
                 for (unsigned int face = 0; face < 6; ++face)
                   {

@@ -14,7 +14,7 @@
 
 namespace Squeal::Testing
 {
-  /// Slopes the contact faces towards the rim and tilts them about x so that no two faces are alike.
+  /// Slopes the contact faces towards the rim and tilts them about x, so that all faces differ.
   inline Mesh sloped(const Mesh &mesh, const double slope)
   {
     return mapped(mesh, [slope](const Point3 &p) {
@@ -25,7 +25,7 @@ namespace Squeal::Testing
   /// Mounts that hold the bore in all directions.
   inline const std::vector<Mount> held = {{"disc_bore", 1e9, 7.80e10, 1.88e10}};
 
-  /// Parameters of a test: contact faces, element, mounts.
+  /// A test case: contact faces, element and mounts.
   struct Case
   {
     const char        *name;

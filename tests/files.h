@@ -15,7 +15,7 @@
 
 namespace Squeal::Testing
 {
-  /// Content of a file; empty if it does not exist.
+  /// Content of a file, or an empty text if it does not exist.
   inline std::string content(const std::filesystem::path &file)
   {
     std::ifstream     stream(file);
@@ -46,7 +46,7 @@ namespace Squeal::Testing
       alone([&] { std::filesystem::remove_all(path); });
     }
 
-    /// Runs @p action on one process while the others wait.
+    /// Runs @p action on one process while the other processes wait.
     template <typename Function>
     void alone(const Function &action) const
     {

@@ -17,7 +17,7 @@ namespace Squeal::Testing
    *   ẍ + (d + β K̃) ẋ + K̃ x = 0,   K̃ = [ k11   k12 - μ k_c ]
    *                                     [ k12   k22         ]
    *
-   * β is structural damping, whose forces also cause friction: V_C = β V_K.
+   * β is the coefficient of structural damping, whose forces also cause friction: V_C = β V_K.
    */
   struct Flutter
   {

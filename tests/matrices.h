@@ -50,7 +50,7 @@ namespace Squeal::Testing
     return RowMap(rank == 0 ? 0 : (rank == n_processes - 1 ? n - share * (n_processes - 2) : share), MPI_COMM_WORLD);
   }
 
-  /// Random entries in [−1, 1], broadcast because a library may advance the random sequence on one process only.
+  /// Random entries in [−1, 1], broadcast because a library may advance the random sequence on a single process.
   inline DenseMatrix agreed_random_matrix(const int n_rows, const int n_columns)
   {
     DenseMatrix result = DenseMatrix::Random(n_rows, n_columns);
@@ -69,7 +69,7 @@ namespace Squeal::Testing
     });
   }
 
-  /// The sparse form of the matrix A, which is known on all processes.
+  /// The sparse form of a matrix A that all processes store.
   inline std::shared_ptr<SparseMatrix> sparse(const RowMap &row_map, const RowMap &column_map, const DenseMatrix &A)
   {
     return sparse(row_map, column_map, [&A](const int i) {
@@ -186,7 +186,7 @@ namespace Squeal::Testing
       return sparse(map, map, [&](const int dof) {
         Row       row;
         const int node = dof / 3, component = dof % 3;
-        // Numbering across the thickness first keeps the bandwidth small.
+        // Number across the thickness first to keep the bandwidth small
         const int position[3] = {node / (nz * ny), (node / nz) % ny, node % nz};
         for (int a = 0; a < 8; ++a)
           {

@@ -37,10 +37,10 @@ namespace Squeal::Testing
   };
 
   /**
-   * An annulus of @p n_rings × @p n_sectors quadrilaterals; sector 0 begins at
-   * the x axis, so that sector -1 - j is the mirror image of sector j about it.
-   * Boundary curves are called @p bore and @p rim; names other than disc_bore
-   * and disc_rim keep the polygons for quadratic elements.
+   * An annulus of @p n_rings × @p n_sectors quadrilaterals. Sector 0 begins at
+   * the x axis, about which sector -1 - j is the mirror image of sector j.
+   * Boundary curves are called @p bore and @p rim; with names other than disc_bore
+   * and disc_rim, they remain polygons for quadratic elements.
    */
   inline Plan polar_plan(const double                 inner,
                          const double                 outer,
@@ -58,7 +58,7 @@ namespace Squeal::Testing
     for (int i = 0; i <= n_rings; ++i)
       for (int j = 0; j < n_sectors; ++j)
         {
-          // Bitwise mirror images
+          // Compute bitwise mirror images
           const int    k     = std::min(j, n_sectors - j);
           const double r     = inner + (outer - inner) * i / n_rings;
           const double angle = 2. * M_PI * k / n_sectors;
@@ -110,7 +110,7 @@ namespace Squeal::Testing
 
   // ------------------------------------------------------------------ meshes
 
-  /// The mesh with all points moved.
+  /// The mesh with all points mapped.
   inline Mesh mapped(Mesh mesh, const std::function<Point3(const Point3 &)> &map)
   {
     for (auto &point : mesh.points)
@@ -233,7 +233,7 @@ namespace Squeal::Testing
     return materials;
   }
 
-  /// The same materials with Rayleigh damping that differs between disc and pins.
+  /// The materials with different Rayleigh damping of disc and pins.
   inline MaterialParameters damped(MaterialParameters materials)
   {
     materials.disc.rayleigh_alpha = 20.;

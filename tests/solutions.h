@@ -27,7 +27,7 @@ namespace Squeal::Testing
   /// Upper end of the band [rad/s].
   inline const double omega_max = circular_frequency(6000.);
 
-  // Pins that are symmetric about the x axis, and skewed pins.
+  // Pins with symmetry about the x axis, and skewed pins
   inline const std::vector<PolarPin> symmetric_pins = {{Plan::Side::top, -1, 2, 1, 1},
                                                        {Plan::Side::top, 4, 2, 0, 1},
                                                        {Plan::Side::top, -6, 2, 0, 1},
@@ -51,7 +51,7 @@ namespace Squeal::Testing
     return symmetric_modes(*system.stiffness, *system.mass, omega_max * omega_max, options);
   }
 
-  /// A free disc with in-plane rigid-body motions, λ = 0; computing its frictionless modes requires a shift.
+  /// A free disc with in-plane rigid-body motions, λ = 0, whose frictionless modes require a shift.
   struct FreeDisc
   {
     explicit FreeDisc(const MaterialParameters &materials = mounted({}))

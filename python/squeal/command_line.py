@@ -12,13 +12,13 @@ from squeal.errors import Error
 
 
 class Parser(argparse.ArgumentParser):
-    """An argument parser that prints its description verbatim and reports errors as Error."""
+    """An argument parser that prints its description verbatim and raises Error for invalid arguments."""
 
     def __init__(self, description, **more):
         super().__init__(description=description, formatter_class=argparse.RawDescriptionHelpFormatter, **more)
 
     def error(self, message):
-        raise Error(message, "command line", "see --help")
+        raise Error(message, "command line", "correct the arguments; --help lists them")
 
 
 # Debian packages whose names differ from the module names
@@ -28,21 +28,21 @@ PACKAGES = {"PIL": "python3-pil", "netCDF4": "python3-netcdf4", "paraview": "par
 
 @contextlib.contextmanager
 def exit_on_error():
-    """Prints an error and exits with status 1."""
+    """Prints errors and exits with status 1."""
     try:
         yield
     except Error as error:
         sys.exit(f"error: {error}")
     except OSError as error:
-        sys.exit(f"error: {error.strerror}\n  where:  {error.filename}\n  change: check the path and its permissions")
+        sys.exit(f"error: {error.strerror}\n  where:  {error.filename}\n  change: check the path, its permissions and the free space")
     except ModuleNotFoundError as missing:
         package = PACKAGES.get(missing.name, f"python3-{missing.name}")
         sys.exit(f"error: the Python module {missing.name} is missing\n  where:  {sys.argv[0]}\n  change: apt-get install {package}")
 
 
 def make_of_results(what, parser, make):
-    """Creates `what` (for example, plots) from the result folder RESULTS of the command line, and prints the files that
-    it writes.
+    """Creates `what` (for example, plots) from the results folder RESULTS of the command line, and prints the names of
+    the files.
 
     make(results, arguments) returns a file or a list of files, and notes to print.
     """
@@ -53,7 +53,7 @@ def make_of_results(what, parser, make):
     try:
         found, remarks = make(Results(arguments.results), arguments)
     except ModuleNotFoundError as missing:
-        sys.exit(f"No {what}: install python3-{missing.name} (or call scripts/setup.sh), then: "
+        sys.exit(f"No {what}: install python3-{missing.name} (or run scripts/setup.sh), then: "
                  f"scripts/{os.path.basename(sys.argv[0])} {arguments.results}")
     print(*remarks, f"  {what}: {', '.join(map(str, found if isinstance(found, list) else [found]))}", sep="\n")
 
@@ -63,7 +63,7 @@ def ensure_display(packages, command=(sys.executable,), screen="1280x1024x24"):
     if os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"):
         return
     if os.environ.get("SQUEAL_RENDER_UNDER_XVFB") or not shutil.which("xvfb-run") or not shutil.which("xauth"):
-        raise Error("there is no X display, and xvfb-run is missing", "environment variable DISPLAY",
+        raise Error("there is no X display, and xvfb-run cannot provide one", "environment variable DISPLAY",
                     f"apt-get install xvfb xauth (or scripts/setup.sh {packages})")
     os.environ["SQUEAL_RENDER_UNDER_XVFB"] = "1"
     os.execvp("xvfb-run", ["xvfb-run", "-a", "-s", f"-screen 0 {screen}", *command, *sys.argv])

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Reads the matrices that a run of squeal has exported and forms the quadratic eigenproblem from them.
+"""Reads the matrices exported by a run and forms the quadratic eigenproblem.
 
 DIRECTORY/matrices contains, in Matrix Market format,
 
@@ -18,10 +18,10 @@ The coupled problem is (lambda^2 M~_c + lambda C_c + K~_c) phi = 0 with
     K~ = K - mu P_t^T S K + (P_n + mu P_t)^T K_n P_n,  M~ = M - mu P_t^T S M,  C~ = C + G - mu P_t^T S (C + G) + C_b,
     K~_c = T_c^T K~ T_c, M~_c and C_c accordingly.
 
-S extracts the reactions of the rigid contact nodes from nodal forces, S [P_n; P_t; P_b]^T = [I, 0, 0]: the pseudo-inverse, which is 1/2 P_n
-for pairs of coincident nodes. For nonmatching faces the program uses another left inverse.
+S extracts the reactions of the rigid contact nodes from nodal forces: S [P_n; P_t; P_b]^T = [I, 0, 0]. It is the pseudo-inverse, 1/2 P_n for
+pairs of coincident nodes. For nonmatching faces the program uses another left inverse.
 
-Only these matrices come from the program, so that results based on them are an independent check.
+Results computed from these matrices are an independent check of the program.
 """
 
 import dataclasses
@@ -50,12 +50,12 @@ class QuadraticProblem:
         return self.stiffness.shape[0]
 
     def backward_errors(self, eigenvalues, vectors):
-        """|Q(lambda) x| / ((|lambda|^2 |M| + |lambda| |C| + |K|) |x|) of each pair, Frobenius norms of the matrices."""
+        """|Q(lambda) x| / ((|lambda|^2 |M| + |lambda| |C| + |K|) |x|) of each pair, with Frobenius norms."""
         return quadratic.errors(self.mass, self.damping, self.stiffness, eigenvalues, vectors)[1]
 
 
 def read_matrices(directory):
-    """Reads the exported matrices: name -> CSR matrix. Missing G and K_n are zero; any other missing file is an Error."""
+    """Reads the exported matrices: name -> CSR matrix. G and K_n are zero if they have no file; raises Error if another file is missing."""
     matrices = {}
     for name in ("M", "C", "K", "G", "C_b", "P_n", "P_t", "P_b", "K_n", "T_c"):
         path = pathlib.Path(directory) / "matrices" / f"{name}.mtx"
@@ -64,7 +64,7 @@ def read_matrices(directory):
             matrices[name] = sparse.csr_matrix((n, n))
             continue
         if not path.is_file():
-            raise Error(f"{path} is missing", directory, 'run squeal with --set "Output/Write matrices=true"')
+            raise Error(f"{path} is missing", directory, 'run squeal with --set Study=stability --set "Output/Write matrices=true"')
         matrices[name] = sparse.csr_matrix(scipy.io.mmread(path))
     return matrices
 
@@ -108,7 +108,7 @@ def couple(matrices, friction_coefficient):
 
 
 def structure_errors(matrices):
-    """Quantities that must be zero: description -> value relative to the matrices from which it is computed."""
+    """Quantities that must be zero: description -> value; symmetry errors are relative to the largest entry."""
 
     def largest(matrix):
         return abs(matrix).max() if matrix.nnz else 0.0
@@ -126,6 +126,6 @@ def structure_errors(matrices):
 
 
 def in_band(eigenvalues, band):
-    """Mask of the eigenvalues with a frequency in (0, band] [Hz]; excludes real eigenvalues and rigid-body modes."""
+    """Mask of the eigenvalues with frequencies up to `band` [Hz], without real eigenvalues and rigid-body modes."""
     frequencies = eigenvalues.imag / (2 * math.pi)
     return (frequencies > 1e-5 * band) & (frequencies <= band)

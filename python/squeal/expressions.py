@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Coefficients: muParser expressions in named parameters.
+"""Coefficients as muParser expressions in named parameters.
 
 Operators are + - * / ^, functions sin, cos, tan, exp, log and ln (natural), sqrt and abs; _pi is pi.
 """
@@ -21,8 +21,8 @@ OPERATORS = {ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mu
 CONSTANTS = {"_pi": math.pi}
 TOKEN = re.compile(r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(?P<name>[A-Za-z_]\w*)|(?P<operator>[-+*/^()]))", re.ASCII)
 NAME = re.compile(r"[A-Za-z_]\w*", re.ASCII)
-CHANGE = "write + - * / ^, sin, cos, tan, exp, log, sqrt, abs, _pi, numbers and names of parameters"
-# Maximum number of bisections per parameter; a divisor that may still vanish then counts as zero
+CHANGE = "use numbers, parameters, _pi, + - * / ^, matching parentheses, sin, cos, tan, exp, log, ln, sqrt and abs"
+# Maximum number of bisections per parameter; a divisor whose interval still contains zero then counts as zero
 HALVINGS = 40
 
 
@@ -36,10 +36,10 @@ class Expression:
             self._tree = ast.parse(python_text(text), mode="eval").body
             self.names = sorted(names_in(self._tree))
         except (SyntaxError, ValueError, RecursionError, MemoryError):
-            raise Error(f"`{text}` is not an expression", where, CHANGE) from None
+            raise Error(f"`{text}` is not an expression that can be parsed", where, CHANGE) from None
         if unknown := [name for name in self.names if name not in names]:
-            raise Error(f"`{text}` names the parameter `{unknown[0]}`, which is unknown", where,
-                        f"declare it under `parameters`, or name one of: {', '.join(names) or '(none)'}")
+            raise Error(f"`{text}` contains `{unknown[0]}`, which is unknown", where,
+                        f"use numbers, _pi and parameters; parameters allowed here: {', '.join(names) or '(none)'}")
 
     def __call__(self, values):
         """The value for a dictionary of parameter values. Raises Error unless it is a finite number."""
@@ -56,16 +56,16 @@ class Expression:
         raise Error(f"`{self.text}` {what}" + (f" at {place}" if place else ""), self.where, "change the expression or the values of its parameters")
 
     def check_range(self, ranges):
-        """Raises Error if a divisor vanishes within the ranges of the parameters, name -> (lower, upper)."""
+        """Raises Error if a divisor may vanish within the ranges of the parameters, name -> (lower, upper)."""
         for node in filter(is_division, ast.walk(self._tree)):
-            # The base of a power acts as a divisor where the exponent is negative
+            # Treat the base of a power as a divisor if the exponent may be negative
             is_power = isinstance(node.op, ast.Pow)
             if is_power and not interval_of(node.right, ranges).a < 0:
                 continue
             if (zero := find_zero(node.left if is_power else node.right, ranges)) is not None:
                 place = ", ".join(f"{name} = {value:.6g}" for name, value in zero.items())
-                raise Error(f"`{self.text}` divides by zero" + (f" at {place}, inside the range" if place else ""), self.where,
-                            "change the ranges of the parameters or the expression")
+                raise Error(f"`{self.text}` divides by zero" + (f" at {place} or nearby" if place else ""), self.where,
+                            "change the expression, or the values or ranges of its parameters")
 
 
 def python_text(text):
@@ -82,7 +82,7 @@ def python_text(text):
 
 
 def names_in(node):
-    """Names of the parameters in a syntax tree. Raises ValueError if it contains operations that are not allowed."""
+    """Names of the parameters in a syntax tree. Raises ValueError for unsupported operations."""
     if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id[2:] in FUNCTIONS and len(node.args) == 1:
         return names_in(node.args[0])
     if isinstance(node, ast.Name):
@@ -119,13 +119,13 @@ EVERYTHING = iv.mpf([-math.inf, math.inf])
 
 
 def guarded(operation):
-    """An operation on intervals. If it is undefined for some values of its operands, the result is EVERYTHING."""
+    """An operation on intervals that returns EVERYTHING if it is undefined for some values of its operands."""
     def result(*operands):
         try:
             found = operation(*operands)
         except (mpmath.libmp.ComplexResult, NotImplementedError, OverflowError, ValueError, ZeroDivisionError):
             return EVERYTHING
-        return found if isinstance(found, type(EVERYTHING)) else EVERYTHING  # a complex result is undefined
+        return found if isinstance(found, type(EVERYTHING)) else EVERYTHING  # a complex result counts as undefined
 
     return result
 
@@ -141,8 +141,8 @@ def interval_of(node, ranges):
 
 
 def find_zero(node, ranges):
-    """Parameter values near a zero of a syntax tree; None if it has none. Bisects the ranges until every interval
-    excludes zero."""
+    """Parameter values near a possible zero of a syntax tree; None if there is none. Bisects the ranges until every
+    interval excludes zero."""
     boxes = [(0, {name: ranges[name] for name in names_in(node)})]
     while boxes:
         halvings, box = boxes.pop()

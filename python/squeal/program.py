@@ -13,20 +13,21 @@ from squeal.results import Results
 
 PACKAGE = pathlib.Path(__file__).resolve().parent
 SOURCE = PACKAGE.parents[1]
-# Executables in an installation and in a checkout
+# Paths of the executable in an installation and in a source tree
 PLACES = (PACKAGE.parents[3] / "bin" / "squeal", SOURCE / "build" / "release" / "squeal")
 
 
 def find_program():
-    """Path of the executable: from the environment variable SQUEAL, the installation, the checkout or PATH. Raises
-    Error if it is not found."""
+    """Path of the executable, from the variable SQUEAL, the installation, the source tree or PATH. Raises Error if there
+    is none."""
     if given := os.environ.get("SQUEAL"):
         if not pathlib.Path(given).is_file():
-            raise Error(f"there is no program {given}", "environment variable SQUEAL", "name the executable")
+            raise Error(f"there is no program {given}", "environment variable SQUEAL", "set it to the path of the executable")
         return pathlib.Path(given).resolve()
     found = next((path for path in PLACES if path.is_file()), None) or shutil.which("squeal")
     if not found:
-        raise Error(f"there is no program {PLACES[1]}", "squeal.run()", "build it with scripts/setup.sh, or set the environment variable SQUEAL")
+        raise Error("there is no program squeal in the installation, the source tree or PATH", "squeal.run()",
+                    "build it with scripts/setup.sh, or set the environment variable SQUEAL")
     return pathlib.Path(found)
 
 
@@ -64,4 +65,5 @@ def error_of(process, prm):
     if match := re.search(r"^error: (.*?)\n  where: *(.*?)\n  change: *(.*?)(?:\n\S|\Z)", process.stderr, re.DOTALL | re.MULTILINE):
         return Error(*(part.strip() for part in match.groups()))
     last = process.stderr.strip().splitlines()[-10:]
-    return Error("\n".join([f"squeal ended with the exit status {process.returncode}", *last]), prm, "see the message")
+    return Error("\n".join([f"squeal ended with exit status {process.returncode}", *last]), prm,
+                 "read this output, or run squeal in a terminal")

@@ -21,17 +21,17 @@ from squeal.errors import Error
 DENSE_SIZE = 200
 # Initial number of eigenvalues per shift, and the number above which the region is divided
 FIRST_NUMBER, LARGEST_NUMBER = 24, 160
-# Relative distance up to which eigenvalues may be copies of the same one
+# Relative distance up to which eigenvalues may be copies of one eigenvalue
 EQUAL = 1e-8
-# Smallest component of a unit vector outside the span of the others for which it counts as linearly independent
+# A unit vector counts as linearly independent if its component outside the span of the others exceeds this value
 INDEPENDENT = 1e-3
-# The pencil counts as singular if relative changes of entries up to this value make Q(s) singular at an arbitrary s
+# The pencil counts as singular if relative changes of its entries by this value make Q(s) singular at an arbitrary s
 SINGULAR = 1e-13
 
 
 @dataclasses.dataclass
 class Eigenpairs:
-    """Eigenvalues λ (m) [1/s], right unit vectors (n x m), and two error measures for each.
+    """Eigenvalues λ (m) [1/s] and right unit vectors (n x m), with two error measures.
 
     residuals: |Q(λ) x| / (|λ² M x| + |λ C x| + |K x|); backward_errors: |Q(λ) x| / ((|λ|² |M| + |λ| |C| + |K|) |x|) with Frobenius norms.
     """
@@ -98,11 +98,12 @@ def solve_dense(M, C, K, where):
 
 
 def singular(where):
-    return Error("the pencil is singular: det Q(λ) = 0 for every λ", where, "remove dofs without stiffness, damping and mass, and redundant constraints")
+    return Error("the pencil is singular to working precision: det Q(λ) = 0 for every λ", where,
+                 "remove dofs without stiffness, damping and mass, and redundant constraints")
 
 
 class ShiftInvert:
-    """Shift-invert ARPACK on the companion form: the eigenvalues λ nearest a shift σ have the largest |1 / (λ - σ)|."""
+    """Shift-invert ARPACK on the companion form."""
 
     def __init__(self, M, C, K, where):
         self.M, self.C, self.K, self.where = M, C, K, where
@@ -136,8 +137,8 @@ class ShiftInvert:
         raise singular(self.where)
 
     def nearest(self, sigma, number, seed, factor=None):
-        """At least `number` eigenvalues with their vectors, and the radius about the shift within which all eigenvalues
-        have been found."""
+        """Finite eigenvalues among the `number` nearest to the shift, or all eigenvalues if `number` is at least n; their
+        vectors; and the radius about the shift within which no eigenvalue is missing."""
         n, scale = self.M.shape[0], self.gamma
         if number >= n:
             return *solve_dense(self.M, self.C, self.K, self.where), math.inf
@@ -156,7 +157,8 @@ class ShiftInvert:
             inverse, vectors = scipy.sparse.linalg.eigs(operator, k=number, v0=start[0] + 1j * start[1] if is_complex else start[0],
                                                         ncv=min(2 * number + 20, 2 * n - 1), tol=0, maxiter=1000)
         except scipy.sparse.linalg.ArpackNoConvergence as problem:
-            raise Error(f"ARPACK does not converge about {sigma:.6g}: {problem}", self.where, "choose another shift or fewer eigenvalues") from problem
+            raise Error(f"ARPACK does not converge at the shift {sigma:.6g}: {problem}", self.where,
+                        "select fewer eigenvalues or another shift or region") from problem
         finite = abs(inverse) > 1e-14 * abs(inverse).max(initial=0.0)
         eigenvalues = sigma + scale / inverse[finite]
         radius = abs(eigenvalues - sigma).max() if finite.all() else math.inf
@@ -164,7 +166,7 @@ class ShiftInvert:
 
 
 def inside(eigenvalues, region, margin=0.0):
-    """Mask of the eigenvalues in a rectangle: an array with rows (lower, upper) for real and imaginary parts [1/s]."""
+    """Mask of the eigenvalues in the rectangle `region`, whose rows are the limits of real and imaginary parts [1/s]."""
     parts = np.array([eigenvalues.real, eigenvalues.imag])
     return ((parts >= region[:, :1] - margin) & (parts <= region[:, 1:] + margin)).all(axis=0)
 
@@ -179,7 +181,7 @@ def solve_region(solver, region, seed):
         if radius > reach:
             found = inside(eigenvalues, region, EQUAL * solver.gamma)
             return eigenvalues[found], vectors[:, found]
-        # Extrapolate to the number of eigenvalues that reaches the corners
+        # Extrapolate the number of eigenvalues within reach of the corners
         number = max(2 * number, math.ceil(1.2 * number * (reach / radius)))
         if number > LARGEST_NUMBER:
             halves, axis = np.array([region, region]), np.argmax(widths)
@@ -190,7 +192,7 @@ def solve_region(solver, region, seed):
 
 
 def merge(eigenvalues, vectors, tolerance=EQUAL):
-    """Indices of pairs, found in several runs, such that each mode occurs once.
+    """Indices that select each mode once among eigenpairs from several runs.
 
     Pairs with the same eigenvalue are copies of one mode, or members of a multiple eigenvalue; a pair is kept if its
     vector is linearly independent of the vectors already kept.
@@ -204,7 +206,7 @@ def merge(eigenvalues, vectors, tolerance=EQUAL):
                 break
             cluster.append(candidate)
         left = left[len(cluster):]
-        # Eigenvalues with the same frequency may differ in growth rate, for example -R and R
+        # Separate eigenvalues of one frequency with different growth rates, for example -R and R
         while cluster:
             equal = [i for i in cluster if abs(eigenvalues[i] - eigenvalues[cluster[0]]) <= 10 * tolerance * abs(eigenvalues[i])]
             cluster = [i for i in cluster if i not in equal]
@@ -218,8 +220,8 @@ def collect(solve, n_agreeing=2, n_runs=8):
     """Eigenvalues and vectors from runs with different starting vectors.
 
     A Krylov method with a single starting vector may miss members of multiple eigenvalues. Runs are therefore repeated
-    and merged until `n_agreeing` runs in a row, including the first, find nothing new. solve(seed) returns eigenvalues
-    and vectors, or None if it fails.
+    and merged until `n_agreeing` successive runs find no new eigenvalues; the first run counts as one of them.
+    solve(seed) returns eigenvalues and vectors, or None if it fails.
     """
     pairs, agreeing = None, 0
     for seed in range(1, n_runs + 1):
@@ -236,7 +238,7 @@ def collect(solve, n_agreeing=2, n_runs=8):
             return pairs
     if pairs is None:
         raise Error("the eigensolver fails with every starting vector", "eigensolver", "check the matrices")
-    raise Error("additional starting vectors keep finding new eigenvalues", "eigensolver", "select fewer eigenvalues")
+    raise Error("no two successive runs of the eigensolver find the same eigenvalues", "eigensolver", "select fewer eigenvalues")
 
 
 def solve(M, C, K, number=None, largest=None, region=None, shift=None, where="system"):
@@ -244,20 +246,21 @@ def solve(M, C, K, number=None, largest=None, region=None, shift=None, where="sy
     increasing Im λ.
 
     region: ((lower, upper) real part, (lower, upper) imaginary part) [1/s]; largest: maximum |λ|; number: number of
-    eigenvalues nearest to `shift` (default 0). Raises Error if M = 0, if the pencil is singular or if nothing is
-    selected in a large system.
+    eigenvalues nearest to `shift` (default 0). Raises Error if M = 0, if the pencil is singular, or if a large system is
+    solved without a selection.
     """
     n = M.shape[0]
     if M.nnz == 0 or not abs(M.data).max(initial=0.0):
-        raise Error("the mass is zero: Q(λ) is not quadratic", where, "add a term of power 2")
+        raise Error("the mass is zero: Q(λ) is not quadratic", where, "add a nonzero term of power 2")
     if empty := np.flatnonzero(sum(abs(matrix).sum(axis=1).A1 for matrix in (M, C, K)) == 0).tolist():
-        raise Error(f"row {empty[0] + 1} of Q(λ) is zero, det Q(λ) = 0 for every λ", where, "remove this dof")
+        raise Error(f"row {empty[0] + 1} of M, C and K is zero: det Q(λ) = 0 for every λ", where, "remove this dof")
     if sum(choice is not None for choice in (number, largest, region)) > 1:
-        raise Error("`number`, `largest` and `region` exclude each other", where, "give one of them")
+        raise Error("`number`, `largest` and `region` exclude each other", where, "give only one of them")
     if n <= DENSE_SIZE or (number or 0) > n:
         eigenvalues, vectors = solve_dense(M, C, K, where)
     elif region is None and largest is None and number is None:
-        raise Error(f"all eigenvalues of {n} dofs are too many", where, "give `number`, `largest` or `region`")
+        raise Error(f"the system has {n} dofs; all eigenvalues are computed only up to {DENSE_SIZE} dofs", where,
+                    "give `number`, `largest` or `region`")
     else:
         solver = ShiftInvert(M, C, K, where)
         solver.check()

@@ -31,7 +31,7 @@ class Table:
     """The rows of a CSV table by column name. Lines that begin with # are comments."""
 
     def __init__(self, path):
-        """Raises Error if the table cannot be read."""
+        """Raises Error if the table cannot be read or has incomplete rows."""
         self.path = path
         try:
             with open(path, newline="", encoding="utf-8") as file:
@@ -39,10 +39,10 @@ class Table:
                 self.columns = list(reader.fieldnames or [])
                 self.rows = list(reader)
         except (OSError, UnicodeDecodeError, csv.Error) as problem:
-            raise Error(f"the table cannot be read: {problem}", f"file {path}", "run squeal again") from problem
+            raise Error(f"the table cannot be read: {problem}", f"file {path}", "check its name and permissions, or run squeal again") from problem
         for number, row in enumerate(self.rows, start=2):
             if None in row or None in row.values():
-                raise Error("a row does not have one cell for each column", f"file {path}, line {number}", "run squeal again")
+                raise Error("a row does not have one cell for each column", f"file {path}, line {number}", "correct it, or run squeal again")
 
     def __len__(self):
         return len(self.rows)
@@ -55,38 +55,39 @@ class Table:
     def texts(self, column):
         """Cells of a column. Raises Error if there is no such column."""
         if column not in self.columns:
-            raise Error(f"there is no column `{column}`", f"file {self.path}", "run squeal again; older versions omit this column")
+            raise Error(f"there is no column `{column}`", f"file {self.path}",
+                        "check the name; if an older version wrote the table, run squeal again")
         return [row[column] for row in self.rows]
 
     def numbers(self, column):
-        """Numbers in a column, NaN for an empty cell. Raises Error if a cell contains anything else."""
+        """Numbers in a column, NaN for empty cells. Raises Error if a cell is not a number."""
         result = []
         for line, text in enumerate(self.texts(column), start=2):
             try:
                 result.append(float(text) if text else math.nan)
             except ValueError:
                 where = f"file {self.path}, line {line}, column `{column}`"
-                raise Error(f"`{text}` is not a number", where, "run squeal again") from None
+                raise Error(f"`{text}` is not a number", where, "name a column of numbers, or run squeal again") from None
         return result
 
     def flags(self, column):
-        """True for each cell of a column whose number is not zero."""
+        """For each number in a column, True if it is not zero."""
         return [number != 0 for number in self.numbers(column)]
 
     def groups(self, *columns):
-        """Groups of rows that have the same values in some columns, in the order of the table."""
+        """Groups of rows with the same values in the given columns, in the order of the table."""
         found = {}
         for row in self.rows:
             found.setdefault(tuple(row[column] for column in columns), []).append(row)
         return list(found.values())
 
     def eigenvalues(self):
-        """λ [1/s] of the modes in the rows."""
+        """λ [1/s] of the mode in each row."""
         return [complex(rate, 2 * math.pi * frequency) for rate, frequency in zip(self.numbers("growth rate [1/s]"), self.numbers("frequency [Hz]"))]
 
     def frame(self):
-        """The table as a pandas data frame. Units move from the column names to `attrs["units"]`, except where they
-        distinguish columns. Numeric columns are converted to numbers, empty cells to NaN."""
+        """The table as a pandas data frame. Units move from the column names to `attrs["units"]`, unless columns differ
+        only in their units. Numeric columns are converted to numbers, empty cells to NaN."""
         import pandas
 
         parts = [re.fullmatch(r"(.*?)(?: \[([^\]]*)\])?", column).groups() for column in self.columns]
@@ -117,16 +118,16 @@ class Results:
     def __init__(self, folder):
         self.folder = pathlib.Path(folder)
         if not self.folder.is_dir():
-            raise Error(f"there is no folder `{folder}`", "RESULTS", "name the results folder of a run")
+            raise Error(f"there is no folder `{folder}`", "results folder", "name the results folder of a run")
         for name in ("run.json", "parameters.prm"):
             if not (self.folder / name).is_file():
-                raise Error(f"`{folder}` contains no results: {name} is missing", "RESULTS", "name the results folder of a run")
+                raise Error(f"`{folder}` contains no results: {name} is missing", "results folder", "name the results folder of a run")
         try:
             self.record = dict(json.loads(self.record_file.read_text(encoding="utf-8")))
             self.parameters = read_parameters(self.folder / "parameters.prm")
         except (OSError, TypeError, ValueError) as problem:
             what = f"the record of the run or its parameters cannot be read: {problem}"
-            raise Error(what, f"folder {folder}", "run squeal again") from problem
+            raise Error(what, f"folder {folder}", "check the permissions, or run squeal again") from problem
 
     @property
     def record_file(self):
@@ -139,7 +140,6 @@ class Results:
         return Table(self.folder / f"{name}.csv")
 
     def names(self):
-        """Names of the tables."""
         return sorted(path.stem for path in self.folder.glob("*.csv"))
 
     def frame(self, name):
@@ -164,7 +164,7 @@ class Results:
 
         path = self.folder / f"{name}.vtu"
         if not path.is_file():
-            raise Error(f"there are no fields `{name}`", f"folder {self.folder}", f"name one of: {', '.join(self.field_names()) or '(none)'}")
+            raise Error(f"there is no field file `{name}`", f"folder {self.folder}", f"name one of: {', '.join(self.field_names()) or '(none)'}")
         return VtuFile(path).as_meshio()
 
     def system(self):
@@ -173,13 +173,13 @@ class Results:
 
         path = self.folder / "system" / FILE
         if not path.is_file():
-            raise Error("the run has written no system", f"folder {self.folder}", "run squeal with Output/Write system = full or reduced")
+            raise Error("the run did not write a system", f"folder {self.folder}", "run squeal with Output/Write system = full or reduced")
         return System.read(path)
 
     def parameter(self, name):
         """The value of a parameter "Section/Name" as text."""
         if name not in self.parameters:
-            raise Error(f"the parameter {name} is missing", f"file {self.folder / 'parameters.prm'}", "run squeal again")
+            raise Error(f"the parameter {name} is missing", f"file {self.folder / 'parameters.prm'}", "check its name, or run squeal again")
         return self.parameters[name]
 
     def number(self, name):
@@ -189,10 +189,10 @@ class Results:
             return float(text.split(",")[0])
         except ValueError:
             where = f"file {self.folder / 'parameters.prm'}, parameter {name}"
-            raise Error(f"`{text}` is not a number", where, "run squeal again") from None
+            raise Error(f"`{text}` is not a number", where, "name a numeric parameter, or run squeal again") from None
 
     def plot(self, ending="svg", output=None):
-        """Draws the plots of the tables; returns their files and notes on files that were renamed."""
+        """Draws the plots of the tables; returns their files and notes on renamed files."""
         from squeal.plotting import draw
 
         folder = pathlib.Path(output) if output else self.folder / "plots"
@@ -200,15 +200,14 @@ class Results:
         return list(pictures), self.save(pictures, is_listed=not output)
 
     def report(self, output=None):
-        """Writes the report; returns its file and notes on files that were renamed."""
+        """Writes the report; returns its file and notes on renamed files."""
         from squeal.reporting import content, page
 
         place = pathlib.Path(output) if output else self.folder / "report.html"
         return place, self.save({place: page.page(content.content(self)).encode()}, is_listed=not output)
 
     def save(self, files, is_listed):
-        """Writes files (path -> bytes) and lists them in run.json if `is_listed`; returns notes on files that were
-        renamed."""
+        """Writes files (path -> bytes) and lists them in run.json if `is_listed`; returns notes on renamed files."""
         try:
             for path in files:
                 path.parent.mkdir(parents=True, exist_ok=True)
@@ -221,7 +220,7 @@ class Results:
         return remarks
 
     def enlist(self, files):
-        """Lists files (name -> bytes) in run.json; returns notes on files that were renamed."""
+        """Lists files (name -> bytes) in run.json; returns notes on renamed files."""
         known = self.record[FILES]
         remarks = [make_way(self.folder / name) for name in files if name not in known and (self.folder / name).exists()]
         self.record[FILES] = dict(sorted({**known, **{name: len(content) for name, content in files.items()}}.items()))
@@ -237,11 +236,11 @@ def replace(path, content):
 
 
 def make_way(path):
-    """Renames a file of the user if its name is needed; returns a note."""
+    """Renames a file that was not written by the run; returns a note."""
     kept = path.with_name(path.name + ".kept")
     number = 1
     while kept.exists():
         number += 1
         kept = path.with_name(f"{path.name}.kept-{number}")
     path.rename(kept)
-    return f"note: {path} was not written by this run and is now {kept.name}"
+    return f"note: {path} was not written by this run and has been renamed to {kept.name}"

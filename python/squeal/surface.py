@@ -9,7 +9,7 @@ from squeal.vtu_file import SHAPES
 
 # Faces of VTK cells; triangles repeat their last corner
 FACES = {kind: [(*face, face[-1])[:4] for face in faces_of(shape)] for kind, shape in SHAPES.items() if shape != "vertex"}
-SAME_PLACE = 1e-5  # fraction of the size of the bodies within which points written by several processes coincide
+SAME_PLACE = 1e-5  # distance within which points written by several processes coincide, relative to the size of the bodies
 
 
 def outer_faces(mesh, bodies=None):
@@ -47,7 +47,7 @@ def edges_of(faces):
 
 
 def sharp_edges(points, faces, angle=50):
-    """Ends (n x 2) of the edges of a closed surface at which its normal turns by more than an angle [degree]."""
+    """Ends (n x 2) of the edges of a closed surface at which the normal turns by more than `angle` [degree]."""
     corners = points[faces]
     normals = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
     normals /= np.linalg.norm(normals, axis=1)[:, None]

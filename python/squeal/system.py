@@ -23,7 +23,7 @@ from squeal.results import Table
 FORMAT, VERSION, FILE = "squeal system", 1, "system.json"
 SYMMETRIES = {"none": 0, "symmetric": 1, "skew": -1}
 KINDS = ("body", "mount", "rotation", "friction", "circulatory", "contact damping", "modal damping")
-# Largest entry of A - A^T, or of A + A^T, relative to the largest entry of A
+# Tolerance for A - A^T (symmetric) or A + A^T (skew), relative to the largest entry of A
 SYMMETRY_TOLERANCE = 1e-12
 # Largest number of dofs for which M(p), C(p) and K(p) return dense matrices
 LARGEST_DENSE = 5000
@@ -31,7 +31,7 @@ LARGEST_DENSE = 5000
 
 @dataclasses.dataclass
 class Parameter:
-    """The value of a parameter, and its range, unit and description if they are given."""
+    """The value of a parameter, with optional range, unit and description."""
 
     value: float
     lower: float = None
@@ -45,7 +45,7 @@ class Parameter:
 
 @dataclasses.dataclass
 class Term:
-    """θ(p) λ^power A with A = `matrix`, or A = left diag(weights) right^T; all matrices sparse, weights a vector."""
+    """θ(p) λ^power A with A = `matrix` or A = left diag(weights) right^T; matrices are sparse, weights a vector."""
 
     name: str
     power: int
@@ -74,11 +74,10 @@ class System:
     """A system of matrices: parameters by name, terms, groups of dofs (name -> inclusive ranges from 1), and the
     `reduction` of a reduced model with its basis.
 
-    Mode shapes are drawn at points with `positions` [m] (n_points x 3), whose displacements are `displacements` (3
-    n_points x n, sparse; rows x, y and z of each point in turn) times a vector; if `displacements` is None, dofs 3 i -
-    2 to 3 i belong to point i.
+    Mode shapes are drawn at points with `positions` [m] (n_points x 3). The matrix `displacements` (3 n_points x n,
+    sparse) maps a vector to x, y and z of each point in turn; if it is None, dofs 3 i - 2 to 3 i belong to point i.
 
-    Arguments `p` are dictionaries of parameter values that override those of the file.
+    Arguments `p` are dictionaries of parameter values, which override the values of `parameters`.
     """
 
     def __init__(self, parameters, terms, groups=None, positions=None, displacements=None, reduction=None, description="",
@@ -95,7 +94,7 @@ class System:
         self._expressions = [self._checked_term(term, f"{where}, term `{term.name}`") for term in self.terms]
         for name, ranges in self.groups.items():
             if not (isinstance(ranges, list) and all(is_range(ends, self.size) for ends in ranges)):
-                raise Error(f"`{name}` is not a list of ranges of dofs", f"{where}, groups",
+                raise Error(f"group `{name}` is not a list of valid ranges of dofs", f"{where}, groups",
                             f"write [[first, last], ...] with dofs from 1 to {self.size}")
         self._check_points()
 
@@ -108,45 +107,45 @@ class System:
     def _check_points(self):
         if self.positions is None:
             if self.displacements is not None:
-                raise Error("the positions of the displacements are not given", f"{self.where}, displacements", "also give positions")
+                raise Error("`displacements` are given without `positions`", f"{self.where}, displacements", "also give `positions`")
             return
         self.positions = np.asarray(self.positions, dtype=float)
         if self.positions.ndim != 2 or self.positions.shape[1] != 3 or not np.isfinite(self.positions).all():
-            raise Error("the positions are not n x 3 finite numbers", f"{self.where}, positions", "give x, y and z of each point")
+            raise Error("the positions are not an n x 3 matrix of finite numbers", f"{self.where}, positions", "give x, y and z of each point")
         n_rows = 3 * len(self.positions)
         shape = (self.size, self.size) if self.displacements is None else self.displacements.shape
         if shape != (n_rows, self.size):
             raise Error(f"the displacements are {shape[0]} x {shape[1]}, expected {n_rows} x {self.size}", f"{self.where}, displacements",
-                        "give rows for x, y and z of each point, and a column for each dof")
+                        "give `displacements` with rows x, y and z of each point and a column for each dof")
 
     def _check_parameters(self):
         for name, parameter in self.parameters.items():
             where = f"{self.where}, parameter `{name}`"
             if not NAME.fullmatch(name) or name == "_pi":
-                raise Error(f"`{name}` is not a name of a parameter", where, "write letters, digits and _, a letter first")
+                raise Error(f"`{name}` is not a valid parameter name", where, "use letters, digits and _, beginning with a letter")
             for key in ("value", "lower", "upper"):
                 value = getattr(parameter, key)
                 if not (value is None and key != "value") and not (is_number(value) and math.isfinite(value)):
-                    raise Error(f"`{key}` is {value!r}, which is not a finite number", where, "write a number")
+                    raise Error(f"`{key}` is {value!r}, which is not a finite number", where, "write a finite number")
             lower, upper = self.range(name)
             if not lower <= parameter.value <= upper:
                 raise Error(f"the value {parameter.value:g} is outside the range {lower:g} to {upper:g}", where, "change the value or the range")
 
     def range(self, name):
-        """Limits of a parameter; a limit that is not given equals the value."""
+        """Limits of a parameter; missing limits equal the value."""
         parameter = self.parameters[name]
         return (parameter.value if parameter.lower is None else parameter.lower, parameter.value if parameter.upper is None else parameter.upper)
 
     def _checked_term(self, term, where):
         """Checks a term and returns its coefficient as an Expression."""
         if not isinstance(term.power, int) or isinstance(term.power, bool) or not 0 <= term.power <= 2:
-            raise Error(f"the power is {term.power!r}", where, "write 0, 1 or 2")
+            raise Error(f"the power {term.power!r} is invalid", where, "write 0, 1 or 2")
         if term.symmetry not in SYMMETRIES:
-            raise Error(f"the symmetry is `{term.symmetry}`", where, f"write one of: {', '.join(SYMMETRIES)}")
+            raise Error(f"the symmetry `{term.symmetry}` is unknown", where, f"write one of: {', '.join(SYMMETRIES)}")
         if term.kind and term.kind not in KINDS:
-            raise Error(f"the kind is `{term.kind}`", where, f"write one of: {', '.join(KINDS)}")
+            raise Error(f"the kind `{term.kind}` is unknown", where, f"write one of: {', '.join(KINDS)}")
         if (term.matrix is None) != (term.left is not None and term.right is not None) or (term.matrix is not None) == (term.left is not None):
-            raise Error("a term has either `matrix`, or `left` and `right`", where, "give a matrix, or both factors")
+            raise Error("the term must have either `matrix`, or `left` and `right`", where, "give the matrix or both factors")
         for name in ("matrix", "left", "right"):
             if (matrix := getattr(term, name)) is not None:
                 self._check_matrix(term, name, matrix, where)
@@ -162,16 +161,17 @@ class System:
         n_columns = self.size if name == "matrix" else term.left.shape[1]
         if matrix.shape != (self.size, n_columns) or name != "matrix" and len(term.weights) != n_columns:
             found = f"{matrix.shape[0]} x {matrix.shape[1]}" + ("" if name == "matrix" else f" with {len(term.weights)} weights")
-            raise Error(f"the matrix is {found}, expected {self.size} x {n_columns}", where, "write matrices of one size")
+            raise Error(f"the matrix is {found}, expected {self.size} x {n_columns}", where,
+                        "give n x n matrices and n x m factors with m weights, with the same n in all terms")
         if not np.isfinite(matrix.data).all():
             entries = matrix.tocoo()
             first = np.flatnonzero(~np.isfinite(entries.data))[0]
             raise Error(f"entry ({entries.row[first] + 1}, {entries.col[first] + 1}) is {entries.data[first]}", where, "write finite numbers")
         if sign := SYMMETRIES[term.symmetry]:
             if name != "matrix":
-                raise Error("symmetry is specified for a product of factors", where, "leave `symmetry` out")
+                raise Error("`symmetry` is specified for a product of factors", where, "remove `symmetry`")
             if (defect := symmetry_defect(matrix, sign)) > SYMMETRY_TOLERANCE:
-                raise Error(f"the matrix is not {term.symmetry}: the largest difference to its transpose is {defect:.1e} of the largest entry", where,
+                raise Error(f"the matrix is not {term.symmetry}: the largest deviation is {defect:.1e} of the largest entry", where,
                             "write symmetry `none` or correct the matrix")
 
     @classmethod
@@ -247,8 +247,8 @@ class System:
         (folder / FILE).write_text(json.dumps(data, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
 
     def values(self, p=None):
-        """Values of all parameters as a dictionary. Raises Error for unknown names and for values outside a given
-        range."""
+        """Values of all parameters as a dictionary. Raises Error for unknown names, and for values that are not numbers
+        or outside a given range."""
         values = {name: parameter.value for name, parameter in self.parameters.items()}
         for name, value in (p or {}).items():
             if name not in values:
@@ -303,15 +303,15 @@ class System:
         return self.matrices(p)[position].toarray()
 
     def M(self, p=None):
-        """The mass as a dense array."""
+        """The mass matrix as a dense array."""
         return self._dense(0, p)
 
     def C(self, p=None):
-        """The damping as a dense array."""
+        """The damping matrix as a dense array."""
         return self._dense(1, p)
 
     def K(self, p=None):
-        """The stiffness as a dense array."""
+        """The stiffness matrix as a dense array."""
         return self._dense(2, p)
 
     def to_pymor(self, B=None, Cp=None):
@@ -323,7 +323,7 @@ class System:
             from pymor.operators.numpy import NumpyMatrixOperator
             from pymor.parameters.functionals import GenericParameterFunctional
         except ImportError as error:
-            raise Error(f"the Python module {error.name} is missing", "System.to_pymor()", "install pyMOR: pip install pymor") from error
+            raise Error(f"pyMOR cannot be imported: {error}", "System.to_pymor()", "install pyMOR: pip install pymor") from error
 
         def operator(power):
             terms = [(term, expression) for term, expression in zip(self.terms, self._expressions) if term.power == power]
@@ -361,13 +361,13 @@ def symmetry_defect(matrix, sign):
 
 def as_kind(value, kind, where):
     if not isinstance(value, kind):
-        raise Error(f"this is {value!r}", where, f"write {'an object' if kind is dict else 'a list'}")
+        raise Error(f"the entry is {value!r}", where, f"write {'an object' if kind is dict else 'a list'}")
     return value
 
 
 def check_keys(entry, known, where):
     if unknown := [key for key in entry if key not in known]:
-        raise Error(f"the entry `{unknown[0]}` is unknown", where, f"write some of: {', '.join(known)}")
+        raise Error(f"the entry `{unknown[0]}` is unknown", where, f"use only these entries: {', '.join(known)}")
 
 
 def read_entry(kind, entry, where, needed):
@@ -380,7 +380,7 @@ def read_entry(kind, entry, where, needed):
 
 def inside(folder, name, where):
     if not isinstance(name, str) or not (folder / name).is_file():
-        raise Error(f"the file {name if not isinstance(name, str) else folder / name} is missing", where, "put it there, or correct its name")
+        raise Error(f"the file {name if not isinstance(name, str) else folder / name} is missing", where, "add it, or correct its name")
     return folder / name
 
 
@@ -390,9 +390,9 @@ def read_matrix(folder, name, where):
     try:
         matrix = scipy.io.mmread(path)
     except (OSError, ValueError, IndexError, TypeError, OverflowError, StopIteration) as problem:
-        raise Error(f"{path} cannot be read: {problem}", where, "write a Matrix Market file") from problem
+        raise Error(f"{path} cannot be read: {problem}", where, "write a readable Matrix Market file") from problem
     if np.iscomplexobj(matrix):
-        raise Error(f"{path} has complex entries", where, "write real matrices; structural damping has to be a term of power 1")
+        raise Error(f"{path} has complex entries", where, "write real matrices; represent structural damping by a term of power 1")
     return sparse.csr_matrix(matrix, dtype=float)
 
 
@@ -403,7 +403,7 @@ def read_rows(folder, name, where):
         table = Table(path)
         columns = [table.numbers(column) for column in table.columns]
     except Error as problem:
-        raise Error(f"{path} cannot be read: {problem.what}", where, "write a number for each column of a row") from problem
+        raise Error(f"{path} cannot be read: {problem.what}", where, "write a number or an empty cell for each column") from problem
     return [dict(zip(table.columns, row)) for row in zip(*columns)]
 
 

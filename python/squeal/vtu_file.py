@@ -17,8 +17,7 @@ TYPES = {"Float32": ("<f4", float), "Int32": ("<i4", int), "UInt8": ("u1", int)}
 
 class VtuFile:
     """Content of a .vtu file: points (n x 3) and point fields (n x 3 or n) as arrays; cells as a list of arrays of
-    their points, with fields and VTK types (see SHAPES); the title, or None. Points that coincide in several pieces are
-    repeated."""
+    point indices, with fields and VTK types (see SHAPES); the title, or None. Points shared by pieces are repeated."""
 
     def __init__(self, path):
         self.path = path
@@ -46,7 +45,7 @@ class VtuFile:
         assert all((0 <= cell).all() and (cell < len(self.points)).all() for cell in self.cells), path
 
     def values(self, data):
-        """Values of an array that is stored as sizes followed by a single block compressed by zlib."""
+        """Values of an array that is stored as sizes followed by one zlib block."""
         offset, (in_file, in_memory) = int(data.get("offset")), TYPES[data.get("type")]
         n_blocks, size, _, length = struct.unpack_from("<4Q", self.data, offset)
         plain = zlib.decompress(self.data[offset + 32:offset + 32 + length])

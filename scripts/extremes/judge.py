@@ -17,17 +17,17 @@ from squeal import exported_matrices, parameter_file, quadratic
 from squeal.program import find_program, words_of
 from squeal.results import Table
 
-# Largest relative difference of an eigenvalue from that of the oracle
+# Largest relative difference of eigenvalues from the oracle
 TOLERANCE = 1e-6
 # Largest residual of a mode, if the run does not warn of lost digits
 LARGEST_RESIDUAL = 1e-8
 # Relative rounding error of tables, which have 12 digits
 PRINTED = 1e-11
-# Relative distance from the end of the band, or from the radius, within which eigenvalues may or may not be listed
+# Relative distance from the end of the band, or from the radius, within which eigenvalues may be missing
 EDGE = 1e-7
 # |lambda| / end of the band below which the program treats lambda as zero
 ZERO = 1e-4
-# Largest difference of dimensionless results from those of the model in metres
+# Largest difference of dimensionless results from the model in metres
 SAME_IN_ALL_UNITS = 1e-8
 # Limits of the CPU time and the wall time of a run [s]
 CPU_LIMIT, TIME_LIMIT = 300, 1500
@@ -58,12 +58,12 @@ class Wrong(Exception):
 
 
 def call(*arguments, folder):
-    """The finished process. Raises Wrong if it does not end, crashes, or exits with a status other than 0 or 1."""
+    """The finished process. Raises Wrong if it exceeds the time limit or ends with a status other than 0 or 1."""
     try:
         process = subprocess.run([find_program(), *arguments], cwd=folder, text=True, capture_output=True, timeout=TIME_LIMIT, check=False,
                                  stdin=subprocess.DEVNULL, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (CPU_LIMIT, CPU_LIMIT)))
     except subprocess.TimeoutExpired:
-        raise Wrong(f"no end within {TIME_LIMIT} s") from None
+        raise Wrong(f"still running after {TIME_LIMIT} s") from None
     if process.returncode not in (0, 1):
         raise Wrong(f"exit status {process.returncode}: {process.stderr[-300:]}")
     process.stderr = "".join(line for line in process.stderr.splitlines(keepends=True) if not line.startswith("[hwloc"))
@@ -80,7 +80,7 @@ def check_numbers(folder):
 
 
 def judge(case, folder):
-    """Runs a case in a subfolder of the folder; returns its row."""
+    """Runs a case in a folder; returns its row."""
     row = Row(case.group, case.value)
     (folder / "scene.prm").write_text(BASE, encoding="utf-8")
     try:
@@ -150,7 +150,7 @@ def judge_results(case, process, folder, row):
     if residual > LARGEST_RESIDUAL and not has_warned:
         raise Wrong(f"residual {residual:.1e} without a warning")
     if worst > max(10.0 ** (1 - digits), PRINTED):
-        raise Wrong(f"eigenvalues differ by {worst:.1e}, the run claims {digits:.1f} digits")
+        raise Wrong(f"eigenvalues differ by {worst:.1e}, but the run reports {digits:.1f} digits")
     if worst > TOLERANCE:
         raise Wrong(f"eigenvalues differ by {worst:.1e} (oracle's own error {own_error:.0e})")
     row.outcome = "right"
@@ -165,7 +165,7 @@ def judge_results(case, process, folder, row):
 
 
 def compare_units(case, folder, row):
-    """Compares the tables of a model with those of the same model in metres."""
+    """Compares the tables of a model with the tables of the same model in metres."""
     process = call("scene.prm", "--output", "metres", *words_of(case.unit), folder=folder)
     if process.returncode != 0:
         raise Wrong(f"refused in metres: {process.stderr}")
@@ -177,9 +177,9 @@ def compare_units(case, folder, row):
 
 
 def difference(rows, others, scale):
-    """Largest difference between two tables of modes, the second for a model with lengths times `scale`. Frequencies
-    and growth rates are compared relative to the frequency, dimensionless numbers absolutely; infinite if texts or
-    numbers of rows differ."""
+    """Largest difference between tables of modes of a model (`rows`) and of the model with lengths times `scale`
+    (`others`): frequencies and growth rates relative to the frequency, dimensionless numbers absolute; infinite if texts
+    or numbers of rows differ."""
     largest = 0.0 if len(rows) == len(others) else math.inf
     for row, other in zip(rows, others):
         for column, cell in row.items():
@@ -207,13 +207,13 @@ def compare(what, actual, expected, band, radius):
     for kind, of_kind in (("oscillating", lambda value: value.imag > 0), ("real", lambda value: value.imag == 0)):
         n_actual, n_inside = sum(map(of_kind, actual)), sum(map(of_kind, inside))
         if n_actual != n_inside:
-            raise Wrong(f"{what}: {n_actual} {kind} eigenvalues in the tables, {n_inside} exist")
+            raise Wrong(f"{what}: {n_actual} {kind} eigenvalues in the tables, {n_inside} in the oracle")
     return quadratic.match(actual, inside)[2].max(initial=0.0)
 
 
 def argument_count(case, folder, modes, band):
-    """Counts complex modes by the argument principle in a sweep with one friction coefficient. Counts modes with |Re
-    lambda| up to 0.1 and Im lambda of at least 0.001 times the end of the band."""
+    """Counts complex modes by the argument principle in a sweep with one friction coefficient: modes with |Re lambda| up
+    to 0.1 times, and Im lambda of at least 0.001 times the end of the band."""
     parameters = parameter_file.read_parameters(folder / "run" / "parameters.prm")
     mu = parameters["Operation/Friction coefficient"]
     settings = [*case.settings, "Study=sweep", f"Sweep/First friction coefficient={mu}", f"Sweep/Last friction coefficient={mu}",

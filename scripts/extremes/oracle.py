@@ -31,7 +31,7 @@ LARGEST_DENSE = 1600
 # Relative distance up to which eigenvalues are refined together
 CLUSTER = 1e-6
 N_ITERATIONS = 4
-# Relative distance up to which eigenvalues found by ARPACK are copies if their vectors are linearly dependent
+# Relative distance up to which eigenvalues from ARPACK are copies if their vectors are linearly dependent
 COPIES = 1e-5
 # |lambda| / end of the band below which eigenvalues count as zero and are not refined
 ZERO = 0.9e-4
@@ -80,7 +80,7 @@ class Oracle:
         if n > LARGEST_DENSE:
             shift = check_eigenvalues.choose_shift(self.problem, self.band)
             found, vectors = check_eigenvalues.solve_by_scipy(self.problem, 1.05 * self.band, 40, shift)
-            # Merge copies; they occur far below the band, where vectors are least accurate
+            # Merge copies, which occur far below the band, where vectors are least accurate
             return found[quadratic.merge(found, vectors, COPIES)], "ARPACK"
         mass, damping, stiffness = (matrix.toarray() for matrix in (self.problem.mass, self.problem.damping, self.problem.stiffness))
         s = self.shift
@@ -147,8 +147,7 @@ class Oracle:
                                     for matrix in (self.extended.mass, self.extended.damping, self.extended.stiffness))
         constant = (stiffness + c * damping + c * c * mass).astype(complex)
         linear = (damping + 2 * c * mass).astype(complex)
-        # Delta = -L^-1 (A + M Delta^2): the fixed-point iteration converges, because Delta is small compared with the
-        # centre
+        # Iterate Delta = -L^-1 (A + M Delta^2), which converges because Delta is small compared with the centre
         first, second = -scipy.linalg.solve(linear, constant), -scipy.linalg.solve(linear, mass.astype(complex))
         delta = np.zeros((m, m), dtype=complex)
         for _ in range(3):
@@ -157,13 +156,13 @@ class Oracle:
 
 
 def orthonormal(vectors, scale):
-    """Columns that span the same space and are orthonormal after division by the scale."""
+    """Columns that span the same space, orthonormal after division by the scale."""
     q, _ = np.linalg.qr(vectors / scale[:, None])
     return q * scale[:, None]
 
 
 def upper_root(squares):
-    """Roots with Im >= 0; for a positive square both roots, because both are real eigenvalues."""
+    """Roots with Im >= 0; both roots of a positive square, because both are real eigenvalues."""
     roots = np.sqrt(squares.astype(complex))
     roots = np.where(roots.imag < 0, -roots, roots)
     is_real = abs(roots.imag) <= 1e-9 * abs(roots)

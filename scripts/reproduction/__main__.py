@@ -30,7 +30,7 @@ def reproduce(runs, page, chosen):
 def main():
     parser = Parser(__doc__, prog="scripts/reproduce.sh")
     parser.add_argument("pages", nargs="*", metavar="PAGE")
-    parser.add_argument("--list", action="store_true", help="only prints pages and statements")
+    parser.add_argument("--list", action="store_true", help="prints pages and statements without any run")
     parser.add_argument("--only", default="", metavar="WORDS", help="only the statements that contain WORDS")
     parser.add_argument("--results", type=pathlib.Path, default=SOURCE / "results" / "reproduce", metavar="DIR")
     arguments = parser.parse_args()
@@ -38,7 +38,7 @@ def main():
         importlib.import_module(f"reproduction.pages.{module.name}")
     unknown = [page for page in arguments.pages if page not in ENTRIES]
     if unknown:
-        raise Error(f"there are no numbers of {', '.join(unknown)}", "PAGE", f"choose from {', '.join(ENTRIES)}")
+        raise Error(f"no numbers are reproduced for {', '.join(unknown)}", "PAGE", f"choose from {', '.join(ENTRIES)}")
 
     n_differing = 0
     for page in arguments.pages or ENTRIES:

@@ -13,8 +13,8 @@ ENTRIES = {}
 
 @dataclasses.dataclass
 class Number:
-    """A number as printed in a page, such as "0.680", "6.2e-7" or "24", and the computed number; `bound`: the page
-    gives an upper bound."""
+    """A number as printed in a page, such as "0.680", "6.2e-7" or "24", and the computed number; with `bound`, the
+    printed number is an upper bound."""
 
     what: str
     quoted: str
@@ -22,13 +22,13 @@ class Number:
     bound: bool = False
 
     def printed(self):
-        """The computed number with as many digits as in the page."""
+        """The computed number, with the number of digits in the page."""
         mantissa, _, exponent = self.quoted.lower().partition("e")
         digits = len(mantissa.partition(".")[2])
         return f"{self.found:.{digits}e}" if exponent else f"{self.found:.{digits}f}"
 
     def agrees(self):
-        """True if the printed digits in the page agree."""
+        """True if the printed digits agree or, for a bound, if it is met."""
         if self.bound:
             return self.found <= float(self.quoted)
         return float(self.printed()) == float(self.quoted)
@@ -39,7 +39,7 @@ class Number:
 
 
 def entry(page, sentence):
-    """Decorator that registers a function; it yields the numbers of a statement of a page."""
+    """Decorator that registers a function, which yields the numbers of a statement of a page."""
     def register(function):
         ENTRIES.setdefault(page, []).append((sentence, function))
         return function
@@ -47,7 +47,7 @@ def entry(page, sentence):
 
 
 def of_mode(name, mode, frequency=None, rate=None):
-    """Numbers for frequency and divergence rate of a mode; None if the page does not quote one of them."""
+    """Numbers for frequency and divergence rate of a mode, except values that the page does not quote (None)."""
     for unit, quoted, column in (("Hz", frequency, "frequency [Hz]"), ("%", rate, "divergence rate [%]")):
         if quoted is not None:
             yield Number(f"{name} [{unit}]", quoted, mode[column])

@@ -35,7 +35,7 @@ class Results(squeal.results.Results):
 
 
 class Runs:
-    """Runs in a folder; a run is computed unless its results exist and are up to date."""
+    """Runs in a folder; a run is skipped if its results exist and are up to date."""
 
     def __init__(self, folder):
         self.folder = folder

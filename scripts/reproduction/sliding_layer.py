@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Waves in an elastic layer that slides with friction on a rigid plane: the continuum solution with which meshes are
-compared.
+"""Waves in an elastic layer that slides with friction on a rigid plane: a continuum solution for comparison with meshes.
 
 The layer 0 <= y <= H is fixed at y = H. At y = 0 it slides without lift-off: u_y = 0, sigma_xy = mu sigma_yy. Displacements
 u(y) exp(i k x + lambda t) give an ordinary differential equation in y, which Chebyshev collocation solves to about ten digits.
@@ -17,7 +16,7 @@ import numpy as np
 import scipy.linalg
 import scipy.optimize
 
-# For waves longer than a quarter of the thickness, eigenvalues converge to 1e-6
+# For waves longer than a quarter of the thickness, eigenvalues are accurate to 1e-6
 N_POLYNOMIALS = 80
 
 

@@ -23,7 +23,7 @@ TEST(Conventions, OfAMode)
   EXPECT_DOUBLE_EQ(mode.growth_rate, R);
   EXPECT_DOUBLE_EQ(mode.divergence_rate, R / omega);
   EXPECT_DOUBLE_EQ(mode.damping_ratio, -2. * R / omega);
-  // A mode that does not oscillate
+  // Rates relative to a zero frequency are defined as zero
   const auto decay = modal_quantities({-3., 0.});
   EXPECT_EQ(decay.frequency, 0.);
   EXPECT_EQ(decay.growth_rate, -3.);
@@ -39,7 +39,7 @@ TEST(Assignment, AgreesWithTryingAll)
     for (int n_rows = 1; n_rows <= n_columns; ++n_rows)
       for (int trial = 0; trial < 20; ++trial)
         {
-          // Small integers in every third matrix produce ties
+          // Use small integers in every third matrix to produce ties
           std::vector<std::vector<double>> gain(n_rows, std::vector<double>(n_columns));
           for (auto &row : gain)
             for (double &value : row)
@@ -76,13 +76,13 @@ TEST(ProgressChannel, PrintsALinePerStepAndNote)
     progress.update("busy");
     progress.finish("12 elements");
     progress.begin("Matrices");
-    progress.begin("Modes"); // ends the step before
+    progress.begin("Modes"); // ends the previous step
     progress.finish();
     progress.finish("nothing to end");
     progress.note("a note");
     EXPECT_EQ(progress.steps().size(), 3u);
   }
-  // No control characters if the output is not a terminal
+  // Control characters are printed only to terminals
   const std::string text = stream.str();
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 4);
   EXPECT_EQ(text.find('\033'), std::string::npos);

@@ -27,7 +27,7 @@ TEST(Memory, AvailableOfTheMachineAndItsGroups)
   write("sys/fs/cgroup/batch/job/memory.max", "max\n");
   write("sys/fs/cgroup/batch/job/memory.current", "500000\n");
   EXPECT_EQ(available_memory(root), 4000. * 1024.);
-  // Limits of parent groups apply as well; the file cache counts as available
+  // Limits of parent groups also apply, and the file cache counts as available
   write("sys/fs/cgroup/batch/memory.max", "1000000\n");
   write("sys/fs/cgroup/batch/memory.current", "900000\n");
   EXPECT_EQ(available_memory(root), 100000.);
@@ -50,7 +50,7 @@ namespace
     return block;
   }
 
-  /// True if memory can be measured; the address sanitizer keeps freed memory to detect its use.
+  /// True if memory can be measured; false with the address sanitizer, which keeps freed memory to detect its use.
   bool is_told()
   {
 #ifdef __SANITIZE_ADDRESS__
@@ -71,7 +71,7 @@ TEST(Memory, PeakIsThatSinceTheReset)
     EXPECT_GT(resident_memory(), before + 0.9 * bytes);
   }
   EXPECT_GT(peak_resident_memory(), before + 0.9 * bytes);
-  // The reset returns freed memory that malloc would keep because of a library
+  // The reset returns freed memory to the system, which malloc would otherwise keep
   ASSERT_TRUE(reset_peak_memory());
   EXPECT_LT(resident_memory(), before + 0.1 * bytes);
   EXPECT_LT(peak_resident_memory(), before + 0.1 * bytes);
@@ -86,7 +86,7 @@ TEST(Memory, FreedBlocksGoBack)
   used_block(bytes).reset();
   EXPECT_LT(resident_memory() - before, 0.1 * bytes);
 
-  // Small blocks are returned on request, although a block behind them is in use
+  // Small blocks are returned on request, although a later block is in use
   constexpr std::size_t                small = 1'000'000;
   std::vector<std::unique_ptr<char[]>> blocks;
   for (std::size_t i = 0; i < bytes / small; ++i)

@@ -51,7 +51,7 @@ namespace
 TEST(Tasks, AreDoneAtATime)
 {
   set_task_threads(2);
-  // Each of the two tasks waits until the other has begun
+  // Each task waits until the other has begun
   std::atomic<int> n_begun = 0;
   run_tasks(2, [&](const int) {
     ++n_begun;
@@ -105,14 +105,14 @@ TEST(MpiEnvironment, DependsOnMpirunAndCores)
   n_processes.set("1000000");
   prepare_mpi_environment();
   EXPECT_EQ(value("OMPI_MCA_mpi_yield_when_idle"), "1");
-  // User settings are kept
+  // Settings of the user are not changed
   yields.set("0");
   prepare_mpi_environment();
   EXPECT_EQ(value("OMPI_MCA_mpi_yield_when_idle"), "0");
   EXPECT_EQ(value("OMPI_MCA_ess_singleton_isolated"), "none");
   EXPECT_EQ(value("OMPI_MCA_orte_create_session_dirs"), "none");
 
-  // Without mpirun
+  // Without mpirun, Open MPI runs isolated
   n_processes.set(nullptr);
   yields.set(nullptr);
   prepare_mpi_environment();

@@ -36,7 +36,7 @@ TEST(Text, CommandsAreQuotedForAShell)
 {
   EXPECT_EQ(shell_command({"squeal", "prm/sweep.prm", "--set", "Geometry/Element size=0.04"}),
             "squeal prm/sweep.prm --set 'Geometry/Element size=0.04'");
-  // Round trip through a shell, which splits the command into words
+  // A shell must split the quoted command into the original words
   const std::vector<std::string> words   = {"a b", "",  "$HOME",     "`id`", "it's", "\"",         "\\",
                                             "*",   "~", "a;b|c&d>e", "!x",   "#",    "two\nlines", "\u00b5"};
   const std::string              command = "printf '%s\\0' " + shell_command(words);

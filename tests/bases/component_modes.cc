@@ -96,7 +96,7 @@ namespace
     const ComponentModes                     &disc = made->disc, &pins = made->pins;
     const std::vector<const ComponentModes *> references = {&disc, &pins};
 
-    // Two disc modes with the same label and one with a different label
+    // a and b: disc modes with the same label; c: a disc mode with a different label
     const int first = std::adjacent_find(disc.labels.begin(), disc.labels.end()) - disc.labels.begin();
     const int single =
       std::find_if(disc.labels.begin(), disc.labels.end(), [&](const ModeLabel &label) { return !(label == disc.labels.at(first)); }) -
@@ -107,7 +107,7 @@ namespace
 
 TEST_F(DiscModes, LabelsOfAnalyticFields)
 {
-  // One direction, cos(π m s) along the radius (m sign changes), n waves around the circumference, rotated pattern
+  // Fields in one direction with m nodal circles, cos(π m s), and n rotated nodal diameters
   std::vector<MultiVector> fields;
   std::vector<std::string> expected;
   for (const ModeFamily family : {A, R, C})
@@ -119,7 +119,7 @@ TEST_F(DiscModes, LabelsOfAnalyticFields)
           }));
           expected.push_back(to_string(family) + std::to_string(m) + "-" + std::to_string(n));
         }
-  // In-plane modes have radial and circumferential components with the same harmonic; the larger component determines the label.
+  // The larger of the radial and circumferential components of an in-plane mode determines its label
   for (const auto &[radial, around] : {std::make_pair(1., 0.9), {0.9, 1.}})
     {
       fields.push_back(along(R, [x = radial](double, const double theta) { return x * std::cos(3. * theta); }));
@@ -152,7 +152,7 @@ TEST_F(DiscModes, WaveSharesOfAnalyticFields)
           labels.push_back({family, 0, n});
           expected.push_back(f * f / (f * f + g * g));
         }
-  // Shares do not depend on the phase
+  // Shares do not change if φ is multiplied by a complex factor of modulus 1
   const MultiVector X = join_all(re), Y = join_all(im);
   const auto        shares = wave_shares(s.model, made->masses, labels, 0.6 * X - 0.8 * Y, 0.8 * X + 0.6 * Y);
   ASSERT_EQ(shares.size(), expected.size());
@@ -163,7 +163,7 @@ TEST_F(DiscModes, WaveSharesOfAnalyticFields)
       EXPECT_NEAR(shares[j]->negative, 1. - expected[j], 1e-10) << to_string(labels[j]);
     }
 
-  // Only disc modes with nodal diameters and motion in their direction have wave shares
+  // Only disc modes with nodal diameters and motion in the direction of their label have wave shares
   const MultiVector axial = along(A, [](const double r, const double theta) { return r * std::cos(theta); });
   for (const ModeLabel &label : {ModeLabel{A, 0, 0}, pin_mode(F, 1), ModeLabel(), ModeLabel{ModeFamily::rigid_body}, ModeLabel{R, 0, 1}})
     EXPECT_FALSE(wave_shares(s.model, made->masses, {label}, axial, MultiVector(axial.map(), 1))[0]) << to_string(label);
@@ -171,7 +171,7 @@ TEST_F(DiscModes, WaveSharesOfAnalyticFields)
 
 TEST(PinLabels, ModesOfRoundPinsInOrder)
 {
-  // Slender pins have flexural modes first; each family is numbered by frequency across all pins.
+  // The lowest modes of slender pins are flexural; each family is numbered by frequency across all pins
   const Scene         s = pin_scene();
   std::vector<double> torsion;
   for (const ContactBoundary boundary : {ContactBoundary::free, ContactBoundary::sliding})
@@ -183,10 +183,10 @@ TEST(PinLabels, ModesOfRoundPinsInOrder)
       EXPECT_NEAR(modes.eigenvalues[0] / modes.eigenvalues[1], 1., 1e-9); // threefold symmetry of the O-grid
       ASSERT_EQ(std::count(labels.begin(), labels.end(), pin_mode(T, 1)), 1);
       torsion.push_back(modes.eigenvalues[std::find(labels.begin(), labels.end(), pin_mode(T, 1)) - labels.begin()]);
-      // Held at both ends, the first longitudinal mode is a half wave at c / (2 L) = 12 kHz, above the limit.
+      // With both ends held, the first longitudinal mode lies at c / (2 L) = 12 kHz, above the limit
       EXPECT_EQ(std::count(labels.begin(), labels.end(), pin_mode(L, 1)), boundary == ContactBoundary::free);
 
-      // M-orthonormal, zero on the disc, no normal motion of sliding faces
+      // Vectors are M-orthonormal, vanish on the disc and do not move sliding faces in the normal direction
       EXPECT_LT(orthonormality_defect(*s.system.mass, *modes.vectors), 1e-12);
       const DenseMatrix u = replicate(*modes.vectors);
       for (const Node &node : s.model.nodes())
@@ -195,10 +195,10 @@ TEST(PinLabels, ModesOfRoundPinsInOrder)
       const double normal_motion = max_norm(replicate(*s.contact.normal * *modes.vectors)) / max_norm(u);
       EXPECT_EQ(normal_motion < 1e-14, boundary == ContactBoundary::sliding) << normal_motion;
     }
-  // Contact does not affect torsion, except for the warping of the polygonal face.
+  // Contact affects torsion only by the warping of the polygonal face
   EXPECT_NEAR(torsion.at(0) / torsion.at(1), 1., 2e-3);
 
-  // A pin that touches at a single node bends about its own axis
+  // Labels of a pin with a single closed contact node refer to the same axis
   const ContactInterface closed(s.interface.begin(), s.interface.begin() + 1);
   const double           limit = 2. * M_PI * 9000.;
   const auto             touching =
@@ -213,7 +213,7 @@ TEST(MarkDoublets, PairsOnly)
   mark_doublets(labels);
   EXPECT_EQ(texts(labels), (std::vector<std::string>{"A0-2 -", "F1", "A0-2 +", "A0-0", "F1", "F1", "unnamed", "unnamed"}));
 
-  // With growth rates, plus is the mode that grows faster
+  // With growth rates, the mode that grows faster becomes plus
   labels = {{A, 0, 4}, {A, 0, 4}, {A, 0, 5}, {A, 0, 5}, {R, 0, 1}, {R, 0, 1}, pin_mode(T, 1), pin_mode(T, 1)};
   mark_doublets(labels, {100., 0., 0., 50., 0., 0., 3., 2.});
   EXPECT_EQ(texts(labels), (std::vector<std::string>{"A0-4 +", "A0-4 -", "A0-5 -", "A0-5 +", "R0-1 -", "R0-1 +", "T1 +", "T1 -"}));
@@ -230,7 +230,7 @@ TEST_F(DiscModes, ComponentModesAreIdentifiedAsThemselves)
   for (const ModeLabel &label : found)
     EXPECT_NEAR(label.participation, 1., 1e-10);
 
-  // Random vectors have almost no share in the lowest modes.
+  // Random vectors have almost no share in the lowest modes
   const auto none = identities(random_vectors(s.model.free_map(), 2));
   EXPECT_EQ(none, std::vector<ModeLabel>(2));
   for (const ModeLabel &label : none)
@@ -239,14 +239,14 @@ TEST_F(DiscModes, ComponentModesAreIdentifiedAsThemselves)
 
 TEST_F(DiscModes, SharesOfMixturesAndPhases)
 {
-  // Any complex combination of a doublet has its label with share 1; a 3:4 mixture has shares 0.36 and 0.64 at any scale.
+  // Any complex combination of a doublet has its label with share 1; a 3:4 mixture has shares 0.36 and 0.64 at any scale
   const MultiVector re = join_all({0.6 * a - 0.8 * b, 3. * a}), im = join_all({2. * a + 1. * b, 4. * c});
   const auto        found = identities(re, &im);
   EXPECT_EQ(found, (std::vector<ModeLabel>{disc.labels[first], disc.labels[single]}));
   EXPECT_NEAR(found[0].participation, 1., 1e-10);
   EXPECT_NEAR(found[1].participation, 0.64, 1e-10);
 
-  // All three vectors are most similar to the doublet, but only two modes may have its label: one vector gets another label.
+  // All three vectors are most similar to the doublet, but only two may have its label
   EXPECT_EQ(identities(join_all({1. * a + 0.1 * c, 1. * a + (0.2 * b + 0.4 * c), 1. * a + (0.4 * b + 0.1 * c)})),
             (std::vector<ModeLabel>{disc.labels[first], disc.labels[single], disc.labels[first]}));
 }
@@ -274,7 +274,7 @@ TEST(RigidBody, AFreeDiscHasSixMotionsAloneAndThreeCoupled)
   EXPECT_GT(shift, 0.);
   EXPECT_LT(shift, omega);
   options.shift = shift * shift;
-  // Sliding faces cannot move along the axis, so that only in-plane motions remain
+  // Sliding faces cannot move along the axis, and only in-plane motions remain
   for (const auto &[boundary, n] : {std::make_pair(ContactBoundary::free, 6), {ContactBoundary::sliding, 3}})
     {
       const auto modes = modes_below(s, 3000., Component::disc, boundary, options);
@@ -284,7 +284,7 @@ TEST(RigidBody, AFreeDiscHasSixMotionsAloneAndThreeCoupled)
     }
   EXPECT_EQ(symmetric_modes(*s.coupled.stiffness, *s.coupled.mass, omega * omega, options).n_rigid_body, 3);
 
-  // The pins resist axial motion and tilting; nothing resists x, y and rotation about z.
+  // The pins resist only axial motion and tilting of the disc
   const MultiVector X = rigid_disc_motions(s.model, s.coupled), KX = *s.coupled.stiffness * X;
   const auto        size = column_norms(X), force = column_norms(KX);
   const double      K = max_norm(*s.coupled.stiffness);
@@ -296,7 +296,7 @@ TEST(RigidBody, AFreeDiscHasSixMotionsAloneAndThreeCoupled)
 
 TEST(RigidBody, ADiscThatIsHeldInItsPlaneNeedsNoShift)
 {
-  // Tangential and axial springs, tangential only, axial only
+  // A shift is required only without tangential springs
   for (const auto &[tangential, axial] : {std::make_pair(7.8e10, 1.88e10), {7.8e10, 0.}, {0., 1.88e10}})
     {
       const Scene s = disc_scene({{"disc_bore", 0., tangential, axial}});

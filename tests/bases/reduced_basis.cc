@@ -25,7 +25,7 @@ namespace
   constexpr double mu        = 0.6;
   const double     omega_max = circular_frequency(6000.);
 
-  /// A basis and its sizes in the tables of the paper.
+  /// A basis with its sizes in the tables of the paper.
   struct Kind
   {
     std::string name;
@@ -47,7 +47,7 @@ namespace
     return kinds;
   }
 
-  /// Disc and three pins, with half as many elements in each direction if they are quadratic.
+  /// Disc and three pins, with half the number of elements in each direction if they are quadratic.
   Mesh mesh_of(const Case &c)
   {
     const int n = c.element == Element::trilinear ? 2 : 1;
@@ -57,7 +57,7 @@ namespace
                   c.slope);
   }
 
-  /// A model with all vectors that the bases need.
+  /// A model with all vectors required by the bases.
   struct Bodies
   {
     explicit Bodies(const Case &c)
@@ -225,7 +225,7 @@ TEST_P(ReducedBases, FrictionlessRitzValuesComeDownToTheExactOnes)
       no_higher(exact, found[kind], kind);
     }
   no_higher(found["free + t.a.m."], found["free with r.a.m."], "free + t.a.m. contains r.a.m.");
-  // Responses of a free disc are almost rigid, so that orthonormalisation costs a digit.
+  // Responses of a free disc are almost rigid, and orthonormalisation loses a digit
   const double exactness = b.real.n_rigid_body > 0 ? 1e-7 : 1e-8;
   for (const auto &[kind, n_r0, n_r] : real_kinds)
     EXPECT_LT(error(found[kind]), exactness) << kind;
@@ -246,7 +246,7 @@ TEST_P(ReducedBases, StaticallyCompleteBasesGiveStaticResponsesExactly)
   // Tangential loads on the contact: K_c u = A
   for (const std::string kind : {"free + t.a.m.", "fixed + t.a.m.", "mixed + t.a.m.", "real + t.a.m."})
     EXPECT_LT(missing(kind), 1e-7) << kind;
-  // Bases without tangential attachment modes do not contain them
+  // Bases without tangential attachment modes do not contain these responses
   for (const std::string kind : {"free", "fixed", "mixed", "free with r.a.m.", "real"})
     EXPECT_GT(missing(kind), 1e-2) << kind;
 
@@ -287,7 +287,7 @@ TEST_P(ReducedBases, OfRealModesSpanWhatTheyAreMadeOf)
 
 TEST(CompleteBasis, GivesTheFullModel)
 {
-  // All sliding component modes and the constraint modes span all displacements that keep the contact closed.
+  // All sliding component modes and the constraint modes span all displacements that keep the contact closed
   const std::vector<PolarPin> pins = {{Plan::Side::top, 0, 1, 0, 1}, {Plan::Side::bottom, 2, 1, 0, 1}};
   const Scene                 s(sloped(extrude(polar_plan(0.1505, 0.3155, 1, 7, pins), layers(1, 2)), 0.3), mounted(held),
                                 operating(RadialDissipation::consistent));
@@ -322,7 +322,7 @@ TEST(CompleteBasis, GivesTheFullModel)
       EXPECT_LT(largest(distances(full.values, reduced.values)), 1e-10);
     }
 
-  // An additional copy of a vector makes the basis linearly dependent.
+  // An additional copy of a vector makes the basis linearly dependent
   const MultiVector first = view(disc, 0, 1), more = join({&disc, &first});
   in.sets[BasisSource::disc_sliding] = &more;
   EXPECT_THROW(reduced_basis(*find_recipe("fixed"), in), SolverError);

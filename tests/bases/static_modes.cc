@@ -76,12 +76,12 @@ TEST_P(StaticModesOf, AttachmentModesAreStaticResponses)
 {
   ASSERT_EQ(m.modes.normal_attachment().n_columns(), n_c);
   const auto f = [](const SparseMatrix &P) { return transpose_times(P, unit_vectors(P.rows())); };
-  // With a held disc and trilinear elements, only rounding errors remain
+  // Errors of a held flat disc with trilinear elements are at rounding level
   const bool is_simple = GetParam().slope == 0. && GetParam().element == Element::trilinear && GetParam().n_free == 0;
   EXPECT_LT(residual(m, m.modes.normal_attachment(), f(*P.normal)), is_simple ? 1e-11 : 1e-9);
   EXPECT_LT(residual(m, m.modes.tangential_attachment(), f(*P.tangential)), 1e-9);
 
-  // Unit forces along n on the two components add up to the forces on both
+  // Responses to forces on the two components add up
   MultiVector rest = m.modes.normal_attachment(), f_pins = forces(m.s, *P.normal, Component::pins);
   f_pins *= -1.;
   EXPECT_LT(residual(m, m.modes.normal_attachment(Component::disc), forces(m.s, *P.normal, Component::disc)), 1e-9);
@@ -89,13 +89,13 @@ TEST_P(StaticModesOf, AttachmentModesAreStaticResponses)
   rest.local() -= m.modes.normal_attachment(Component::disc).local() - m.modes.normal_attachment(Component::pins).local();
   EXPECT_EQ(max_norm(replicate(rest)), 0.);
 
-  // A normal force and the friction it causes
+  // Rubbing modes are responses to a normal force and its friction force
   const double mu      = 0.37;
   MultiVector  rubbing = f(*P.normal);
   rubbing.local() += mu * f(*P.tangential).local();
   EXPECT_LT(residual(m, m.modes.rubbing_attachment(mu), rubbing), 1e-9);
 
-  // Inertia relief of a free disc
+  // Inertia relief removes the rigid-body motions of a free disc
   const MultiVector *N = m.modes.response.rigid_body_modes(), &u = m.modes.normal_attachment();
   ASSERT_EQ(N != nullptr ? N->n_columns() : 0, GetParam().n_free);
   if (N == nullptr)
@@ -114,13 +114,13 @@ TEST_P(StaticModesOf, ConstraintModesKeepTheirValues)
       const double       sign = component == Component::disc ? 1. : -1.;
       EXPECT_LT(max_norm(replicate(*P.normal * Psi) - sign * DenseMatrix::Identity(n_c, n_c)), 1e-12);
 
-      // Forces act along the normals of this component only: K Ψ = P_nᵀ r on its rows, zero on all other rows.
+      // Forces act only along the normals of this component: K Ψ = P_nᵀ r on its rows, zero on all other rows
       const MultiVector F = *m.s.system.stiffness * Psi, f = forces(m.s, *P.normal, component);
       MultiVector       rest = F;
       multiply_add(-1., f, gram(f, F), 1., rest);
       EXPECT_LT(max_norm(replicate(rest)), 1e-9 * max_norm(replicate(F)));
 
-      // Ψ_cn = Ψ_an F⁻¹ without rigid-body motions, F = n·Ψ_an at the contact nodes
+      // Without rigid-body motions, Ψ_cn = Ψ_an F⁻¹ with F = n·Ψ_an at the contact nodes
       if (component == Component::disc && GetParam().n_free > 0)
         continue;
       const MultiVector attachment = m.modes.normal_attachment(component);
@@ -140,7 +140,7 @@ TEST(Kernels, AreUndoneByCoordinates)
   expect_undone(*s.contact.kernel);
   expect_undone(*component_kernel(s.model, s.interface, Component::pins, ContactBoundary::free));
 
-  // On faces inclined by 45 degrees, the row of a slave dof has a single entry of 1, like the row of its master dof.
+  // On faces inclined by 45 degrees, the row of a slave dof has a single entry of 1, as does the row of its master dof
   ContactInterface inclined = s.interface;
   const double     h        = std::sqrt(0.5);
   for (ContactNode &node : inclined)
@@ -161,7 +161,7 @@ TEST(CoupledResponses, SolveWithTheirForces)
   const double         mu  = 0.37;
   const auto          &K   = *s.coupled.stiffness;
 
-  // Forces from the matrices with friction: K_c − μ A V_K at μ = 1 and its transpose
+  // Compute forces from K_c − μ A V_K at μ = 1 and its transpose
   const auto with  = with_friction(s.coupled, 1.);
   const auto check = [&](const MultiVector &response, MultiVector force) {
     const double size = max_norm(replicate(force));

@@ -87,8 +87,7 @@ TEST(ContactInterface, EveryNodeOnceWithItsFrame)
             EXPECT_GT(node.area, 0.);
             area += node.area;
 
-            // n outwards, t along e_θ, b = n × t; at the ends of a pin, the face normal differs from that of the cone by half the sector
-            // angle
+            // n points outwards, t along e_θ, b = n × t; at the ends of a pin, the normal deviates from the cone by half the sector angle
             const double r = node.axis_distance(), scale = 1. / std::sqrt(1. + slope * slope), side = node.normal[2] > 0. ? 1. : -1.;
             const double tolerance = 1.1 * slope * M_PI / n_sectors, near = slope > 0. ? 1e-3 : 0.;
             const Eigen::Vector3d e_r(node.position[0] / r, node.position[1] / r, 0.), e_theta(-e_r[1], e_r[0], 0.);
@@ -112,7 +111,7 @@ TEST(ContactInterface, EveryNodeOnceWithItsFrame)
 
 TEST(ContactInterface, PadsThatEndAtTheRimPairInDegree2)
 {
-  // Pad edges on rim and bore must follow the curve, regardless of the rest of their outline
+  // Pad edges on rim and bore must follow the curve for any shape of the other edges
   const auto interface =
     pairs(extrude(polar_plan(0.15, 0.3, 3, 16, {{top, -1, 2, 1, 2}, {bottom, 3, 3, 0, 1}}), layers(1, 1)), Element::quadratic);
   const auto n_at = [&](const double radius) {
@@ -147,7 +146,7 @@ TEST(ContactInterface, DisplacedPinsAreCoupledByMortarElements)
 
 TEST(ContactInterface, WhatCannotBePairedIsRefused)
 {
-  // Lateral faces of the pins are also clamped, down to the contact
+  // Clamp lateral faces of the pins, including their contact nodes
   Mesh clamped = flat_mesh();
   for (auto &quadrilateral : clamped.faces)
     if (clamped.surface_names[quadrilateral.surface] == PhysicalNames::pin_side)
@@ -165,7 +164,7 @@ TEST(RadialDissipation, SharesTheLoadOfEachSide)
   operation.friction_coefficient = 0.37;
   operation.rotation_speed       = 3.;
   operation.load_per_side        = 500.;
-  // c_b w_0 is the friction force μ R_n0 (consistent) or R_n0 (published), shared equally by the nodes
+  // c_b w_0 is the friction force μ R_n0 (consistent) or R_n0 (published), divided equally among the nodes
   for (const auto &[kind, force] :
        {std::make_pair(RadialDissipation::none, 0.), {RadialDissipation::consistent, 0.37 * 500.}, {RadialDissipation::published, 500.}})
     {

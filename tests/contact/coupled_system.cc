@@ -15,7 +15,7 @@ namespace
 
   Scene scene(const Case &c, const bool is_damped = false, const RadialDissipation dissipation = RadialDissipation::consistent)
   {
-    // Fewer elements if they are quadratic
+    // Use fewer elements if they are quadratic
     const int                   n    = c.element == Element::trilinear ? 2 : 1;
     const std::vector<PolarPin> pins = {{Plan::Side::top, 0, n, 1, 1}, {Plan::Side::bottom, -1, n, 0, 1}};
     return Scene(sloped(extrude(polar_plan(0.15, 0.3, 1 + n, 4 + 4 * n, pins), layers(1, 2)), c.slope),
@@ -31,7 +31,7 @@ namespace
     return max_norm(*add(1., A, -1., B)) / max_norm(B);
   }
 
-  /// Largest column norm of A − B, relative to that of B.
+  /// Largest column norm of A − B, relative to the largest column norm of B.
   double difference(MultiVector A, const MultiVector &B)
   {
     A -= B;
@@ -80,7 +80,7 @@ TEST(ReactionOperators, GiveTheSameEigenvaluesWhateverTheirKind)
   const DenseMatrix           N   = to_dense(P_n);
   const int                   n_c = N.rows(), n = N.cols();
 
-  // Reactions from the pins alone, from the disc alone, and from a weighted pseudo-inverse of all directions
+  // Compute reactions from the pins, from the disc, and by a weighted pseudo-inverse of all directions
   DenseMatrix pin = DenseMatrix::Zero(n_c, n), B(3 * n_c, n), W = DenseMatrix::Zero(n, n);
   for (int c = 0; c < n_c; ++c)
     for (const int dof : s.interface[c].pin_node.dofs)
@@ -120,7 +120,7 @@ TEST_P(Contact, KernelSpansTheAdmissibleDisplacements)
   EXPECT_EQ(T_c.n_columns(), T_c.n_rows() - static_cast<int>(s.interface.size()));
   EXPECT_LT(max_norm(*multiply(*s.contact.normal, T_c)), 1e-15);
 
-  // Full rank, 1 ≤ TᵀT ≤ 1 + 5: free dofs have the entry 1, and a slave depends on five others with |ratio| ≤ 1.
+  // T has full rank, 1 ≤ TᵀT ≤ 1 + 5: free dofs have the entry 1, and a slave depends on five other dofs with |ratio| ≤ 1
   const auto G    = multiply(T_c, T_c, true, false);
   const auto unit = identity(G->rows());
   EXPECT_EQ(count_negative_eigenvalues(*add(1., *G, -0.999, *unit), "TᵀT - 1"), 0);
@@ -131,7 +131,7 @@ TEST_P(Contact, KernelSpansTheAdmissibleDisplacements)
   const bool        is_selection = ((T.array() == 0.) || (T.array() == 1.)).all() && (T.rowwise().sum().array() == 1.).all();
   EXPECT_EQ(is_selection, GetParam().slope == 0.);
 
-  // The columns span every displacement with P_n u = 0: the residual of the projection vanishes.
+  // The columns span every displacement with P_n u = 0: the residual of the projection vanishes
   MultiVector u = random_vectors(s.model.free_map(), 3);
   multiply_add(-0.5, transpose_times(*s.contact.normal, *s.contact.normal * u), DenseMatrix::Identity(3, 3), 1., u);
   EXPECT_LT(max_norm(replicate(*s.contact.normal * u)), 1e-14);
@@ -159,7 +159,7 @@ TEST_P(Contact, ComponentKernels)
 
 TEST_P(Contact, MatricesAreThoseOfTheUnreducedEquation)
 {
-  // T_cᵀ (1 − μ/2 P_tᵀ P_n) applies to K, M and C of the bodies, whose damping forces also cause friction; C_b is added without this factor
+  // T_cᵀ (1 − μ/2 P_tᵀ P_n) multiplies K, M and C of the bodies, whose damping forces also cause friction, but not C_b
   for (const bool is_damped : {false, true})
     for (const RadialDissipation dissipation : {RadialDissipation::none, RadialDissipation::consistent})
       {
@@ -195,7 +195,7 @@ TEST_P(Contact, DampingActsAlongTheSlidingAndTheRadialDirection)
   for (std::size_t c = 0; c < s.interface.size(); ++c)
     {
       c_b.push_back(1. + c);
-      c_t.push_back(-3. + c % 5); // c_t of either sign; negative if friction falls with speed
+      c_t.push_back(-3. + c % 5); // c_t of either sign; negative if friction decreases with speed
     }
   const auto along = [&](const Matrix &P, const std::vector<double> &values) {
     return projected(*Testing::diagonal(P->rows(), [&](const int c) { return values[c]; }), *P);
@@ -208,7 +208,7 @@ TEST_P(Contact, DampingActsAlongTheSlidingAndTheRadialDirection)
   EXPECT_EQ(contact_damping(s.contact, {zeros, {}}), nullptr);
   EXPECT_EQ(contact_damping(s.contact, {zeros, zeros}), nullptr);
 
-  // Contact damping causes no friction
+  // Forces of contact damping cause no friction
   const CoupledSystem coupled = couple(s.system, s.contact, {c_b, c_t});
   EXPECT_TRUE(has_no_reaction_to_velocity(coupled));
   EXPECT_EQ(difference(*with_friction(coupled, 0.4).damping, *with_friction(coupled, 0.).damping), 0.);
@@ -233,13 +233,13 @@ TEST_P(Contact, UpdatedInverseEqualsSparseFactors)
               EXPECT_LT(difference(X, Y), 1e-10) << "shift " << shift << ", mu " << mu;
             }
         }
-      // The frictionless inverse is independent of μ; the attachment modes X solve S X = A
+      // The frictionless inverse is independent of μ, and the attachment modes X solve S X = A
       const Matrix S = dynamic_stiffness(with_friction(s.coupled, 0.), shift);
       EXPECT_LT(difference(*S * inverse.solve_frictionless(B), B), 1e-10);
       const DenseMatrix forces = replicate(s.coupled.friction_forces->columns(0, s.coupled.n_contact()));
       EXPECT_LT(max_norm(replicate(*S * inverse.attachment_modes()) - forces), 1e-10);
 
-      // Attachment modes computed on demand
+      // Attachment modes computed on demand are the same
       const UpdatedInverse waiting(s.coupled, shift, FactorizationLibrary::automatic, AttachmentModes::when_needed);
       const DenseMatrix    Y = agreed_random_matrix(s.coupled.n_contact(), 3);
       EXPECT_LT(difference(waiting.attachment_modes_times(Y), inverse.attachment_modes_times(Y)), 1e-12);
@@ -249,7 +249,7 @@ TEST_P(Contact, UpdatedInverseEqualsSparseFactors)
 
 TEST_P(Contact, ComplexModesSatisfyTheUnreducedEquation)
 {
-  // Check the equations M ü + C u̇ + K u = P_nᵀ r_n + μ P_tᵀ r_n, P_n u = 0, with t the direction of the disc relative to the pin
+  // Check M ü + C u̇ + K u = P_nᵀ r_n + μ P_tᵀ r_n and P_n u = 0, where t is the sliding direction of the disc relative to the pin
   for (const bool is_damped : {false, true})
     {
       const Scene      s  = scene(GetParam(), is_damped, is_damped ? RadialDissipation::consistent : RadialDissipation::none);
@@ -283,7 +283,7 @@ TEST_P(Contact, ComplexModesSatisfyTheUnreducedEquation)
           EXPECT_LT(rest.col(j).norm(), 1e-9 * size[j]) << "mode " << j;
           n_touching += forces.col(j).norm() > 1e-2 * size[j];
         }
-      // In-plane modes of the disc have hardly any reactions; in all other modes, reactions contribute to the balance
+      // Reactions contribute to the balance of most modes, except in-plane modes of the disc
       EXPECT_GT(n_touching, k / 2);
     }
 }

@@ -56,7 +56,7 @@ namespace
 
 TEST_P(Blocks, ConstantPressureIsInEquilibrium)
 {
-  // Uniaxial stress along the normal; lateral expansion is free
+  // Prescribe uniaxial stress along the normal with free lateral expansion
   constexpr double      p = 2e6;
   const Eigen::Vector3d n = block_turn.col(2);
   MultiVector           u(s.model.free_map(), 1);
@@ -70,7 +70,7 @@ TEST_P(Blocks, ConstantPressureIsInEquilibrium)
       });
     }
 
-  // Contact forces K u − f, where f acts on both ends
+  // Contact forces K u − f with the forces f on both ends
   MultiVector forces = *s.system.stiffness * u;
   for (const Node &node : s.model.nodes())
     for (const int dof : node.dofs)
@@ -107,7 +107,7 @@ TEST_P(Blocks, OperatorsFitTogether)
     EXPECT_LT(max_norm(*multiply(S, *P, false, true)), 1e-13);
   EXPECT_LT(max_norm(*multiply(P_n, T_c)), 1e-13);
 
-  // T_c has dim ker P_n columns, and full rank because it selects dofs
+  // T_c has dim ker P_n columns and full rank, because it contains a selection of dofs
   EXPECT_EQ(T_c.n_rows(), s.model.free_map().n());
   EXPECT_EQ(T_c.n_columns(), T_c.n_rows() - n_c);
   const auto G = multiply(T_c, T_c, true, false);

@@ -21,7 +21,7 @@ namespace
     return operation;
   }
 
-  /// A block on a straight rail along x; the block is off-centre.
+  /// An off-centre block on a straight rail along x.
   Mesh block_on_rail()
   {
     Mesh mesh;

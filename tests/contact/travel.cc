@@ -10,7 +10,7 @@ using namespace Squeal::Testing;
 
 namespace
 {
-  /// Two pins above, one below, of different sizes.
+  /// Two pins above and one below the disc, of different sizes.
   Mesh unequal_pins()
   {
     return extrude(
@@ -66,7 +66,7 @@ TEST(Travel, LevelAndConicalFacesArePressedAlongTheAxis)
         EXPECT_EQ(backplate_numbers(e, false), (std::vector<int>{-1, 0, 0, 1}));
         EXPECT_EQ(backplate_numbers(e, true), (std::vector<int>{-1, 0, 1, 2}));
 
-        // The axial forces on the backplates of a side add up to the load; all nodes of a side have the same reaction
+        // Axial forces on the backplates of a side add up to the load, and all nodes of a side have the same reaction
         EXPECT_NEAR(s.force(1, e[1].direction, r) + s.force(2, e[2].direction, r), 500., 1e-10);
         EXPECT_NEAR(s.force(3, e[3].direction, r), 500., 1e-10);
         for (std::size_t c = 0; c < r.size(); ++c)
@@ -85,7 +85,7 @@ TEST(Travel, ShoesOutsideAndInsideOfARingAreSidesOfTheirOwn)
       EXPECT_EQ(backplate_numbers(e, false), (std::vector<int>{-1, 0, 1, 2}));
       for (const unsigned int pin : {1, 2, 3})
         {
-          // Towards the ring: inwards for shoes outside the ring, outwards for shoes inside
+          // Shoes outside the ring travel inwards, shoes inside travel outwards
           Eigen::Vector3d middle(0., 0., 0.);
           for (const ContactNode &node : s.interface)
             if (node.pin == pin)
@@ -99,7 +99,7 @@ TEST(Travel, ShoesOutsideAndInsideOfARingAreSidesOfTheirOwn)
 
 TEST(Travel, ABodyThatRubsBothFacesIsRefusedByName)
 {
-  // Upper and lower pins as one body, with unequal and with equal areas
+  // Join upper and lower pins to one body, with unequal and with equal areas
   for (const bool is_equal : {false, true})
     {
       Mesh mesh = is_equal ?
@@ -118,7 +118,7 @@ TEST(Travel, ABodyThatRubsBothFacesIsRefusedByName)
 
 TEST(Travel, FrictionThatCarriesTheLoadIsRefused)
 {
-  // Self-locking: on faces that rise along the sliding direction, sufficient friction holds the pin without load
+  // On faces that rise along the sliding direction, strong friction holds the pin without load (self-locking)
   const Mesh    mesh = mapped(unequal_pins(), [](const Point3 &p) { return Point3{{p[0], p[1], p[2] + 0.1 * std::atan2(p[1], p[0])}}; });
   const Pressed weak(mesh, 0.4), strong(mesh, 5.), reversed(mesh, 5., Rotation::negative);
   EXPECT_NO_THROW(weak.shares());

@@ -97,7 +97,7 @@ TEST(DenseQuadratic, VectorsOfBothSides)
 
 TEST(DenseQuadratic, OscillatorsOverWideRange)
 {
-  // λ² + 2 ζ ω λ + ω² = 0 with ω from 1 to 1e5: even the smallest values have ten correct digits.
+  // Roots of λ² + 2 ζ ω λ + ω² = 0 with ω from 1 to 1e5; even the smallest roots have ten correct digits
   const int   n = 26;
   DenseMatrix C = DenseMatrix::Zero(n, n), K = DenseMatrix::Zero(n, n);
   for (int i = 0; i < n; ++i)
@@ -168,7 +168,7 @@ TEST(DenseQuadratic, ModesOfABandApartFromTheRest)
   for (const DenseMatrix *damping : {static_cast<const DenseMatrix *>(nullptr), static_cast<const DenseMatrix *>(&D)})
     expect_same(dense_modes_of_band(M, damping, K, squares, end).value(), dense_quadratic_modes(M, damping, K, end));
 
-  // An overdamped mode above the band, and a mode above the band whose damped frequency lies in it
+  // The band is not separated from an overdamped mode above it, or from a mode above it whose damped frequency lies in it
   for (const double damping : {400., 135.})
     {
       DenseMatrix much = C;
@@ -192,19 +192,19 @@ TEST(DenseQuadratic, ABandThatIsNotApartIsNotSeparated)
   const auto        squares    = squares_of(apart);
   const DenseMatrix noise      = random_entries(n, 6);
   EXPECT_TRUE(band_subspaces(apart + noise, squares, end).has_value());
-  // Not available without a gap above the band, or for an unbounded band
+  // Separation requires a bounded band and a gap above it
   EXPECT_FALSE(band_subspaces(stiffness(0.) + noise, squares_of(stiffness(0.)), end).has_value());
   EXPECT_FALSE(band_subspaces(apart + noise, squares, std::numeric_limits<double>::infinity()).has_value());
-  // A mode that should lie above the band, but lies in it or is real
+  // Separation fails if a mode expected above the band lies in it or is real
   for (const double square : {100., -1e4})
     {
       DenseMatrix A = apart + noise;
       A(50, 50)     = square;
       EXPECT_FALSE(band_subspaces(A, squares, end).has_value()) << square;
     }
-  // Not available if the iterations do not converge
+  // Separation fails if the iterations do not converge
   EXPECT_FALSE(band_subspaces(apart + 2000. * noise, squares, end).has_value());
-  // Falls back to the QR algorithm for all eigenvalues
+  // Without separation, the QR algorithm computes all eigenvalues
   DenseMatrix A = apart + noise;
   A(50, 50)     = 100.;
   EXPECT_FALSE(dense_modes_of_band(I, nullptr, A, squares, end).has_value());

@@ -99,7 +99,7 @@ namespace
 
 TEST(QuadraticModes, DampedOscillators)
 {
-  // λ² + 2 ζ ω λ + ω² = 0; two oscillators are overdamped.
+  // Roots of λ² + 2 ζ ω λ + ω² = 0, with two overdamped oscillators
   const int            n = 60;
   std::vector<double>  stiffness(n), damping(n);
   std::vector<Complex> expected;
@@ -133,7 +133,7 @@ TEST(QuadraticModes, DampedOscillators)
 
 TEST(QuadraticModes, CopiesBeyondTheBlockSizeAreAllFound)
 {
-  // Twelve equal chains: eigenvalues are twelvefold, the block size is four.
+  // Eigenvalues of twelve equal chains are twelvefold, and the block size is only four
   const int   n = 20, n_copies = 12;
   DenseMatrix K = DenseMatrix::Zero(n * n_copies, n * n_copies);
   for (int copy = 0; copy < n_copies; ++copy)
@@ -220,7 +220,7 @@ TEST(QuadraticModes, ZeroDampingKeepsTheSymmetryOfTheSpectrum)
   const auto one = linear.modes(0.4), two = quadratic.modes(0.4);
   ASSERT_GT(one.values.size(), 15u);
   expect_same(two.values, one.values, 1e-9);
-  // The residuals are rounding errors if there is no damping matrix
+  // Without a damping matrix, the spectrum is symmetric to rounding errors
   for (const auto &[values, relative] : {std::make_pair(one.values, 1e-15), {two.values, 1e-9}})
     for (const Complex &value : values)
       EXPECT_TRUE(std::any_of(values.begin(), values.end(), [&value = value, relative = relative](const Complex &other) {
@@ -230,7 +230,7 @@ TEST(QuadraticModes, ZeroDampingKeepsTheSymmetryOfTheSpectrum)
 
 TEST(QuadraticModes, FreeBodyNeedsAShift)
 {
-  // Two free chains: K is singular with one rigid-body mode per chain.
+  // K of two free chains is singular, with one rigid-body mode per chain
   const int   n     = 40;
   DenseMatrix K     = DenseMatrix::Zero(2 * n, 2 * n);
   DenseMatrix alone = chain(n);

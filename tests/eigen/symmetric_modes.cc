@@ -50,7 +50,6 @@ namespace
     ASSERT_EQ(modes.vectors->n_columns(), n_modes);
     EXPECT_LT(orthonormality_defect(M, *modes.vectors), 1e-12);
 
-    // Recomputes the residuals.
     for (int j = 0; j < n_modes; ++j)
       {
         const MultiVector x  = view(*modes.vectors, j, 1);
@@ -73,7 +72,7 @@ namespace
 
 TEST_P(SymmetricModesBy, LaplacianOnACube)
 {
-  // The eigenvalues are known; they are up to sixfold by symmetry
+  // Exact eigenvalues are known, with multiplicities up to six by symmetry
   const int    m     = 9;
   const auto   K     = laplacian(m, 1, distribution());
   const auto   M     = diagonal(K->rows(), [](int) { return 2.; });
@@ -92,7 +91,7 @@ TEST_P(SymmetricModesBy, LaplacianOnACube)
 
 TEST_P(SymmetricModesBy, EigenvaluesOfMoreCopiesThanABlockHas)
 {
-  // Twelve equal bodies with simple and threefold modes: the multiplicities of 12 and 36 exceed the block size
+  // Twelve equal bodies with simple and threefold modes have multiplicities of 12 and 36, which exceed the block size
   const int            m = 5, n_copies = 12;
   const auto           K     = laplacian(m, n_copies, distribution());
   const auto           M     = diagonal(K->rows(), [](int) { return 1.; });
@@ -114,7 +113,6 @@ TEST_P(SymmetricModesBy, FreeBodyHasSixRigidModes)
   EXPECT_GT(modes.eigenvalues[6], 1e-4 * limit);
   check_modes(*body.stiffness, *body.mass, limit, modes);
 
-  // Repeat with a prescribed shift
   options.shift       = 0.2 * limit;
   const auto by_shift = symmetric_modes(*body.stiffness, *body.mass, limit, options);
   ASSERT_EQ(by_shift.n_counted, modes.n_counted);
@@ -173,7 +171,7 @@ TEST(SymmetricModes, SolversAndLibrariesAgree)
       ASSERT_EQ(modes.n_counted, results.front().n_counted);
       expect_values(modes.eigenvalues, results.front().eigenvalues, 1e-10);
 
-      // Equal subspaces: all singular values of ΦᵀMΨ are one.
+      // Subspaces are equal if all singular values of ΦᵀMΨ are one
       DenseMatrix       overlap = gram(*results.front().vectors, *body.mass * *modes.vectors);
       const DenseMatrix squares = overlap.transpose() * overlap;
       EXPECT_LT(max_norm(squares - DenseMatrix::Identity(modes.n_counted, modes.n_counted)), 1e-8);
@@ -189,7 +187,7 @@ TEST(SymmetricModes, DoNotDependOnThreads)
   set_task_threads(2);
   const auto two = symmetric_modes(*copies, *unit, 1.7, options);
   set_task_threads(1);
-  // Results are bitwise equal on one process only: several processes add in any order
+  // Results are bitwise equal only on one process, because the order of sums over processes varies
   if (copies->rows().n_processes() > 1)
     {
       ASSERT_EQ(one.n_counted, two.n_counted);
@@ -203,7 +201,7 @@ TEST(SymmetricModes, DoNotDependOnThreads)
 
 TEST(SymmetricModes, ModesOnTheLimitAreCountedAgain)
 {
-  // Twelve modes at the end of the band, and a thirteenth just above it, which the given count includes
+  // Twelve modes lie at the end of the band, and a thirteenth, included in the given count, just above it
   const auto            K = diagonal(rows(400), [](const int i) { return i < 12 ? 1. : i == 12 ? 1. + 5e-9 : 5. + i; });
   const auto            M = diagonal(K->rows(), [](int) { return 1.; });
   SymmetricModesOptions options;
@@ -239,7 +237,7 @@ TEST(SymmetricModes, EndOfTheLowestIsFoundByCounting)
 
 TEST_P(SymmetricModesBy, UncoupledPartsAreSolvedAlone)
 {
-  // Seven equal chains of 60 masses with interleaved dofs: every eigenvalue is sevenfold.
+  // Every eigenvalue of seven equal chains of 60 masses, with interleaved dofs, is sevenfold
   constexpr int n_chains = 7, length = 60;
   const auto    map = rows(n_chains * length, distribution());
   const auto    K   = sparse(map, map, [](const int i) {
@@ -263,7 +261,7 @@ TEST_P(SymmetricModesBy, UncoupledPartsAreSolvedAlone)
     }
 }
 
-// The basis must leave room for one more block.
+// The basis must have space for one more block.
 TEST_P(SymmetricModesBy, LargeBlocksInASmallSystem)
 {
   constexpr int n            = 420;
@@ -278,7 +276,7 @@ TEST_P(SymmetricModesBy, LargeBlocksInASmallSystem)
 
 TEST(SymmetricModes, CallZeroWhatRoundingHidesWhateverTheBand)
 {
-  // A chain of unit masses and springs, held at one end by a much softer spring k: ω² ≈ k / n
+  // The lowest mode of a chain of unit masses and springs, held at one end by a much softer spring k, has ω² ≈ k / n
   for (const int n : {40, 400}) // solved by a dense method, and by Lanczos
     for (const double stiffness : {0., 1e-7, 1e-3})
       for (const double limit : {1e-2, 3.})

@@ -12,7 +12,7 @@ namespace
 {
   const MaterialParameters materials = mounted();
 
-  /// Annuli with opposite pins; the polygonal outlines depend on the refinement.
+  /// An annulus with opposite pins, whose polygonal outlines depend on the refinement.
   Mesh mesh(const int refinement, const int n_layers)
   {
     const std::vector<PolarPin> pins = {{Plan::Side::top, -refinement, 2 * refinement, refinement, refinement},
@@ -58,13 +58,13 @@ TEST(CommonPoints, HaveTheMassOfEveryBody)
 
 TEST(CommonPoints, EvaluateMultilinearFieldsExactlyInTheirOwnBodyOnly)
 {
-  // This field is in the finite element space of extruded cells, and zero on the clamped face of the upper pin
+  // The finite element space of extruded cells contains this field, which vanishes on the clamped face of the upper pin
   const auto multilinear = [](const Point3 &x) {
     const GeometryParameters parameters;
     const double             z = x[2] - parameters.disc_thickness / 2. - parameters.pin_height;
     return Point3{{z * (1. + 2. * x[0] - x[1]), z * x[1], 3. * z}};
   };
-  // Expect √m u(x) at all points; faces of disc and pin coincide, but each body has its own field
+  // Expect √m u(x) at all points; each body has its own field, although faces of disc and pin coincide
   const Points        p;
   std::vector<double> expected;
   for (unsigned int body = 0; body < 3; ++body)
@@ -74,7 +74,7 @@ TEST(CommonPoints, EvaluateMultilinearFieldsExactlyInTheirOwnBodyOnly)
         for (const double value : multilinear({{x[0], x[1], x[2]}}))
           expected.push_back(body == 1 ? std::sqrt(p.points.bodies[body].masses[q]) * value : 0.);
       }
-  // Same outline, non-matching cells, different order of names
+  // Repeat with the same outline, other cells and another order of names
   Mesh fine = extrude(polar_plan(0.1505, 0.3155, 3, 24, {{Plan::Side::top, -1, 2, 1, 1}, {Plan::Side::bottom, -1, 2, 1, 1}}, "bore", "rim"),
                       layers(3, 5));
   for (Mesh::Cell &cell : fine.cells)
@@ -91,7 +91,7 @@ TEST(CommonPoints, EvaluateMultilinearFieldsExactlyInTheirOwnBodyOnly)
 
 TEST(BodyFrames, CarryPointsToTheSamePlacesOfADisc)
 {
-  // A different width of the disc and different thickness of all bodies
+  // Change the width of the disc and the thickness of all bodies
   const Points p(0);
   const auto   carry = [](const double r, const double theta, const double z) {
     const double carried = 0.1 + 2. * (r - 0.1505);
@@ -111,7 +111,7 @@ TEST(BodyFrames, CarryPointsToTheSamePlacesOfADisc)
       EXPECT_LT(carried.bodies[0].points[q].distance(carry(std::hypot(x[0], x[1]), std::atan2(x[1], x[0]), x[2])), 1e-14);
     }
 
-  // A body that the other design does not have is omitted
+  // A body that is missing in the other design is omitted
   std::vector<BodyFrame> fewer = frames;
   fewer.erase(fewer.begin() + 1);
   const CommonPoints rest = carried_over(p.points, frames, fewer);
@@ -121,7 +121,7 @@ TEST(BodyFrames, CarryPointsToTheSamePlacesOfADisc)
 
 TEST(CylindricalDirections, FollowATurnedScene)
 {
-  // A displacement that is rotated with the model has the same components
+  // A displacement that rotates with the model keeps its cylindrical components
   const Points p(0);
   const Model  to     = trilinear(mapped(p.coarse, [](const Point3 &x) { return Point3{{-x[1], x[0], x[2]}}; }));
   CommonPoints turned = p.points;

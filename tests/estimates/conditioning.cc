@@ -70,7 +70,7 @@ TEST(Conditioning, SeesWhatCancelsInTheStiffness)
   ASSERT_EQ(modes.lambda.size(), 1u);
   EXPECT_NEAR(conditioning.largest_cancellation * delta, 2., 1e-5);
   EXPECT_NEAR(conditioning.stiffness * delta, 2., 1e-5);
-  // the expected error is ½ ε γ = 2.2e-10
+  // The expected error is ½ ε γ = 2.2e-10
   EXPECT_GT(conditioning.errors[0], 2e-10);
   EXPECT_NEAR(conditioning.digits(), 9.6, 0.3);
 }

@@ -58,7 +58,7 @@ TEST(Extrapolation, DistrustsOscillationDivergenceAndOrdersOutOfRange)
       EXPECT_NEAR(e.limit, v[2] + (v[2] - v[1]) / 3., 1e-14);
       EXPECT_GE(e.uncertainty, std::abs(v[2] - v[1]));
     }
-  // Only the three finest values count
+  // Only the three finest values are used
   const Extrapolation recovered = extrapolate({8., 4., 2., 1.}, {100., 16., 4., 1.}, 2.);
   EXPECT_TRUE(recovered.is_trustworthy);
   EXPECT_NEAR(recovered.limit, 0., 1e-12);
@@ -78,7 +78,7 @@ TEST(Extrapolation, OfEqualValuesIsThatValue)
 
 TEST(Extrapolation, UncertaintyCoversTheErrorOfTwoTerms)
 {
-  // v + h² + 0.3 h³: the observed order is between 2 and 3
+  // The observed order of v + h² + 0.3 h³ is between 2 and 3
   std::vector<double> widths = {0.5, 0.25, 0.125}, v;
   for (const double h : widths)
     v.push_back(10. + h * h + 0.3 * h * h * h);

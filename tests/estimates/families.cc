@@ -96,6 +96,6 @@ TEST(Families, ReducedMembersAndTheirResidualsAreThoseOfFullOrder)
           for (int i = 0; i < static_cast<int>(modes.lambda.size()); ++i)
             EXPECT_LT(std::abs(products.coupling(i, j) - direct_products.coupling(i, j)), 1e-10 * std::sqrt(right * left));
         }
-      EXPECT_GT(largest, 1e-9); // residuals are large enough to compare
+      EXPECT_GT(largest, 1e-9); // residuals are large enough for a comparison
     }
 }

@@ -14,7 +14,7 @@ namespace
 
 TEST(EnergyShares, AreThoseOfTheRows)
 {
-  // Two uncoupled bodies with two dofs each; the first is the disc
+  // Two uncoupled bodies with two dofs each, first the disc
   const DenseMatrix       K{{10., -3., 0., 0.}, {-3., 10., 0., 0.}, {0., 0., 10., -3.}, {0., 0., -3., 10.}};
   const RowMap            map = rows(4);
   const SecondOrderSystem bodies{Testing::diagonal(map, [](const int i) { return 1. + i; }), nullptr, sparse(K)};
@@ -37,7 +37,7 @@ TEST(EnergyShares, AreThoseOfTheRows)
 
 TEST(ModeGroups, OfTheFrictionlessProblem)
 {
-  // The energy, not the label, decides which body a mode belongs to
+  // The group follows from the energy, not from the label
   EXPECT_EQ(frictionless_groups({0.99, 0.1, 0.5, 0.49, 0.}, {F1, F1, F1, T12, T12}),
             (std::vector<std::string>{"disc", "F1", "disc", "T12", "T12"}));
 }

@@ -84,7 +84,7 @@ TEST(ModePairing, MarksTurnedModesAndNoOther)
   turn(Y, 2, 3, 20.); // unambiguous pair
   turn(Y, 4, 5, 70.); // exchanged pair
   const ModePairing pairing = pair_modes(modes(lambda, Y), modes(lambda, X));
-  // Ambiguous modes are paired by frequency; a rotation by 70° equals a rotation by 20° with exchanged modes
+  // Ambiguous modes are paired by frequency; a rotation by 70° is a rotation by 20° of exchanged modes
   EXPECT_EQ(partners(pairing.coarse), (std::vector<int>{0, 1, 2, 3, 5, 4}));
   EXPECT_EQ(marked(pairing.coarse), (std::vector<int>{0, 1}));
   EXPECT_EQ(marked(pairing.fine), (std::vector<int>{0, 1}));
@@ -94,7 +94,7 @@ TEST(ModePairing, MarksTurnedModesAndNoOther)
 
 TEST(ModePairing, FindsClustersOfManyModes)
 {
-  // The 12 randomly mixed modes have no counterpart; all others have one, including a mode with a small share of the cluster
+  // Only the 12 randomly mixed modes have no counterparts; a mode with a small share of the cluster has one
   const ComplexDenseMatrix X = orthonormal(15);
   ComplexDenseMatrix       Y = mixed(X, 12);
   std::vector<Complex>     lambda;
@@ -111,7 +111,7 @@ TEST(ModePairing, FindsClustersOfManyModes)
 
 TEST(ModePairing, PairsClustersByTheirFrequenciesButForAShift)
 {
-  // Five modes are mixed at random and shifted by more than their spacing
+  // Mix five modes at random and shift them by more than their spacing
   const ComplexDenseMatrix   X       = orthonormal(7);
   const std::vector<Complex> fine    = {3500. * i, 3510. * i + 5., 3510. * i - 5., 3520. * i, 3540. * i, 4000. * i, 5000. * i};
   const std::vector<Complex> coarse  = {3600. * i, 3609. * i - 4., 3609. * i + 4., 3621. * i, 3642. * i, 4100. * i, 5100. * i};
@@ -122,7 +122,7 @@ TEST(ModePairing, PairsClustersByTheirFrequenciesButForAShift)
 
 TEST(ModePairing, SaysWhichModesHaveNoPartner)
 {
-  // Modes outside the other band, one of them a member of a doublet, and a mode with a different shape
+  // One member of a doublet lies outside the other band, and one mode has a different shape
   const ComplexDenseMatrix   X      = orthonormal(6);
   const std::vector<Complex> lambda = {10. * i, 20. * i, 30. * i, 30.1 * i};
   ComplexDenseMatrix         Y      = X.leftCols(4);
@@ -139,7 +139,7 @@ TEST(ModePairing, SaysWhichModesHaveNoPartner)
 
 TEST(ModePairing, KeepsTheTwoModesOfAFlutterApart)
 {
-  // u + e^{±iα} v: the right eigenvectors of a flutter pair overlap, but the growing and the decaying mode must remain distinct
+  // The right eigenvectors u + e^{±iα} v of a flutter pair overlap, but the growing and the decaying mode must not be exchanged
   const ComplexDenseMatrix X    = orthonormal(2);
   const auto               pair = [&X](const double angle) {
     ComplexDenseMatrix result(n_values, 2);
@@ -171,7 +171,7 @@ TEST(DiscretisationError, IsAShareOfTheDifference)
 
 TEST(DiscretisationError, DecidesWhatGrowsBeyondIt)
 {
-  // A growth rate above its error, one within it, a decay rate within its error, and one above it
+  // Rates in order: growth above the error, growth below it, decay below it, decay above it
   const std::vector<DiscretisationError> found =
     errors({0.010 * 100. + 100. * i, 200. * 0.020 + 200. * i, 300. * -0.020 + 300. * i, -4. + 400. * i},
            {0.011 * 100. + 100. * i, 200. * 0.001 + 200. * i, 300. * -0.001 + 300. * i, -4.1 + 400. * i});
@@ -182,7 +182,7 @@ TEST(DiscretisationError, DecidesWhatGrowsBeyondIt)
 
 TEST(DiscretisationError, NeutralModesThatMayMeetAreUndecided)
 {
-  // Gaps on the fine and the coarse mesh: 1 and 4; 1 and 1.5; 0.001 and 0.01, which is too small for noticeable growth
+  // Gaps on the fine and the coarse mesh are 1 and 4, 1 and 1.5, and 0.001 and 0.01, too small for noticeable growth
   const std::vector<DiscretisationError> found = errors({104. * i, 100. * i, 201.5 * i, 200. * i, 300.01 * i, 300. * i},
                                                         {101. * i, 100. * i, 201. * i, 200. * i, 300.001 * i, 300. * i});
   for (const int j : {0, 1})

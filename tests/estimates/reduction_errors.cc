@@ -51,7 +51,7 @@ namespace
     return result;
   }
 
-  /// Two-dof flutter, K = [k11 k12 − μ k_c; k12 k22], with a stiff third dof; without this dof, k11 is too large.
+  /// Two-dof flutter, K = [k11 k12 − μ k_c; k12 k22], with a stiff third dof, whose omission increases k11.
   struct StiffenedFlutter
   {
     double damping = 0., k11 = 3., k22 = 2., k12 = 0.7, k_c = 1.3, c = 0.3, k33 = 100.;
@@ -109,9 +109,9 @@ TEST(ReductionErrors, AreTheFormulasOfThePaper)
   const ReducedModes modes  = reduced_modes(model, large_friction, omega_max, BandEnd::open);
   const auto         errors = reduction_errors(r.s.coupled, r.inverse, model, modes, r.complex);
   EXPECT_GT(largest(errors, &ModeError::shape), 1e-6);
-  EXPECT_THROW(r.errors(view(*r.real.vectors, 0, r.real.vectors->n_columns() - 3)), SolverError); // fewer modes than the reference
+  EXPECT_THROW(r.errors(view(*r.real.vectors, 0, r.real.vectors->n_columns() - 3)), SolverError); // too few modes
 
-  // Compare with full-order vectors of the reduced modes, and with ε_res from full_order_modes()
+  // Compare with full-order vectors of the reduced modes and with ε_res from full_order_modes()
   std::set<int> matches;
   for (const ModeError &error : errors)
     {
@@ -134,7 +134,7 @@ TEST(ReductionErrors, AreTheFormulasOfThePaper)
 
 TEST(ModeMatching, ClustersAreComparedAsSubspaces)
 {
-  // A double mode, a third mode nearby and a separate mode: rotated vectors have no individual counterparts, but their span has one
+  // Rotated vectors of a double mode and a third mode nearby have no individual counterparts, but their span has one
   Masses masses({1., 1., 1.0005, 4., 9., 16.});
   masses.model.extend(masses.I);
   const MultiVector &I     = masses.I;
@@ -164,8 +164,8 @@ TEST(ModeMatching, ClustersAreComparedAsSubspaces)
 
 TEST(ModeMatching, ByEquation17OneReducedModeMayServeTwice)
 {
-  // The same reduced mode is closest to e_0 and to e_2: by eq. (17), it is the counterpart of both, whereas one-to-one matching assigns the
-  // other reduced mode to e_2.
+  // One reduced mode is closest to e_0 and to e_2 and, by eq. (17), the counterpart of both; one-to-one matching assigns the other
+  // reduced mode to e_2
   Masses             masses({1., 4., 1.2, 9.});
   const MultiVector &I = masses.I;
   MultiVector        T(I.map(), 2), exact(I.map(), 2);
@@ -174,7 +174,7 @@ TEST(ModeMatching, ByEquation17OneReducedModeMayServeTwice)
   T.col(0)     = 0.8 * I.col(0) + 0.6 * I.col(2);
   T.col(1)     = 0.28 * (0.6 * I.col(0) - 0.8 * I.col(2)) + 0.96 * I.col(3);
   masses.model.extend(T);
-  // Set frequencies so that matching depends on shapes only
+  // Set frequencies such that matching depends only on shapes
   ReducedModes modes = reduced_real_modes(masses.model, 10., BandEnd::open);
   modes.lambda       = {{0., 1.}, {0., std::sqrt(1.2)}};
 
@@ -203,7 +203,7 @@ TEST(ModeMatching, ByEquation17OneReducedModeMayServeTwice)
 
 TEST(EigenvalueEstimates, FindTheErrorAndMendIt)
 {
-  // Without one dof, the estimate equals the error to first order if modes are not close to coalescence
+  // For a model without the third dof, the estimate equals the error to first order if modes are not close to coalescence
   for (const double damping : {0., 0.02})
     {
       const StiffenedFlutter flutter{damping};
@@ -226,7 +226,7 @@ TEST(EigenvalueEstimates, FindTheErrorAndMendIt)
           for (int j = 0; j < 2; ++j)
             {
               SCOPED_TRACE("factor " + std::to_string(factor) + ", mode " + std::to_string(j));
-              // Both modes of an unstable pair have the same frequency, so that their order is arbitrary.
+              // The order of an unstable pair is arbitrary, because both modes have the same frequency
               const Complex same = exact.lambda[j], other = exact.lambda[1 - j];
               const Complex nearest = std::abs(same - modes.lambda[j]) < std::abs(other - modes.lambda[j]) ? same : other;
               const Complex error   = nearest - modes.lambda[j];
@@ -240,7 +240,7 @@ TEST(EigenvalueEstimates, FindTheErrorAndMendIt)
         }
       if (damping > 0.)
         continue;
-      // No error is estimated where the reduced model coalesces
+      // No error is estimated close to coalescence of the reduced modes
       double condition = 1.;
       for (const double distance : {0.3, 1e-2, 1e-4, 1e-7})
         for (const double side : {-1., 1.})

@@ -17,13 +17,13 @@ namespace
   {
     const UpdatedInverse inverse(shift > 0. ? undamped(system) : system, shift, FactorizationLibrary::automatic);
     const SparseMatrix  &M = *system.mass;
-    // Nearly rigid motions have little strain energy and therefore large relative rounding errors.
+    // Nearly rigid motions have little strain energy and therefore large relative rounding errors
     const double tolerance = shift > 0. ? 1e-10 : 1e-12;
     for (const double friction : {0., mu})
       {
         ProjectedResiduals projected(system, inverse, shift, damping.values());
         ReducedModel       model(system);
-        // Extend in two steps, like a growing basis
+        // Extend the basis in two steps
         model.extend(orthonormalize(M, nullptr, real, 1e-10));
         projected.extend(model);
         const ParameterValues values  = system.at(friction, damping.values());
@@ -54,7 +54,7 @@ namespace
           }
         EXPECT_TRUE(friction == 0. || largest_energy > 1e-9) << "residuals must exceed rounding errors";
 
-        // With 128 vectors in the sketch, the limit is five standard deviations of a squared norm
+        // The limit is five standard deviations of a squared norm for 128 vectors in the sketch
         ProjectedResiduals sketched(system, inverse, shift, damping.values());
         if (!sketched.use_sketch())
           continue;

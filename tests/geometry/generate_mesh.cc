@@ -78,7 +78,7 @@ TEST(GenerateMesh, PinFacesHaveTheirNodesAndGoodElements)
       EXPECT_EQ(nodes_on(mesh, "pin_clamp").size(), parameters.nodes_per_pin_face);
       EXPECT_EQ(nodes_on(mesh, "pin_side").size(), 6 * k * (parameters.pin_layers + 1));
 
-      // The outline is a regular polygon, and the corners of elements are no flatter than the block corners on the outline
+      // The outline is a regular polygon, and corners of elements are at most as flat as the block corners on the outline
       const double pin_area = polygon(parameters.pin_diameter / 2., 6 * k);
       EXPECT_NEAR(area(mesh, "pin_contact"), pin_area, 1e-12);
       EXPECT_NEAR(area(mesh, "disc_contact"), pin_area, 1e-12);
@@ -131,7 +131,7 @@ TEST(GenerateMesh, PinsThatAreNotOppositeAreAtTheirPlaces)
       for (std::size_t pin = 0; pin < 6; ++pin)
         EXPECT_EQ(n_on_outline(mesh, side, pins.radii[pin], pins.angles[pin], radius), n_outline);
   };
-  // Shifts: slightly offset, offset by half a pitch, and not opposite at all
+  // Shift the lower pins by small angles, by half a pitch and to other sectors
   for (const double shift : {0.1, 2., 9.2, 14., 30., 180.})
     {
       GeometryParameters parameters;
@@ -139,7 +139,7 @@ TEST(GenerateMesh, PinsThatAreNotOppositeAreAtTheirPlaces)
         angle += shift;
       expect(parameters, 0.15);
     }
-  // Upper pins are spread wider than lower ones, so that they overlap obliquely
+  // Upper pins at larger angles overlap the lower pins obliquely
   for (const double spread : {27., 30., 33.})
     for (const unsigned int nodes : {7, 19})
       for (const double size : {0.012, 0.02, 0.03})
@@ -165,13 +165,13 @@ TEST(GenerateMesh, OppositePinsStayWhereThePlanHasThem)
       for (const unsigned int node : nodes_on(mesh, "disc_contact"))
         (mesh.points[node][2] > 0. ? above : below).emplace(mesh.points[node][0], mesh.points[node][1]);
       EXPECT_EQ(above.size(), 6 * nodes);
-      EXPECT_EQ(above, below); // bitwise equal: nothing was sheared
+      EXPECT_EQ(above, below); // bitwise equal, because the mesh is not sheared
     }
 }
 
 TEST(GenerateMesh, CloseAndThinPinsAreMeshed)
 {
-  // The pad of a railway brake with 18 pins, 2.56 mm apart
+  // The pad of a railway brake with 18 pins, at a distance of 2.56 mm
   GeometryParameters parameters;
   parameters.disc_inner_radius = 0.175;
   parameters.disc_outer_radius = 0.320;
@@ -185,7 +185,7 @@ TEST(GenerateMesh, CloseAndThinPinsAreMeshed)
   parameters.bottom     = {};
   EXPECT_GT(mesh_quality(generate_mesh(parameters)).worst_scaled_jacobian, 0.1);
 
-  // Thin pins: element sizes grow in the gaps between them
+  // Element sizes increase in the gaps between thin pins
   GeometryParameters thin;
   thin.pin_diameter = 0.001;
   EXPECT_LT(generate_mesh(thin).cells.size(), 30000u);
@@ -215,7 +215,7 @@ TEST(GenerateMesh, SameParametersGiveTheSameMeshAlsoFromItsFile)
   const std::string written = text_of(mesh);
   EXPECT_EQ(text_of(generate_mesh(one_pin())), written);
   EXPECT_EQ(text_of(generate_mesh(of_file(File("mesh.msh", written).string()))), written);
-  // Checksums distinguish meshes but ignore rounding
+  // Checksums distinguish meshes but are insensitive to rounding errors
   EXPECT_EQ(checksum(generate_mesh(one_pin())), of);
   double &z = mesh.points.back()[2];
   z += 1e-16; // rounding error
@@ -248,10 +248,10 @@ TEST(GenerateMesh, SolidsAreTakenAsTheyAreWithFacesOfSeveralNamesAndGroupsOfOneN
   expect_mentions(message<MeshError>([&] { generate_mesh(of_file(file.string()), {"wall"}); }),
                   {"'ground'", "disc_contact, pin_contact, pin_clamp, pin_side, disc_bore, disc_rim"});
 
-  // Round trip through a file, which lists a face with two names twice
+  // The file lists a face with two names twice
   const File written("mesh.msh", text_of(mesh));
   EXPECT_EQ(text_of(generate_mesh(of_file(written.string()), {"ground", "wall"})), text_of(mesh));
-  // Repeat with equal names of both groups
+  // Groups of the same name form one surface
   std::string one_name = text_of(mesh);
   one_name.replace(one_name.find("\"wall\""), 6, "\"ground\"");
   const File merged("merged.msh", one_name);
@@ -260,7 +260,7 @@ TEST(GenerateMesh, SolidsAreTakenAsTheyAreWithFacesOfSeveralNamesAndGroupsOfOneN
 
 TEST(PlanSmoothing, InvertedFacesAreTurnedOver)
 {
-  // A grid of 4 × 4 faces with mirrored inner nodes
+  // Mirror the inner nodes of a grid of 4 × 4 faces
   std::vector<Plan::Point> points;
   std::vector<bool>        fixed;
   for (int j = 0; j <= 4; ++j)
@@ -282,7 +282,7 @@ TEST(PlanSmoothing, InvertedFacesAreTurnedOver)
         EXPECT_NEAR(points[5 * j + i][1], j, 0.1);
       }
 
-  // Faces that cannot be repaired and good faces stay unchanged
+  // Good faces and faces that cannot be repaired are unchanged
   std::vector<Plan::Point> flat   = {{0., 0.}, {1., 0.}, {2., 0.}, {3., 0.}};
   const auto               before = flat, good = points;
   untangle({{{0, 1, 2, 3}}}, std::vector<bool>(4, true), {}, flat);

@@ -14,7 +14,7 @@ using Point = Mesh::Point;
 
 namespace
 {
-  /// A cell of a Gmsh type in its own volume, made of the first @p n_nodes of the nodes of the complete cell.
+  /// A cell of a Gmsh type in its own volume, with the first @p n_nodes nodes of the complete cell.
   struct GmshCell
   {
     std::string  type, volume;
@@ -94,7 +94,7 @@ TEST(MeshFile, TakesCellsOfEveryShapeAndOrder)
 
 TEST(MeshFile, SerendipityElementsShareTheNodesThatTheyGet)
 {
-  // Adjacent hexahedra with 27 and 20 nodes; the second has a named face of 8 nodes and a curved edge
+  // Adjacent hexahedra have 27 and 20 nodes; the second has a named face of 8 nodes and a curved edge
   GmshMesh   mesh  = gmsh_mesh({complete[3], {"Hexahedron 20", "disc", Shape::hexahedron, 2, 20}});
   auto      &first = mesh.groups[0].elements.begin()->second[0].nodes, &second = mesh.groups[1].elements.begin()->second[0].nodes;
   const auto nodes_of = [](const unsigned int face) { return nodes_of_face(Shape::hexahedron, 2, face); };
@@ -184,7 +184,7 @@ TEST(MeshFile, VolumesThatShareNodesAreOneBody)
 
 TEST(Bodies, AreNamedAfterTheirVolumes)
 {
-  // Tetrahedra, some of which share a node
+  // Names of bodies formed by tetrahedra, some of which share a node
   const auto names = [](const std::vector<std::string> &volumes, const std::vector<std::array<unsigned int, 2>> &joined) {
     Mesh mesh;
     mesh.volume_names = volumes;

@@ -45,7 +45,7 @@ namespace
     return mesh;
   }
 
-  /// Adds a grid of cells; coincident nodes of the volume are merged where @p is_shared is true.
+  /// Adds a grid of cells; merges coincident nodes of the volume if @p is_shared is true for them.
   void add_grid(Mesh              &mesh,
                 const unsigned int volume,
                 const Values      &a,
@@ -96,7 +96,7 @@ namespace
 
   const Values radii = {0.15, 0.2, 0.25, 0.3};
 
-  /// Nodes between the ring and the first @p n_sectors of the 24 sectors, which the pad covers.
+  /// Nodes of the contact between ring and pad in the first @p n_sectors of the 24 sectors.
   Choice under_pad(const int n_sectors)
   {
     return [n_sectors](const Point &p) {
@@ -168,13 +168,13 @@ TEST(MeshTopology, ConformingMeshesPass)
   expect_passes(disc_with_pad({0.02, 0.020005, 0.04}));          // a thin layer is accepted
   expect_passes(disc_with_pad({0.02, 0.03}, angles(48, 0, 48))); // a finer disc is accepted
 
-  // Elements that share only an edge
+  // Elements may share only an edge
   Mesh corner = mesh_of({"disc"});
   add_grid(corner, 0, {0., 1.}, {0., 1.}, {0., 1.}, cartesian, any);
   add_grid(corner, 0, {1., 2.}, {1., 2.}, {0., 1.}, cartesian, any);
   expect_passes(corner);
 
-  // A shoe on the rim with elements twice as long, so that chords of the curved faces intersect
+  // Elements of a shoe on the rim are twice as long, and chords of the curved faces intersect
   Mesh shoe = mesh_of({"disc", "pin_rim"});
   add_grid(shoe, 0, radii, angles(96, 0, 96), {0., 0.02}, cylindrical, any);
   add_grid(shoe, 1, {0.3, 0.33}, angles(48, 1, 7), {0., 0.02});
@@ -190,13 +190,13 @@ TEST(MeshTopology, SeamIsFound)
     add_grid(mesh, 0, radii, ring, {0., 0.01, 0.02});
     return mesh;
   };
-  // Close the ring exactly, and with a tiny gap
+  // Close the ring without and with a tiny gap
   for (const double gap : {0., 1e-9, 6e-6})
     {
       expect_refused(with_gap(gap, 0.3), {"12 nodes of body 'disc' coincide", "the.msh", "merge"});
       expect_mentions(refusal(with_gap(gap, 0.3)), {"(0.15, "});
     }
-  // A slot of 1 % of the shortest edge
+  // A slot of 1 % of the shortest edge is accepted
   const Mesh slot = with_gap(1e-2 * 0.01, 0.15);
   expect_passes(slot);
   expect_passes(rounded(slot, 6));
@@ -204,7 +204,7 @@ TEST(MeshTopology, SeamIsFound)
 
 TEST(MeshTopology, CrackInsideIsFound)
 {
-  // Two halves that are joined except at six inner nodes
+  // Join two halves except at six inner nodes
   Mesh mesh = mesh_of({"disc"});
   add_grid(mesh, 0, interval(0., 4., 4), interval(0., 3., 3), {0., 1.}, cartesian);
   add_grid(mesh, 0, interval(0., 4., 4), interval(0., 3., 3), {1., 2.}, cartesian,
@@ -215,13 +215,13 @@ TEST(MeshTopology, CrackInsideIsFound)
 
 TEST(MeshTopology, HangingNodesAreFound)
 {
-  // A layer that is twice as fine in two directions: 2 × 2 faces meet one
+  // In a layer that is twice as fine in two directions, 2 × 2 faces meet one face
   Mesh layers = mesh_of({"disc"});
   add_grid(layers, 0, interval(0., 2., 2), interval(0., 2., 2), {0., 1.}, cartesian, any);
   add_grid(layers, 0, interval(0., 2., 4), interval(0., 2., 4), {1., 2.}, cartesian, any);
   expect_refused(layers, {"16 nodes of body 'disc'", "hanging"});
 
-  // A mesh that is refined in one corner only
+  // Refine only one corner of a mesh
   Mesh corner = mesh_of({"disc"});
   add_grid(corner, 0, interval(0., 3., 3), interval(0., 3., 3), {0., 1.}, cartesian, any);
   add_grid(corner, 0, interval(0., 3., 3), {0., 1., 2.}, {1., 2.}, cartesian, any);
@@ -230,7 +230,7 @@ TEST(MeshTopology, HangingNodesAreFound)
   expect_refused(corner, {"3 nodes of body 'disc'", "hanging"});
   expect_mentions(refusal(corner), {"(2.5, 2, 1)"});
 
-  // Interface between rings: nodes of the finer ring lie on the circle, faces of the coarser ring are chords
+  // Between rings, nodes of the finer ring lie on the circle, and faces of the coarser ring are chords
   for (const int n_inside : {16, 32})
     {
       Mesh rings = mesh_of({"disc"});
@@ -242,7 +242,7 @@ TEST(MeshTopology, HangingNodesAreFound)
 
 TEST(MeshTopology, TrianglesUponQuadrilateralsAreFound)
 {
-  // A cube with a pyramid on top, and with two tetrahedra instead
+  // Place a pyramid on a cube, and two tetrahedra instead
   Mesh mesh = mesh_of({"disc"});
   add_grid(mesh, 0, {0., 1.}, {0., 1.}, {0., 1.}, cartesian);
   mesh.points.emplace_back(0.4, 0.6, 2.);
@@ -271,17 +271,17 @@ TEST(MeshTopology, OverlapIsFound)
     add_grid(mesh, 2, a, b, c, place);
     return mesh;
   };
-  // A copy of the pad: nodes coincide, so that the overlap is visible only at element centres
+  // The overlap with a copy of the pad is detected only at element centres, because the nodes coincide
   expect_refused(with_second_pin({0.2, 0.25, 0.3}, angles(24, 0, 3), {0.02, 0.03, 0.04}, cylindrical),
                  {"'pin_1'", "'pin_2'", "overlap", "0 nodes and 12 element centres"});
-  // A small body inside one element, and one that protrudes from the disc
+  // Place a small body inside one element, and a body that protrudes from the disc
   for (const auto &[end, nodes] : {std::pair(0.008, "8 nodes"), {0.5, "4 nodes"}})
     expect_refused(with_second_pin({-0.23, -0.22}, {-0.01, 0.01}, {0.004, end}, cartesian), {"'pin_2'", "'disc'", "overlap", nodes});
 }
 
 TEST(MeshTopology, BodiesThatTouchWithoutContactAreNoted)
 {
-  // The last column of pad faces has no name
+  // Omit the names of the last column of pad faces
   const UnnamedContact contact = find_unnamed_contact(disc_with_pad({0.02, 0.03, 0.04}, angles(24, 0, 24), 2));
   EXPECT_EQ(contact.n_nodes, 3u);
   EXPECT_EQ(contact.body, "disc");

@@ -34,7 +34,7 @@ namespace
     unsigned int degree;
     unsigned int n;                ///< cells per direction
     double       distortion;       ///< largest shift of a corner relative to the cell size
-    bool         is_below = false; ///< the face points downwards
+    bool         is_below = false; ///< true if the face points downwards
   };
 
   using Embedding = std::function<dealii::Point<3>(double, double)>;

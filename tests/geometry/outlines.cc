@@ -14,7 +14,6 @@ namespace
   /// Area [m²] and polar moment about the centroid [m⁴] of an outline.
   std::pair<double, double> area_and_polar_moment(const std::vector<Plan::Edge> &outline, const std::vector<Plan::Point> &points)
   {
-    // Green's theorem, edge by edge
     double      area = 0., moment = 0.;
     Plan::Point first;
     for (const auto &[i, j] : outline)
@@ -28,7 +27,7 @@ namespace
     return {area, moment - first * first / area};
   }
 
-  /// A round plan of polygons, without curves, and two pins on the same faces.
+  /// A round plan with polygonal outlines, without curves, and two pins on the same faces.
   Plan polygon_pins(const unsigned int k, const double radius)
   {
     Plan plan   = Testing::round_plan(0.2, radius, k);
@@ -80,7 +79,7 @@ TEST(Outlines, MeshesHaveTheVolumeOfDiscAndPins)
 
 TEST(Outlines, OtherShapesStayAsTheyAre)
 {
-  // No circle: a square, an ellipse, and an open curve
+  // A square, an ellipse and an open curve are not circles
   Plan plan = polygon_pins(2, 0.026);
   for (Plan::Point &point : plan.points)
     point[1] *= 1.01;
@@ -105,7 +104,7 @@ TEST(Polygon, CirclesAreFoundInAnyUnitOfLengthAndFromArcs)
         EXPECT_NEAR(circle->centre[1] / radius, -2., 1e-10);
       }
 
-  // No circle is found for points that are not round, too few or collinear
+  // No circle is found for points on an ellipse, too few points or collinear points
   const std::vector<double> angles = {0., 1., 2., 3., 4., 5.};
   EXPECT_TRUE(circle_through(on_ellipse(0.026, 1. + 1e-7, angles)));
   EXPECT_FALSE(circle_through(on_ellipse(0.026, 1. + 1e-5, angles)));

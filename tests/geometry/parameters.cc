@@ -10,7 +10,7 @@ namespace
 {
   using Change = std::function<void(GeometryParameters &)>;
 
-  /// The default parameters with this change.
+  /// The default parameters with a change.
   GeometryParameters with(const Change &change)
   {
     GeometryParameters parameters;

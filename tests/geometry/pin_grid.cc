@@ -76,7 +76,7 @@ TEST(PinGrid, PinsOfASceneHaveRingsAndThinnerLayersAtTheirHeldEnd)
   parameters.pin_rings   = 3;
   parameters.pin_layers  = 3;
   parameters.pin_grading = 2.;
-  parameters.bottom      = {{0.1970, 0.2585}, {-10., 12.}}; // offset from the pins above
+  parameters.bottom      = {{0.1970, 0.2585}, {-10., 12.}}; // offset from the upper pins
   const Mesh mesh        = generate_mesh(parameters);
   EXPECT_GT(check_mesh(mesh).worst_scaled_jacobian, 0.1);
   const double z_face = parameters.disc_thickness / 2.;

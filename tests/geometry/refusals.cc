@@ -58,7 +58,7 @@ TEST(Refusals, SolidsThatDoNotFit)
 
 TEST(Refusals, PlansThatDoNotFit)
 {
-  // A plane square plate with a square hole or pad: surface 2 is the pad, 3 the rest
+  // A square plate with a square hole or pad, where surface 2 is the pad and surface 3 the rest
   const std::string plate = R"(
     SetFactory("OpenCASCADE");
     Rectangle(1) = {-1, -1, 0, 2, 2};
@@ -89,7 +89,7 @@ TEST(Refusals, PlansThatDoNotFit)
   parameters.top               = {{0.0765, 0.1275}, {0., 0.}};
   parameters.bottom            = {{0.102}, {0.}};
   expect_mentions(refusal(parameters), {"no room", "Move the pins"});
-  // A mount on a surface that does not exist
+  // The mounted surface does not exist
   expect_mentions(refusal(one_pin(), {"disc_ear"}), {"'disc_ear'", "disc_bore"});
 }
 
@@ -111,13 +111,13 @@ TEST(Refusals, BadElementsAreFound)
   EXPECT_EQ(right_handed.cells[0].nodes, mesh.cells[0].nodes);
   EXPECT_EQ(make_right_handed(right_handed), 0u);
 
-  // Two stacked elements, the upper one folded into the lower one
+  // Fold the upper of two stacked elements into the lower element
   Mesh folded = mesh;
   folded.points.insert(folded.points.end(), {{0, 0, 0.5}, {1, 0, 0.5}, {1, 1, 0.5}, {0, 1, 0.5}});
   folded.cells.push_back({Shape::hexahedron, {4, 5, 6, 7, 8, 9, 10, 11}, 0});
   expect_mentions(message<MeshError>([&] { make_right_handed(folded); }), {"inverted", "element 1", "'disc'"});
 
-  // Duplicate elements, and a third element on one face
+  // Add a duplicate element, and a third element on one face
   Mesh twice = mesh;
   check_unique(twice, "twice.msh");
   twice.cells.push_back({Shape::hexahedron, {4, 5, 6, 7, 0, 1, 2, 3}, 0});

@@ -29,12 +29,12 @@ TEST(DiscAxes, OnesThatAreNotTheZAxisAreRefusedByName)
     expect_mentions(message<MeshError>([&, map = map] { check(map); }), {text, "here", "Translate and Rotate"});
 
   EXPECT_TRUE(check([](const Point &p) { return p; }));
-  // A disc with an ear: radii are stretched within a 60° sector
+  // Stretch a 60° sector into an ear
   EXPECT_TRUE(check([](const Point &p) {
     const double factor = std::abs(std::atan2(p[1], -p[0])) < std::acos(-1.) / 6. ? 1.2 : 1.;
     return Point{factor * p[0], factor * p[1], p[2]};
   }));
-  // Square discs, centred and off-centre, are accepted because they are not round
+  // Square discs, centred and off-centre, are accepted, because they are not round
   for (const double offset : {0., 1.})
     EXPECT_FALSE(check([&](const Point &p) {
       const double factor = std::hypot(p[0], p[1]) / std::max(std::abs(p[0]), std::abs(p[1]));
@@ -64,7 +64,7 @@ TEST(ProblemSizes, WhatDoesNotFitIsRefusedBeforehand)
   expect_mentions(message<MeshError>([&] { generate_mesh(parameters); }), {"cells", "dofs", "GB are available", "Geometry/Disc layers"});
   parameters.file = "disc_pad.geo";
   expect_mentions(message<MeshError>([&] { generate_mesh(parameters); }), {"cells", "dofs", "GB are available"});
-  // Measured with two threads, without attachment modes [GB]
+  // Expect the memory measured with two threads, without attachment modes [GB]
   EXPECT_NEAR(ProblemSize({57794., 283233., 0., 75.}).memory(18.) / 1e9, 4.3, 1.);
   EXPECT_NO_THROW(check_memory({1e4, 3e4, 200.}, 100., "here"));
 }
@@ -81,13 +81,13 @@ TEST(WaveResolution, RefusesElementsLongerThanAShearWave)
   while (!refused(soft_pins, 1, limit))
     limit *= 1.1;
   EXPECT_FALSE(refused(MaterialParameters(), 1, limit));
-  // Orthotropic pins with the same small shear modulus
+  // Orthotropic pins with the same small shear modulus have the same limit
   MaterialParameters soft_in_shear;
   soft_in_shear.orthotropic = {
     {{1.9e9, 0.25, 3070., 0., 0., Orthotropy{1.9e9, 1.9e9, 0.25, 0.25, 1e9, soft_pins.pin.least_wave_modulus(), 1e9}}, "pin_top_1"}};
   EXPECT_TRUE(refused(soft_in_shear, 1, limit));
   EXPECT_FALSE(refused(soft_in_shear, 1, limit / 1.1));
-  // Nodes of quadratic elements are twice as dense
+  // Quadratic elements double the limit
   EXPECT_FALSE(refused(soft_pins, 2, limit));
   EXPECT_TRUE(refused(soft_pins, 2, 2. * limit));
 }

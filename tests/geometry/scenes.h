@@ -50,7 +50,7 @@ namespace Scenes
     return parameters;
   }
 
-  /// Two stacked blocks of 8 hexahedra each; @p names: script lines that name volumes and surfaces.
+  /// Script of two stacked blocks of 8 hexahedra each; @p names: lines that name volumes and surfaces.
   inline std::string blocks(const std::string &names, const std::string &before_names = "")
   {
     return R"(
@@ -108,7 +108,7 @@ namespace Scenes
     return sum;
   }
 
-  /// Number of contact nodes on one side of the disc on the outline of the pin at this position.
+  /// Number of contact nodes on one side of the disc that lie on the outline of the pin at this position.
   inline unsigned int n_on_outline(const Mesh &mesh, const double side, const double radius, const double angle, const double pin_radius)
   {
     const double x = radius * std::cos(angle * M_PI / 180.), y = radius * std::sin(angle * M_PI / 180.);

@@ -15,7 +15,7 @@ namespace
 {
   constexpr double distance = 0.2, radius = 0.026;
 
-  /// Mesh of a plan whose plate is completely covered by a pin.
+  /// Mesh of a plan with a plate that is completely covered by a pin.
   Mesh covered(Plan plan)
   {
     plan.pins[0].faces.resize(plan.faces.size());
@@ -77,7 +77,7 @@ TEST(SecondOrder, RingsAreRoundOnBothSidesOfTheContact)
 {
   const Mesh mesh = second_order(round_mesh(2, 3));
   EXPECT_NO_THROW(check_mesh(mesh));
-  // Two rings between r and 0.8 r with widths 1 : 2 from outside, and 24 corner and mid-edge nodes on each circle
+  // Two rings between r and 0.8 r have widths 1 : 2 from outside, with 24 corner and mid-edge nodes on each circle
   for (const double r : {1., 1. - 0.2 / 3., 0.8})
     {
       EXPECT_EQ(nodes_at(mesh, r * radius, 1).size(), 24u) << r;
@@ -87,7 +87,7 @@ TEST(SecondOrder, RingsAreRoundOnBothSidesOfTheContact)
 
 TEST(SecondOrder, CellsWithTwoRoundFacesSideBySideKeepOneStraight)
 {
-  // One circular ring around the three blocks of an O-grid, whose outer corners would become flat
+  // In a circular ring around the three blocks of an O-grid, outer corners of the blocks would become flat
   Plan                      plan = round_plan(distance, radius, 1);
   std::vector<unsigned int> inside;
   plan.points.resize(6);
@@ -111,7 +111,7 @@ TEST(SecondOrder, TetrahedraFollowCylinders)
   EXPECT_EQ(mesh.degree, 2u);
   EXPECT_NO_THROW(check_mesh(mesh));
   EXPECT_EQ(second_order(mesh).points, mesh.points);
-  // Rim nodes per side: corner and mid-edge nodes at top and bottom, one on the vertical edge and one on the diagonal
+  // Each side has corner and mid-edge nodes at top and bottom, one on the vertical edge and one on the diagonal
   std::size_t n_on_rim = 0;
   for (const Mesh::Point &p : mesh.points)
     n_on_rim += std::abs(std::hypot(p[0], p[1]) - 1.) < 1e-12;
@@ -120,7 +120,7 @@ TEST(SecondOrder, TetrahedraFollowCylinders)
     for (const unsigned int node : face.nodes)
       EXPECT_NEAR(std::hypot(mesh.points[node][0], mesh.points[node][1]), 1., 1e-12);
 
-  // Edges stay straight if the surface does not have this name
+  // Edges remain straight if the surface has another name
   Mesh straight             = linear;
   straight.surface_names[0] = "rim";
   straight                  = second_order(straight);

@@ -33,7 +33,7 @@ TEST(DenseMatrices, Products)
   const DenseMatrix A = example();
   const DenseMatrix B = A.middleCols(1, 2);
   const Complex     i(0., 1.);
-  // Complex products from real ones
+  // Complex products are computed from real products
   const ComplexDenseMatrix X = A + i * A.transpose(), Y = B - 0.5 * i * A.leftCols(2);
   EXPECT_LT((multiply(A, X) - (A * A + i * A * A.transpose())).norm(), 1e-14);
   EXPECT_LT((product_of_halves(halves(X).transpose() * halves(Y)) - X.transpose() * Y).norm(), 1e-14);
@@ -59,7 +59,7 @@ TEST(DenseMatrices, LUSolvesBothWaysAndRefusesSingular)
 
 TEST(DenseMatrices, VectorsOfTheWantedEigenvaluesOnly)
 {
-  // Badly scaled, to exercise balancing
+  // Scale rows and columns differently to exercise balancing
   DenseMatrix A = DenseMatrix::Random(15, 15);
   for (int i = 0; i < 15; ++i)
     A.row(i) *= std::pow(10., i % 4), A.col(i) /= std::pow(10., i % 4);

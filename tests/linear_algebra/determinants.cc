@@ -28,14 +28,14 @@ namespace
 
 TEST(Determinants, OfADenseComplexMatrix)
 {
-  // A matrix whose rows must be exchanged
+  // The pivot of the first column is not on the diagonal
   ComplexDenseMatrix A = ComplexDenseMatrix::Zero(3, 3);
   A(0, 1)              = {0., 2.};
   A(1, 2)              = {3., 0.};
   A(2, 0)              = {1., 1.};
   A(0, 0)              = 0.5;
   const ComplexLU lu(A);
-  // The cyclic permutation is even: 2i · 3 · (1 + i)
+  // The cyclic permutation of the rows is even
   EXPECT_LT(distance(lu.log_determinant(), std::log(Complex(0., 6.) * Complex(1., 1.))), 1e-14);
 
   const ComplexDenseMatrix I = ComplexDenseMatrix::Identity(3, 3);
@@ -89,7 +89,7 @@ TEST(Determinants, OfASparseQuadraticPencil)
         EXPECT_LT(distance(SparseDeterminant(*M, damped ? C.get() : nullptr, *K).logarithm(lambda), expected), 1e-11);
       }
 
-  // Eigenvalues of λ² + 4 = 0
+  // The determinant of (λ² + 4) I vanishes at λ = 2i
   const auto one = Testing::diagonal(map, [](int) { return 1.; }), four = Testing::diagonal(map, [](int) { return 4.; });
   EXPECT_EQ(SparseDeterminant(*one, nullptr, *four).logarithm({0., 2.}).real(), -std::numeric_limits<double>::infinity());
 }

@@ -36,7 +36,7 @@ namespace
 TEST_P(Factorizations, PositiveDefiniteSystemsAreSolved)
 {
   const auto A = laplacian(6, 2, GetParam());
-  // More right-hand sides than any library solves at once.
+  // Use more right-hand sides than any library solves at once
   const MultiVector B = random_vectors(A->rows(), 70);
   for (const FactorizationLibrary library : libraries)
     {
@@ -53,7 +53,7 @@ TEST_P(Factorizations, PositiveDefiniteSystemsAreSolved)
 
 TEST_P(Factorizations, SolutionsForAnyNumberOfColumns)
 {
-  // Factors computed by one task, by several tasks with a common top, and by separate trees without a top
+  // Compute factors by one task, by several tasks with a common top, and by separate trees without a top
   for (const auto &A : {laplacian(7, 1, GetParam()), laplacian(22, 1, GetParam()), laplacian(9, 30, GetParam())})
     {
       const auto        factor = factorize_positive_definite(*A, FactorizationLibrary::automatic, "test matrix");
@@ -66,7 +66,7 @@ TEST_P(Factorizations, SolutionsForAnyNumberOfColumns)
               MultiVector X(B.map(), k), alone(B.map(), 1);
               factor->apply(view(B, 0, k), X);
               EXPECT_LT(residual(*A, X, view(B, 0, k), false), 1e-12) << A->n_rows() << " rows, " << k << " columns";
-              // A solution is nearly independent of the other columns
+              // A solution changes only by rounding errors with the other columns
               factor->apply(view(B, k - 1, 1), alone);
               EXPECT_LT(column_norms(view(X, k - 1, 1) - alone)[0], 1e-13 * column_norms(alone)[0]) << k << " columns";
             }
@@ -98,7 +98,7 @@ TEST_P(Factorizations, MatricesThatAreNotDefiniteAreRefused)
   for (const FactorizationLibrary library : libraries)
     {
       EXPECT_THROW(factorize_positive_definite(*indefinite, library, "test"), SolverError) << to_string(library);
-      // A free body: six rigid-body modes.
+      // The stiffness of a free body is singular
       EXPECT_THROW(factorize_positive_definite(*body.stiffness, library, "test"), SolverError) << to_string(library);
     }
   const auto singular = diagonal(L->rows(), [](const int i) { return i == 3 ? 0. : 1.; });
@@ -107,7 +107,7 @@ TEST_P(Factorizations, MatricesThatAreNotDefiniteAreRefused)
 
 TEST_P(Factorizations, InertiaCountsEigenvalues)
 {
-  // The second matrix is large enough for nested dissection, whose ordering is reused by every count
+  // The second matrix is large enough for nested dissection, whose ordering every count reuses
   for (const auto &[m, n_copies] : {std::make_pair(6, 2), {14, 1}})
     {
       const auto L      = laplacian(m, n_copies, GetParam());

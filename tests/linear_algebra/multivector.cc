@@ -72,7 +72,7 @@ TEST_P(MultiVectors, RandomEntriesDoNotDependOnTheDistribution)
 
 TEST_P(MultiVectors, ProductsAgreeWithDenseOnes)
 {
-  // Incomplete blocks of rows; products of few with many columns; beta = 0 overwrites NaN
+  // Sizes include incomplete blocks of rows and products of few with many columns; beta = 0 overwrites NaN
   for (const auto &[n, n_many, k] : {std::array<int, 3>{{3, 15, 2}}, {{700, 4, 3}}, {{700, 43, 1}}, {{10000, 16, 9}}})
     {
       const MultiVector X = random_vectors(rows(n, GetParam()), n_many, 1), Y = random_vectors(X.map(), k, 2);
@@ -118,7 +118,7 @@ TEST_P(MultiVectors, OrthonormalizeFindsTheRank)
   ASSERT_EQ(Q.n_columns(), 5);
   EXPECT_LT(orthonormality_defect(*M, Q), 1e-13);
 
-  // Three new directions with very different norms, one vector in the span of Q, one zero vector, one repeated vector.
+  // X: three new directions with very different norms, a vector in the span of Q, a zero vector and a repeated vector
   const MultiVector fresh = random_vectors(map, 3, 2);
   MultiVector       X(map, 6);
   X.col(0)            = 1e6 * fresh.col(0);
@@ -131,7 +131,7 @@ TEST_P(MultiVectors, OrthonormalizeFindsTheRank)
   EXPECT_LT(orthonormality_defect(*M, W), 1e-13);
   EXPECT_LT(max_norm(gram(Q, *M * W)), 1e-13);
 
-  // X lies in the span of Q and W.
+  // X lies in the span of Q and W
   const MultiVector basis = join({&Q, &W});
   EXPECT_FALSE(orthonormalize_if_any(*M, &basis, X, 1e-10).has_value());
   EXPECT_THROW(orthonormalize(*M, &basis, X, 1e-10), SolverError);
@@ -144,7 +144,7 @@ TEST_P(MultiVectors, OrthonormalizeResolvesNearlyParallelDirections)
   const RowMap map = rows(60, GetParam());
   const auto   M   = inner_product(map);
 
-  // Directions at angles of 1e-2, 1e-4, ..., 1e-12, which a single Gram matrix cannot resolve.
+  // A single Gram matrix cannot resolve directions at angles of 1e-2, 1e-4, ..., 1e-12
   const MultiVector fresh = orthonormalize(*M, nullptr, random_vectors(map, 7, 3), 1e-8);
   MultiVector       X(map, 7);
   for (int j = 0; j < 7; ++j)
@@ -161,7 +161,7 @@ TEST_P(MultiVectors, OrthonormalizeResolvesNearlyParallelDirections)
       EXPECT_LT(orthonormality_defect(*M, W), 1e-13);
     }
 
-  // The retained directions are accurate: fresh(4) contributes only 1e-8, but is resolved.
+  // The retained directions are accurate: fresh(4), with a contribution of only 1e-8, is resolved
   const MultiVector W         = orthonormalize(*M, nullptr, X, 1e-13);
   const DenseMatrix component = gram(W, *M * view(fresh, 4, 1));
   EXPECT_NEAR(component.squaredNorm(), 1., 1e-10);
@@ -169,7 +169,7 @@ TEST_P(MultiVectors, OrthonormalizeResolvesNearlyParallelDirections)
 
 TEST_P(MultiVectors, OrthonormalizeTellsHowFarFromDependentTheColumnsAre)
 {
-  // The Gram matrix of two unit vectors has the eigenvalues 1 ± cos of their angle.
+  // The Gram matrix of two unit vectors at an angle α has the eigenvalues 1 ± cos α
   const RowMap      map    = rows(60, GetParam());
   const auto        M      = inner_product(map);
   const MultiVector Q      = orthonormalize(*M, nullptr, random_vectors(map, 2, 3), 1e-8);
@@ -187,7 +187,7 @@ TEST_P(MultiVectors, OrthonormalizeTellsHowFarFromDependentTheColumnsAre)
 
 TEST_P(MultiVectors, PrincipalAxesAreOrderedAndBest)
 {
-  // Columns with singular values over twelve orders of magnitude, mixed by an orthogonal matrix
+  // Mix columns with singular values over twelve orders of magnitude by an orthogonal matrix
   const RowMap      map = rows(60, GetParam());
   const auto        M   = inner_product(map);
   const int         k   = 7;
@@ -218,7 +218,7 @@ TEST_P(MultiVectors, PrincipalAxesAreOrderedAndBest)
 
 TEST_P(MultiVectors, ProductsByBlocksAreThoseOfTheWhole)
 {
-  // More columns and rows than fit in a block
+  // Use more columns and rows than fit in a block
   const auto        M = inner_product(rows(2500, GetParam()));
   const MultiVector X = random_vectors(M->rows(), 70, 1), Y = random_vectors(M->rows(), 130, 2);
   const DenseMatrix expected = gram(X, *M * Y);

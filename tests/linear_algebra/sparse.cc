@@ -47,7 +47,7 @@ TEST_P(Sparse, ProductsAgreeWithDenseOnes)
   EXPECT_LT(max_norm(to_dense(*multiply(*B, *A, true, false)) - b.transpose() * a), 1e-12);
   EXPECT_LT(max_norm(to_dense(*multiply(*B, *C, false, true)) - b * c.transpose()), 1e-12);
 
-  // Few entries: row i and column i may belong to different processes.
+  // In small matrices, row i and column i may belong to different processes
   for (const int n : {3, 7, 20})
     {
       const RowMap      many = rows(n, GetParam()), fewer = rows(n - 1, GetParam()), few = rows(std::max(1, n / 5), GetParam());
@@ -82,7 +82,7 @@ TEST_P(Sparse, SumsOfDifferentPatterns)
 
 TEST_P(Sparse, ProductsWithAnyNumberOfColumns)
 {
-  // Empty rows and rows longer than the unrolled loop; wide matrices with fewer or more entries than the length of their vectors
+  // Sizes include empty rows, rows longer than the unrolled loop, and wide matrices with fewer or more entries than columns
   for (const auto &[n_rows, n_columns, most_entries] : {std::array<int, 3>{{90, 70, 30}}, {{5, 400, 2}}, {{5, 400, 150}}})
     {
       const int  m = n_columns, period = most_entries;

@@ -66,13 +66,13 @@ namespace
 
 TEST(CellStiffness, OneCellBendsAsABeamDoes)
 {
-  // Exact energy ½ E I a for E = 1
+  // The exact energy is ½ E I a with E = 1
   const double exact = 0.5 * a * b * h * h * h / 12.;
   for (const double nu : {0., 0.25, 0.3, 0.49})
     {
       const Energy trilinear = energy(Element::trilinear, nu, bending(nu)), bent = energy(Element::incompatible_modes, nu, bending(nu)),
                    quadratic = energy(Element::quadratic, nu, bending(nu));
-      // Condensation subtracts from the trilinear energy, and its rounding error remains
+      // Condensation subtracts from the trilinear energy, whose rounding error remains
       EXPECT_NEAR(bent.value, exact, trilinear.rounding) << nu;
       EXPECT_NEAR(quadratic.value, exact, quadratic.rounding) << nu;
       EXPECT_LT(std::max(trilinear.rounding, quadratic.rounding), 1e-7 * exact) << nu;

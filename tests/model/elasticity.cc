@@ -17,7 +17,7 @@ namespace
 {
   const std::vector<PolarPin> two_pins = {{Plan::Side::top, 1, 2, 1, 1}, {Plan::Side::bottom, 5, 2, 0, 1}};
 
-  /// Annulus and two pins, smoothly distorted in all directions so that faces are warped; boundaries remain polygons.
+  /// Annulus and two pins with polygonal boundaries, smoothly distorted in all directions to warp the faces.
   Mesh distorted_mesh()
   {
     return mapped(extrude(polar_plan(0.15, 0.3, 3, 12, two_pins, "inner", "outer"), layers(2, 2)), [](const Point3 &p) {
@@ -94,7 +94,7 @@ TEST_P(Elasticity, EveryBodyHasTermsAndParametersOfItsOwn)
     n_entries += term.power == 0 ? term.matrix->n_entries() : 0;
   EXPECT_EQ(n_entries, total.stiffness->n_entries());
 
-  // Changing values after assembly is equivalent to assembling with the new values
+  // A change of values after assembly is equivalent to assembly with the new values
   ParameterValues values                  = bodies.values;
   values.at("Young's modulus, pin_top_1") = {3e9};
   values.at("density, pin_top_1")         = {2000.};
@@ -115,7 +115,7 @@ TEST_P(Elasticity, MatricesAreSymmetricAndMassIsPositive)
 
 TEST_P(Elasticity, RayleighDampingIsThatOfEachMaterial)
 {
-  // Expect α M + β K for displacements of one component, where K does not include the mount
+  // Expect α M + β K for displacements of one component, with K without the mount
   materials                     = mounted({{"inner", 1e10, 2e10, 3e10}});
   const auto unmounted          = assemble(model, mounted({}));
   materials.disc.rayleigh_alpha = 3.;
@@ -162,7 +162,7 @@ TEST_P(Elasticity, MountsResistInTheirDirections)
   EXPECT_NEAR(energy({"inner", 0., k, 0.}, turning) / (0.5 * k * r2_area), 1., 1e-11);
   EXPECT_NEAR(energy({"inner", k, 0., 0.}, breathing) / (0.5 * k * r2_area), 1., 1e-11);
   EXPECT_NEAR(energy({"inner", k, k, 0.}, across) / (0.5 * k * area), 1., 1e-11);
-  // Dashpots whose coefficients equal those of springs have a damping matrix equal to the stiffness of the springs
+  // The damping matrix of dashpots equals the stiffness of springs with the same coefficients
   MaterialParameters dashpots = mounted({});
   dashpots.dashpots           = {{"inner", 2. * k, 3. * k, k}};
   const auto springs = assemble(model, mounted({{"inner", 2. * k, 3. * k, k}})), none = assemble(model, mounted({})),
@@ -171,7 +171,7 @@ TEST_P(Elasticity, MountsResistInTheirDirections)
   EXPECT_LT(max_norm(*add(1., *damped_bore.stiffness, -1., *none.stiffness)), 1e-15 * max_norm(*none.stiffness));
   EXPECT_LT(max_norm(*linear_combination({{1., springs.stiffness.get()}, {-1., none.stiffness.get()}, {-1., damped_bore.damping.get()}})),
             1e-14 * max_norm(*springs.stiffness));
-  // e_r ⊗ e_r averages to one half over the circle.
+  // The mean of e_r ⊗ e_r over the circle is one half of the identity
   EXPECT_NEAR(energy({"inner", k, 0., 0.}, across) / (0.25 * k * area), 1., 1e-11);
 }
 
@@ -208,7 +208,7 @@ namespace
 
 TEST_P(Elasticity, LongitudinalVibrationOfABarConverges)
 {
-  // Longitudinal mode for ν = 0: ω = π c / (2 L), c = √(E/ρ), for any cross-section; the mesh is refined along the axis
+  // For ν = 0, the longitudinal mode has ω = π c / (2 L) with c = √(E/ρ) for any cross-section; refine the mesh along the axis
   MaterialParameters materials = mounted({});
   materials.pin.poisson_ratio  = 0.;
   const double length          = GeometryParameters().pin_height;
@@ -235,7 +235,7 @@ TEST_P(Elasticity, LongitudinalVibrationOfABarConverges)
 
 TEST(Assembly, TorsionOfACylinderOnCurvedElements)
 {
-  // Torsional mode: ω = π c_s / (2 L), c_s = √(G/ρ), for a circular cross-section
+  // The torsional mode of a circular cross-section has ω = π c_s / (2 L) with c_s = √(G/ρ)
   const MaterialParameters materials = mounted({});
   const double             G         = materials.pin.young_modulus / (2. * (1. + materials.pin.poisson_ratio));
   const double             exact     = 0.5 * M_PI / GeometryParameters().pin_height * std::sqrt(G / materials.pin.density);
@@ -264,15 +264,14 @@ TEST(Assembly, CurvedElementsHaveTheVolumeOfTheAnnulus)
       const auto        system = assemble(model, materials);
       const MultiVector e      = displacements(model, 0, [](const Point3 &) { return Point3{{1., 0., 0.}}; });
       const double      volume = GeometryParameters().disc_thickness * M_PI * (0.3 * 0.3 - 0.15 * 0.15) * std::pow(unit, 3);
-      // Polygons with 24 sides would have an error of 1.1 %.
+      // Polygons with 24 sides would have an error of 1.1 %
       EXPECT_NEAR(product(e, *system.mass, e) / (materials.disc.density * volume), 1., 1e-4) << unit;
     }
 }
 
 TEST_P(Elasticity, VolumesOfABodyHaveTermsOfTheirOwn)
 {
-  // The upper half of a pin is a separate volume: with the same material, results do not change; a different material has its own
-  // parameters
+  // A separate volume of a pin changes results only with a different material
   Mesh halves = mesh;
   halves.volume_names.push_back("pin_top_1_backplate");
   halves.body_of_volume.push_back(1);

@@ -16,7 +16,7 @@ using namespace Testing;
 
 namespace
 {
-  /// A disc with two pins, one of them on the rim.
+  /// A disc with two pins, one of which extends to the rim.
   Mesh mesh()
   {
     return extrude(polar_plan(0.15, 0.3, 3, 12, {{Plan::Side::top, 0, 2, 1, 2}, {Plan::Side::bottom, 5, 3, 0, 1}}), layers(2, 2));

@@ -59,13 +59,13 @@ TEST(ElasticLaws, TurnWithTheirAxes)
       EXPECT_LT(largest_difference(ElasticLaw(fixed).at(x), fixed.young_modulus, elastic_tensor(fixed, oblique_axes())), 1e-14);
       EXPECT_LT(largest_difference(ElasticLaw(round).at(x), round.young_modulus, elastic_tensor(round, axes_at(angle))), 1e-14);
     }
-  // On the axis the radial direction is x
+  // On the axis, the radial direction is defined as x
   EXPECT_LT(largest_difference(ElasticLaw(round).at({0., 0., 0.1}), round.young_modulus, elastic_tensor(round)), 1e-14);
 }
 
 TEST(ElasticLaws, BarsStretchByTheFormulaOfTheirAngle)
 {
-  // Uniaxial stress along x, with axis 1 at an angle to x
+  // Uniaxial stress along x, with material axis 1 at an angle to x
   const Orthotropy o = skew_orthotropy();
   for (const double angle : {0., 0.3, 0.8, 0.5 * M_PI})
     {
@@ -119,7 +119,7 @@ TEST_P(OrthotropicElements, FrequenciesDoNotChangeWhenMeshAndAxesTurn)
 
 TEST(OrthotropicRings, RadialFieldsHaveTheirEnergy)
 {
-  // For u_r = r²: ε_r = 2 r, ε_θ = r, so that the energy is ½ (4 C_11 + 4 C_12 + C_22) ∫ r² dV
+  // For u_r = r², ε_r = 2 r and ε_θ = r, and the energy is ½ (4 C_11 + 4 C_12 + C_22) ∫ r² dV
   const double             inner = 0.15, outer = 0.3, height = GeometryParameters().disc_thickness;
   const MaterialParameters materials = orthotropic_disc(skew_orthotropy(), cylindrical);
   const ElasticTensor      C         = elastic_tensor(materials.of("disc"));

@@ -99,7 +99,7 @@ namespace
 
 TEST(Rotation, IsThatOfLinearFields)
 {
-  // Expect vᵀ G u = ∫ (F x)·(H J x) − (F J x)·(H x) for u = H x, v = F x, J x = e_z × x, from ∫ x xᵀ; N accordingly
+  // Expect vᵀ G u = ∫ (F x)·(H J x) − (F J x)·(H x) for u = H x, v = F x, J x = e_z × x, computed from ∫ x xᵀ; N accordingly
   const Mesh mesh = mapped(extrude(polar_plan(0.15, 0.3, 3, 12, pins, "inner", "outer"), layers(2, 2)), [](const Point3 &p) {
     return Point3{{p[0] + 0.01 * std::sin(40. * p[1]), p[1] + 0.01 * std::sin(35. * p[0]), p[2] + 0.004 * std::sin(45. * p[0])}};
   });
@@ -139,8 +139,8 @@ TEST(Rotation, IsThatOfLinearFields)
 
 TEST(Rotation, SplitsDoubletsByTheDopplerShift)
 {
-  // Out-of-plane bending waves e^{i(nθ ± ωt)} travel with the material, ω ± nΩ in the fixed frame. In-plane waves of a thin
-  // ring lag behind it because of Coriolis forces: ω ± nΩ (n² − 1) / (n² + 1) (G. H. Bryan, 1890).
+  // Out-of-plane bending waves e^{i(nθ ± ωt)} rotate with the material and have ω ± nΩ in the fixed frame. In-plane waves of a thin
+  // ring lag behind the material because of Coriolis forces and have ω ± nΩ (n² − 1) / (n² + 1) (G. H. Bryan, 1890).
   const double        band = 2. * M_PI * 700., speed = 5.;
   const Ring          ring(0.29, 0.31, 0.02, 32, band);
   std::vector<double> omega, found;
@@ -154,7 +154,7 @@ TEST(Rotation, SplitsDoubletsByTheDopplerShift)
         EXPECT_LT(std::abs(l.real()), 1e-9 * band);
         found.push_back(l.imag());
       }
-  // The two lowest doublets have n = 2: one in-plane, one out-of-plane
+  // The two lowest doublets have n = 2; one is in-plane, the other out-of-plane
   constexpr int n         = 2;
   int           n_checked = 0, n_in_plane = 0;
   for (std::size_t j = n_rigid; j + 1 < omega.size() && n_checked < 4; ++j)

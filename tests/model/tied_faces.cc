@@ -12,7 +12,7 @@
 using namespace Squeal;
 using namespace Squeal::Testing;
 
-// Patch test of tied faces: constant stress passes between two blocks, for all cell shapes.
+// Patch test of tied faces: constant stress is transmitted between two blocks, for all cell shapes.
 
 namespace
 {
@@ -36,7 +36,7 @@ namespace
                                           {"9 and 6 nodes", Cut::tetrahedra, Cut::hexahedra, Element::quadratic},
                                           {"6 and 9 nodes", Cut::hexahedra, Cut::wedges, Element::quadratic}};
 
-  constexpr double edge = 0.1; // height of each box; its sides are three and two times as long
+  constexpr double edge = 0.1; // height of each box; the other sides are 3 and 2 times as long
 
   Mesh tied_boxes(const TieCase &c)
   {
@@ -69,7 +69,7 @@ namespace
 TEST_P(Tied, ConstantStressPasses)
 {
   ASSERT_EQ(model.component_names(), std::vector<std::string>{"disc"});
-  // Uniaxial stress along the normal of the tied faces, plus a rotation; the other faces are free
+  // Prescribe uniaxial stress along the normal of the tied faces, plus a rotation; the other faces are free
   const double      nu      = materials.disc.poisson_ratio;
   const double      H[3][3] = {{-nu, 0.3, -0.4}, {-0.3, -nu, 0.9}, {0.4, -0.9, 1.}};
   const MultiVector u       = displacements(model, 0, [&](const Point3 &p) {

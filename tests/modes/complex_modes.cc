@@ -13,7 +13,7 @@ namespace
 {
   constexpr double mu = 0.6;
 
-  /// Damping of contact and bodies in a test.
+  /// Damping of contact and bodies.
   struct Losses
   {
     RadialDissipation  contact;
@@ -57,7 +57,7 @@ TEST(ComplexModes, NormalisedSortedAndWithTheirResiduals)
               EXPECT_NEAR(Q.col(j).norm() / size, modes.residuals[j], 1e-12 + 0.01 * modes.residuals[j]);
               EXPECT_LT(difference.col(j).norm() / size, 1e-11);
 
-              // Modes are normalised: an entry of largest modulus is real and positive
+              // Modes are normalised such that an entry of largest modulus is real and positive
               const double modulus = phi.col(j).cwiseAbs().maxCoeff();
               EXPECT_LT((phi.col(j).array() - modulus).abs().minCoeff(), 1e-12 * modulus);
               EXPECT_GE(modes.energy_residuals[j], 0.);
@@ -82,7 +82,7 @@ TEST(ComplexModes, ResidualIterationKeepsItsPromise)
           const auto errors = distances(modes.lambda, reference.lambda);
           ASSERT_EQ(errors.size(), modes.estimated_errors.size());
           EXPECT_LT(largest(errors), 2. * tolerance);
-          // The estimate is close to the error. It is computed from the next Galerkin step, which may not be the last one on a small basis
+          // The estimate approximates the error. It is computed from the next Galerkin step, which on a small basis may not be the last
           const double factor     = tolerance > 1e-6 ? 20. : 10.;
           int          n_compared = 0;
           for (std::size_t j = 0; j < errors.size(); ++j)

@@ -76,13 +76,13 @@ TEST(ContourCount, FlutterOfTwoDegreesOfFreedom)
   const CoupledSystem system = flutter.system();
   for (const ContourMethod method : methods(system))
     {
-      // Below the threshold both eigenvalues are imaginary, so that the contour may be narrow.
+      // Below the threshold, both eigenvalues are imaginary, and a narrow contour contains them
       const double stable = 0.9 * flutter.coalescence(), omega = flutter.lambda(stable).back().imag();
       EXPECT_EQ(count(system, {stable}, contour(3., 0.01, method))[0].n_modes, 2);
       EXPECT_EQ(count(system, {stable}, contour(1.0001 * omega, 0.01, method))[0].n_modes, 2);
       EXPECT_EQ(count(system, {stable}, contour(0.9999 * omega, 0.01, method))[0].n_modes, 1);
 
-      // Above the threshold, they are −R + iω and R + iω
+      // Above the threshold, eigenvalues are ∓R + iω
       const double  unstable = 1.3 * flutter.coalescence();
       const Complex l        = flutter.lambda(unstable).back();
       ASSERT_GT(std::abs(l.real()), 0.05);
@@ -97,7 +97,7 @@ TEST(ContourCount, FlutterOfTwoDegreesOfFreedom)
 
 TEST(ContourCount, AgreesWithBothSolversUnderStrongFriction)
 {
-  // Some modes diverge; others have growth rates larger than the band
+  // Strong friction causes static divergence and growth rates beyond the band
   const Scene  s      = scene(RadialDissipation::none);
   const double radius = Band(omega_max).radius();
   int          n_real = 0;
@@ -107,7 +107,7 @@ TEST(ContourCount, AgreesWithBothSolversUnderStrongFriction)
       EXPECT_LT(largest(distances(other.lambda, found.lambda)), 1e-6);
       EXPECT_EQ(count(s.coupled, {mu}, contour(omega_max))[0].n_modes, n_inside(found.lambda, omega_max));
 
-      // Compares real eigenvalues and the whole disc |λ| ≤ radius with a dense solution
+      // Compare real eigenvalues and all eigenvalues with |λ| ≤ radius with a dense solution
       const SecondOrderSystem matrices = with_friction(s.coupled, mu);
       const auto              dense    = dense_quadratic_modes(to_dense(*matrices.mass), nullptr, to_dense(*matrices.stiffness), omega_max);
       std::vector<Complex>    inside;
@@ -201,7 +201,7 @@ TEST(ContourCount, DampingOfModesAndOfTheSlidingMotion)
           add_modal_damping(system, *real.vectors, real.eigenvalues, std::vector<double>(real.eigenvalues.size(), 0.02));
         }
       const auto modes = krylov(system, 0.6);
-      // Use wide contours, and narrow contours between the growth rates
+      // Narrow contours pass between the growth rates
       for (const double a : {0., 0.01 * omega_max, 0.004 * omega_max})
         EXPECT_EQ(count(system, {0.6}, contour(omega_max, a))[0].n_modes, n_inside(modes.lambda, omega_max, a)) << a;
       EXPECT_LT(n_inside(modes.lambda, omega_max, 0.004 * omega_max), n_inside(modes.lambda, omega_max));

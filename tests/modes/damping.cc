@@ -14,7 +14,7 @@ namespace
 {
   constexpr double friction_coefficient = 0.6;
 
-  /// Disc and pins of one material with C = α M + β K.
+  /// The same material for disc and pins, with C = α M + β K.
   MaterialParameters proportional(const double alpha, const double beta, const std::vector<Mount> &mounts = {})
   {
     MaterialParameters materials  = mounted(mounts);
@@ -38,7 +38,6 @@ namespace
     return ratios;
   }
 
-  /// The system with modal damping.
   CoupledSystem with_modal_damping(CoupledSystem system, const SymmetricModes &real)
   {
     add_modal_damping(system, *real.vectors, real.eigenvalues, ratios_of(real));
@@ -51,7 +50,7 @@ namespace
     return times({system.terms.back()}, system.values, 1, X);
   }
 
-  /// λ with Im λ > 0 of individually damped real modes, from λ² + c(ω) λ + ω² = 0.
+  /// λ with Im λ > 0 of real modes that are damped independently: λ² + c(ω) λ + ω² = 0.
   std::vector<Complex> damped_oscillators(const SymmetricModes &real, const std::function<double(double)> &c)
   {
     std::vector<Complex> result;
@@ -66,8 +65,8 @@ namespace
 
 TEST(RayleighDamping, ProportionalDampingOfEveryMode)
 {
-  // C = α M + β K without friction: λ = −(α + β ω²)/2 ± i √(ω² − ((α + β ω²)/2)²);
-  // with an elastic mount this requires dashpots of β times its stiffness.
+  // Without friction, C = α M + β K gives λ = −(α + β ω²)/2 ± i √(ω² − ((α + β ω²)/2)²). With an elastic mount, this requires
+  // dashpots with β times the stiffness of the mount.
   int n_growing = 0;
   for (const auto &[alpha, beta] : {std::make_pair(500., 0.), {100., 3e-6}})
     {
@@ -83,7 +82,7 @@ TEST(RayleighDamping, ProportionalDampingOfEveryMode)
       EXPECT_LT(largest(distances(krylov(s.coupled, 0.).lambda, expected)), 1e-9);
       EXPECT_LT(largest(distances(iterated(s.coupled, 0., 1e-10).lambda, expected)), 1e-9);
 
-      // With friction, C̃ = α M̃ + β K̃: each undamped λ_0, growing or not, becomes a root of λ² + (α + β κ) λ + κ = 0 with κ = −λ_0².
+      // With friction, C̃ = α M̃ + β K̃, and every undamped λ_0 becomes a root of λ² + (α + β κ) λ + κ = 0 with κ = −λ_0²
       const auto           growing = krylov(undamped(s.coupled), friction_coefficient);
       std::vector<Complex> shifted;
       for (const Complex &l : growing.lambda)
@@ -99,7 +98,7 @@ TEST(RayleighDamping, ProportionalDampingOfEveryMode)
 
 TEST(RayleighDamping, ADiscThatMovesFreely)
 {
-  // Repeat with a shift, and with damping in the factor and in the reactions; λ = 0 and −α are also eigenvalues
+  // The shifted factor and the reactions contain damping; λ = 0 and −α are also eigenvalues
   constexpr double alpha = 20., beta = 1e-6;
   const FreeDisc   disc(proportional(alpha, beta));
   const auto &[s, shift, real] = disc;
@@ -156,12 +155,12 @@ TEST(RayleighDamping, ResidualsOfBothSidesAreThoseOfTheMatrices)
 
 TEST(SpeedDependentFriction, MassOnASpring)
 {
-  // A mass on a belt, m ẍ + c ẋ + k x = μ(w_0 − ẋ) N, linearised as m ẍ + (c + μ'N) ẋ + k x = 0: unstable if −μ'N > c
+  // A mass on a belt, m ẍ + c ẋ + k x = μ(w_0 − ẋ) N, linearised as m ẍ + (c + μ'N) ẋ + k x = 0, is unstable if −μ'N > c
   const double m = 2., c = 0.05, k = 18., N = 3., w_0 = 0.5;
   const auto   friction = [](const double w) { return 0.3 + 0.2 * std::exp(-w / 0.4); };
   const double falling  = -0.5 * std::exp(-w_0 / 0.4);
 
-  // The belt has no dof: P_t u = 0 - x, without motion along n and b.
+  // The belt has no dof: P_t u = 0 - x, without motion along n and b
   const RowMap     map = rows(1), nodes = rows(1);
   const auto       one  = [&](const double value) { return Testing::diagonal(map, [value](int) { return value; }); };
   const auto       none = sparse(nodes, map, [](int) { return Row{}; });
@@ -197,7 +196,7 @@ TEST(ModalDamping, GivesEachModeItsRatioAndTheRestNothing)
   const MultiVector Y = orthonormalize(*system.mass, &Phi, X, 1e-10);
   EXPECT_LT(max_norm(gram(Y, modal_forces(system, Y))), 1e-11 * max_norm(gram(Phi, modal_forces(system, Phi))));
 
-  // Rigid-body modes and modes with zero ratio are undamped.
+  // Rigid-body modes and modes with zero ratio are undamped
   std::vector<double> eigenvalues = real.eigenvalues;
   eigenvalues.front()             = 0.;
   CoupledSystem free = s.coupled, none = s.coupled;
@@ -216,7 +215,6 @@ TEST(ModalDamping, GivesEachModeItsRatioAndTheRestNothing)
 
 TEST(ModalDamping, BothSolversAgreeWithFriction)
 {
-  // Combine modal damping with all other damping
   const Scene         s(mesh_of(skewed_pins), damped(mounted()), operating());
   const CoupledSystem bare =
     couple(s.system, s.contact, {std::vector<double>(s.interface.size(), 50.), std::vector<double>(s.interface.size(), -20.)});
@@ -230,7 +228,7 @@ TEST(ModalDamping, BothSolversAgreeWithFriction)
 
 TEST(ModalDamping, OfADiscThatMovesFreely)
 {
-  // With modal damping there is no inverse at a shift for the Krylov solver; the residual iteration does not need it
+  // The Krylov solver with a shift rejects modal damping, which the inverse does not include; the residual iteration accepts it
   const FreeDisc disc;
   const auto &[s, shift, real] = disc;
   const auto     system        = with_modal_damping(s.coupled, real);

@@ -23,7 +23,7 @@ TEST(Flutter, ClosedForm)
 
 TEST(Flutter, InstabilityBeginsAtTheThreshold)
 {
-  // Near the coalescence, δλ ~ √ε: at a distance of 1e-7, values have an accuracy of only about 1e-9
+  // Near coalescence δλ ~ √ε, and the accuracy at a distance of 1e-7 is only about 1e-9
   const Flutter       flutter;
   const CoupledSystem system = flutter.system();
   for (const auto &values : solutions(system, flutter.coalescence() * (1. - 1e-7)))
@@ -31,7 +31,7 @@ TEST(Flutter, InstabilityBeginsAtTheThreshold)
       EXPECT_LT(std::abs(l.real()), 1e-8);
   for (const auto &values : solutions(system, flutter.coalescence() * (1. + 1e-7)))
     {
-      // Expected growth: R ≈ √(k12 k_c δμ) / (2 ω)
+      // The expected growth rate is R ≈ √(k12 k_c δμ) / (2 ω)
       const double omega = std::sqrt(0.5 * (flutter.k11 + flutter.k22));
       const double R     = std::sqrt(flutter.k12 * flutter.k_c * flutter.coalescence() * 1e-7) / (2. * omega);
       ASSERT_EQ(values.size(), 2u);

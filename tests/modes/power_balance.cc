@@ -70,7 +70,7 @@ TEST(PowerBalances, AddUpToTheDivergenceRateAndAgreeWithTheSparseMatrices)
       const double       xi = modal_quantities(modes.lambda[j]).divergence_rate;
       EXPECT_NEAR(b.sum(), xi, 1e-8 * std::max(std::abs(xi), 1e-4)) << j;
 
-      // Damping dissipates energy, unless friction falls with sliding speed
+      // Damping dissipates energy, except for a friction coefficient that decreases with sliding speed
       EXPECT_LE(*std::max_element(b.radial_damping.begin(), b.radial_damping.end()), 0.);
       EXPECT_GE(*std::min_element(b.sliding_damping.begin(), b.sliding_damping.end()), 0.);
       EXPECT_LE(*std::max_element(b.bodies.begin(), b.bodies.end()), 0.);

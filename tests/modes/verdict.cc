@@ -12,7 +12,7 @@ namespace
 {
   constexpr double infinity = std::numeric_limits<double>::infinity(), not_a_number = std::numeric_limits<double>::quiet_NaN();
 
-  /// Verdict on a mode at 1000 rad/s, for which rates up to 10⁻⁵ 1/s are rounding errors.
+  /// Verdict on a mode at 1000 rad/s, where rates up to 10⁻⁵ 1/s count as rounding errors.
   Verdict of_rate(const double rate, const double error = 0., const bool growth_needs_coalescence = false)
   {
     return verdict_of({rate, 1000.}, error, growth_needs_coalescence);

@@ -66,19 +66,19 @@ class CheckEigenvalues(unittest.TestCase):
         system.write(self.run_directory / "system")
         arguments = ("--system", str(self.run_directory / "system"), "--parameter")
         self.assert_status(0, r"SciPy: \d\d modes", *arguments, "part=0.5")
-        self.assert_status(1, "too much", *arguments, "part=0.4")
+        self.assert_status(1, "too large", *arguments, "part=0.4")
         self.assert_status(1, "no parameter `parts`", *arguments, "parts=0.4")
 
     def test_refuses_a_wrong_eigenvalue(self):
         self.change_a_mode()
-        self.assert_status(1, "too much")
+        self.assert_status(1, "too large")
         self.assert_status(0, "largest relative difference 1.0e-06", "--tolerance", "1e-5")
 
     def test_allows_for_the_errors_that_the_table_estimates(self):
         self.change_a_mode("5e-7")
         self.assert_status(0, "tolerance 1.5e-06, 3 times the largest error")
         self.change_a_mode("1e-7")
-        self.assert_status(1, "too much")
+        self.assert_status(1, "too large")
 
     def test_refuses_a_table_that_misses_a_mode(self):
         table = self.run_directory / "complex_modes.csv"
@@ -86,7 +86,7 @@ class CheckEigenvalues(unittest.TestCase):
         self.assert_status(1, r"\nmissing(.|\n)*the counts differ")
 
     def test_refuses_what_does_not_belong_together(self):
-        self.assert_status(1, "too much", "--mu", "0.3")
+        self.assert_status(1, "too large", "--mu", "0.3")
         shutil.copy(self.run_directory / "matrices" / "P_t.mtx", self.run_directory / "matrices" / "P_n.mtx")
         self.assert_status(1, "should vanish")
         (self.run_directory / "matrices" / "K.mtx").unlink()

@@ -175,7 +175,7 @@ class ImportMatrices(unittest.TestCase):
         self.write("K.mtx", abaqus(self.matrices["K"], half=True) + "11,2,11,2\n")
         self.assert_rejected_again(files, "K.mtx, line", "`11 2 11 2`")
         np.save(self.folder / "M.npy", self.matrices["M"])
-        self.assert_rejected(dict(files, M={"file": "M.npy"}, K={"file": "G.mtx"}), "nodes and dofs", "one form")
+        self.assert_rejected(dict(files, M={"file": "M.npy"}, K={"file": "G.mtx"}), "nodes and dofs", "same form")
 
     def test_places_of_nodes(self):
         for name in ("M", "K"):
@@ -199,7 +199,7 @@ class ImportMatrices(unittest.TestCase):
         self.assert_imported(files, 1e-5)
         self.assert_imported({name: files[name] for name in ("M", "K", "G")}, 1e-9)
         self.write("model.pch", "\n".join(cards).replace(f"{'RAAX':8}{0:8}{1:8}{2:8}", f"{'RAAX':8}{0:8}{1:8}{4:8}"))
-        self.assert_rejected_again(files, "type 4", "real numbers")
+        self.assert_rejected_again(files, "type 4", "real matrix")
 
     def test_output4(self):
         if pyNastran is None:

@@ -73,9 +73,9 @@ class ModuleResults(unittest.TestCase):
     def test_what_is_not_there(self):
         results = squeal.Results(self.folder / "results")
         self.assert_rejected(lambda: results.branches, "no table `branches`", "complex_modes")
-        self.assert_rejected(lambda: results.fields("modes/none"), "no fields `modes/none`")
+        self.assert_rejected(lambda: results.fields("modes/none"), "no field file `modes/none`")
         self.assertEqual(results.field_names(), [])
-        self.assert_rejected(results.system, "no system", "Write system")
+        self.assert_rejected(results.system, "not write a system", "Write system")
         self.assert_rejected(lambda: squeal.Results(self.folder / "none"), "no folder")
         self.assert_rejected(lambda: squeal.Results(self.folder), "run.json is missing")
 

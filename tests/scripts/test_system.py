@@ -160,22 +160,22 @@ class Files(InFolder):
         self.assert_rejected(damaged(lambda data: data["terms"][2].update(coefficient="mu*(k")), "`mu*(k` is not an expression", "term `friction`, coefficient")
         self.assert_rejected(damaged(lambda data: data["terms"][2].update(coefficient="nu*k")), "`nu`, which is unknown", "system.json, term `friction`")
         self.assert_rejected(damaged(lambda data: data["terms"][2].update(coefficient="k/mu")), "divides by zero at mu = 0", "term `friction`")
-        self.assert_rejected(damaged(lambda data: data["terms"][2].update(power=3)), "power is 3", "term `friction`")
+        self.assert_rejected(damaged(lambda data: data["terms"][2].update(power=3)), "power 3 is invalid", "term `friction`")
         self.assert_rejected(damaged(lambda data: data["terms"][2].pop("right")), "both factors", "term `friction`")
         self.assert_rejected(damaged(lambda data: data["terms"][2].update(colour="red")), "`colour` is unknown", "term `friction`")
         self.assert_rejected(damaged(lambda data: data["parameters"]["mu"].update(value=2)), "outside the range", "parameter `mu`")
         self.assert_rejected(damaged(lambda data: data["parameters"]["mu"].update(value="x")), "not a finite number", "parameter `mu`")
         self.assert_rejected(damaged(lambda data: data.update(groups={"disc": [[1, 3]]})), "`disc`", "1 to 2")
         self.assert_rejected(damaged(lambda data: data.update(groups={"disc": [["1", "2"]]})), "`disc`", "1 to 2")
-        self.assert_rejected(damaged(lambda data: data["terms"][2].update(power=1.0)), "power is 1.0", "term `friction`")
+        self.assert_rejected(damaged(lambda data: data["terms"][2].update(power=1.0)), "power 1.0 is invalid", "term `friction`")
         self.assert_rejected(damaged(lambda data: data["terms"][2].pop("power")), "`power` is missing", "term `friction`")
         self.assert_rejected(damaged(lambda data: data.update(terms={})), "write a list", "terms")
         self.assert_rejected(damaged(lambda data: data.update(terms=[])), "no terms", "system.json")
         self.assert_rejected(damaged(lambda data: data.update(version=2)), "version 1", "system.json")
         self.assert_rejected(damaged(lambda data: data.update(positions="p.mtx")), "p.mtx is missing")
-        self.assert_rejected(damaged(lambda data: data.update(positions="p.mtx"), "p.mtx", array + "1 2\n1\n2\n"), "not n x 3", "positions")
+        self.assert_rejected(damaged(lambda data: data.update(positions="p.mtx"), "p.mtx", array + "1 2\n1\n2\n"), "not an n x 3 matrix", "positions")
         self.assert_rejected(damaged(lambda data: data.update(positions="p.mtx"), "p.mtx", array + "1 3\n1\n2\n3\n"), "expected 3 x 2", "displacements")
-        self.assert_rejected(damaged(lambda data: data.update(displacements="mass.mtx")), "not given", "displacements")
+        self.assert_rejected(damaged(lambda data: data.update(displacements="mass.mtx")), "without `positions`", "displacements")
         self.assert_rejected(damaged(file="system.json", text='{"format": 1, "format": 2}'), "`format` appears twice")
         self.assert_rejected(damaged(file="system.json"), "missing", "system.json")
 
@@ -253,7 +253,7 @@ class Solutions(InFolder):
         self.assert_rejected(pencil(zero, one), "mass is zero")
         self.assert_rejected(pencil(np.diag([1.0, 0.0]), np.diag([1.0, 0.0])), "row 2", "det Q")
         self.assert_rejected(pencil(np.ones((2, 2)), np.ones((2, 2))), "singular")
-        self.assert_rejected(chain(quadratic.DENSE_SIZE + 1).solve, "too many", "region")
+        self.assert_rejected(chain(quadratic.DENSE_SIZE + 1).solve, "only up to", "region")
         n = quadratic.DENSE_SIZE + 1
         column = sparse.csc_matrix(np.sin(np.arange(n) + 1.0).reshape(-1, 1))
         other = sparse.identity(n) - column @ column.T / (column.T @ column)[0, 0]
@@ -273,7 +273,7 @@ class Solutions(InFolder):
 
     def test_pymor(self):
         if pymor is None:
-            self.assert_rejected(flutter().to_pymor, "pymor is missing", "install pyMOR")
+            self.assert_rejected(flutter().to_pymor, "pyMOR cannot be imported", "install pyMOR")
             return
         model = flutter().to_pymor()
         matrix = model.K.assemble(model.parameters.parse({"mu": 0.6, "k": 1.5})).matrix

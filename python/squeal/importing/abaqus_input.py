@@ -10,7 +10,7 @@ from squeal.importing.mesh_shapes import faces_of, read_text, shape_of
 
 # Unsupported keywords that generate or move nodes and elements
 GENERATORS = ("NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY", "SYSTEM", "IMPORT", "SYMMETRIC MODEL GENERATION", "IMPERFECTION")
-WITHOUT_PARTS = "write the input file with `Do not use parts and assemblies in input files`"
+WITHOUT_PARTS = "write the input file with the option `Do not use parts and assemblies in input files`"
 
 
 def split(line):
@@ -37,8 +37,8 @@ class AbaqusInput:
 
     points: label -> coordinates; elements: label -> (shape, node labels); element_sets, node_sets: name -> labels;
     surfaces: name -> [(element label, face index)]; materials: element label -> (constants, rho, axes) in the units of
-    the file, None if incomplete, with constants E, nu or nine engineering constants, and axes as returned by axes_of();
-    dropped: descriptions of everything that was not imported. Names are in capitals, because Abaqus ignores case."""
+    the file, or None if incomplete: E and nu or nine engineering constants, and axes as returned by axes_of(); dropped:
+    descriptions of all omitted content. Names are in capitals, because Abaqus ignores case."""
 
     def __init__(self, path):
         self.points, self.elements, self.element_sets, self.node_sets = {}, {}, {}, {}
@@ -68,14 +68,14 @@ class AbaqusInput:
         with the next line."""
         if path in above or not path.is_file():
             what = "includes itself" if path in above else "is missing"
-            raise self._error(f"the included file {path} {what}", "correct the INPUT parameter, or put the file there")
+            raise self._error(f"the included file {path} {what}", "correct the INPUT parameter, or add the file")
         begun = ""
         for number, line in enumerate(read_text(path).split("\n"), 1):
             line = line.strip()
             if line.startswith("**") or not line:
                 continue
             if begun and line.startswith("*"):
-                raise self._error("the previous keyword line ends in a comma", "remove the comma", f"{path}, line {number}")
+                raise self._error("the previous keyword line ends with a comma", "remove the comma", f"{path}, line {number}")
             begun += line
             if line.endswith(",") and begun.startswith("*"):
                 continue
@@ -95,7 +95,7 @@ class AbaqusInput:
             try:
                 self._take(keyword, options, rows)
             except (ValueError, IndexError, KeyError, TypeError) as error:
-                raise self._error(f"*{keyword} cannot be read ({error})", "check this line and its data lines", where) from error
+                raise self._error(f"*{keyword} cannot be read ({error})", "correct this line or its data lines", where) from error
             where, (keyword, *words) = place, split(line[1:])
             keyword = " ".join(keyword.upper().split())
             options = {key.strip().upper(): value.strip().strip('"') for key, _, value in (word.partition("=") for word in words)}
@@ -104,11 +104,11 @@ class AbaqusInput:
 
     def _take(self, keyword, options, rows):
         if keyword in GENERATORS or keyword == "NODE" and options.get("SYSTEM", "R") != "R":
-            raise self._error(f"*{keyword} generates or moves nodes or elements", "let the pre-processor write them out")
+            raise self._error(f"*{keyword} generates or moves nodes or elements", "write all nodes and elements in global Cartesian coordinates")
         if keyword in ("PART", "INSTANCE"):
             self._parts += keyword == "PART"
             if self._parts > 1 or keyword == "INSTANCE" and (self._instance or any(float(word) for row in rows for word in row if word)):
-                raise self._error("there are several parts or instances, or one that is moved", WITHOUT_PARTS)
+                raise self._error("the file has several parts or instances, or a moved instance", WITHOUT_PARTS)
             if keyword == "INSTANCE":
                 self._instance = options["NAME"] + "."
         elif keyword == "END INSTANCE":
@@ -122,10 +122,10 @@ class AbaqusInput:
             if "GENERATE" in options:
                 members = [range(int(row[0]), int(row[1]) + 1, *map(int, filter(None, row[2:]))) for row in rows]
                 if any(not member or member.step < 0 for member in members):
-                    raise ValueError("a range is descending")
+                    raise ValueError("a range is empty or descending")
             else:
                 members = [self._member(word) for row in rows for word in row if word]
-            # An element set may define a node set
+            # With the option ELSET, the nodes of an element set form a node set
             members += [(options["ELSET"],)] if keyword == "NSET" and "ELSET" in options else []
             self._add(self.node_sets if keyword == "NSET" else self.element_sets, options[keyword], members)
         elif keyword == "SURFACE" and options.get("TYPE", "ELEMENT") in ("ELEMENT", "NODE") and not {"COMBINE", "CROP"} & options.keys():
@@ -135,7 +135,7 @@ class AbaqusInput:
                 raise self._error(f"surface {options['NAME']} is defined twice, or is also a node set", "rename one of them")
             sets.setdefault(options["NAME"], new)
         elif keyword == "SURFACE":
-            self.dropped.append(f"surface {options['NAME']}, which consists neither of faces nor of nodes")
+            self.dropped.append(f"surface {options['NAME']}, which is not a list of faces or nodes")
         elif keyword == "SOLID SECTION":
             self._sections.append((options["ELSET"], options.get("MATERIAL"), options.get("ORIENTATION")))
         elif keyword == "ORIENTATION":
@@ -169,14 +169,14 @@ class AbaqusInput:
     def _add_unique(self, known, new, what, sets, name):
         for label, value in new:
             if label in known:
-                raise self._error(f"{what} {label} is defined twice, as in parts with separate numbering", WITHOUT_PARTS)
+                raise self._error(f"{what} {label} is defined twice", f"renumber the parts, or {WITHOUT_PARTS}")
             known[label] = value
         if name:
             self._add(sets, name, [label for label, _ in new])
 
     def _add(self, sets, name, members):
         if (id(sets), name) in self._of_part:
-            raise self._error(f"set {name} is in the part and in the assembly", f"rename one of them, or {WITHOUT_PARTS}")
+            raise self._error(f"set {name} is defined in the part and in the assembly", f"rename one of them, or {WITHOUT_PARTS}")
         sets.setdefault(name, []).extend(members)
 
     def _member(self, word):
@@ -190,12 +190,12 @@ class AbaqusInput:
         return sets[name]
 
     def _labels(self, sets, known, name, above=()):
-        """Labels of a set, including its member sets and its ranges, which may have gaps."""
+        """Labels of a set with its member sets and ranges; labels in a range need not exist."""
         labels = {}
         for member in self._known(sets, name, f"set {above[-1] if above else name}"):
             if isinstance(member, str):
                 if member in above or member == name:
-                    raise self._error(f"set {name} contains itself", "list its members")
+                    raise self._error(f"set {name} contains itself", "remove the reference")
                 member = self._labels(sets, known, member, (*above, name))
             elif isinstance(member, tuple):
                 member = [node for element in self._known(self.element_sets, member[0], f"set {name}") for node in self.elements[element][1]]
@@ -214,6 +214,6 @@ class AbaqusInput:
             if not faces or len(faces) == 1 and side.upper().startswith("E"):
                 yield None
             elif side and side.upper() not in sides:
-                raise self._error(f"surface {surface} names side {side} of element {label}", "use S1 to S6 of solids, or SPOS of shells")
+                raise self._error(f"element {label} of surface {surface} has no side {side}", f"use one of: {', '.join(sides)}")
             else:
                 yield from ((label, number) for number in ([sides.index(side.upper()) % len(faces)] if side else range(len(faces))))

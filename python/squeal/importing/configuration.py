@@ -9,7 +9,7 @@ from squeal.errors import Error
 
 
 def read_json(path):
-    """The content of a JSON file; duplicate names in an object are rejected."""
+    """The content of a JSON file. Raises Error for duplicate names in an object."""
     def without_repetition(pairs):
         names = [name for name, _ in pairs]
         if repeated := next((name for name in names if names.count(name) > 1), None):
@@ -19,14 +19,13 @@ def read_json(path):
     try:
         return json.loads(path.read_text(encoding="utf-8"), object_pairs_hook=without_repetition)
     except FileNotFoundError:
-        raise Error("the file is missing", path, "check its name") from None
+        raise Error("the file is missing", path, "add it, or correct its name") from None
     except (OSError, ValueError) as problem:
-        raise Error(f"the file cannot be read: {problem}", path, "correct it") from problem
+        raise Error(f"the file cannot be read: {problem}", path, "correct it or its permissions") from problem
 
 
 def read_yaml(path, what):
-    """The content of a YAML or JSON file; duplicate keys are rejected, because yaml would silently keep the last one.
-    """
+    """The content of a YAML or JSON file. Raises Error for duplicate keys, of which PyYAML would keep the last."""
     import yaml
 
     class Loader(yaml.SafeLoader):
@@ -38,4 +37,4 @@ def read_yaml(path, what):
     try:
         return yaml.load(pathlib.Path(path).read_text(encoding="utf-8").expandtabs(), Loader)
     except (ValueError, TypeError, yaml.YAMLError) as error:
-        raise Error(f"the {what} cannot be read: " + " ".join(str(error).split()), path, "write YAML or JSON") from error
+        raise Error(f"the {what} cannot be read: " + " ".join(str(error).split()), path, "write valid YAML or JSON") from error

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Reads nodes, element blocks, side sets and node sets of an Exodus II file. meshio does not read block names or side
-sets."""
+"""Reads nodes, element blocks, side sets and node sets of an Exodus II file; meshio omits block names and side sets."""
 
 import re
 
@@ -28,7 +27,7 @@ class ExodusFile:
         try:
             self._read(path)
         except (OSError, RuntimeError, AttributeError, LookupError, ValueError) as error:
-            raise Error(f"this Exodus file cannot be read ({error!r})", path, "export it again") from error
+            raise Error(f"the Exodus file cannot be read ({error!r})", path, "export it again") from error
 
     def _read(self, path):
         import netCDF4

@@ -16,9 +16,9 @@ from squeal.importing.nastran_input import NastranInput
 
 UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "in": 0.0254}
 READERS = {".inp": AbaqusInput, **dict.fromkeys((".bdf", ".nas", ".fem", ".dat"), NastranInput), **dict.fromkeys((".e", ".exo", ".ex2"), ExodusFile)}
-# First lines of Ansys, Fluent and Permas files, which have no fixed suffix
+# Lines that identify Ansys, Fluent and Permas files, which have no fixed suffix
 NOT_READ = rb"(?im)^\s*(?P<Ansys>/prep7|/com\b|nblock,)|\A\s*(?P<Fluent>\()|^\s*(?P<Permas>\$enter component|\$coor\b)"
-# meshio keeps Gmsh's node order for these types; mid-face nodes are dropped, because squeal adds them itself
+# meshio keeps Gmsh's node order for these types; mid-face nodes are omitted, because squeal adds them
 GMSH_ORDER = {"wedge18": ("wedge15", (0, 1, 2, 3, 4, 5, 6, 9, 7, 12, 14, 13, 8, 10, 11)),
               "pyramid14": ("pyramid13", (0, 1, 2, 3, 4, 5, 8, 10, 6, 7, 9, 11, 12))}
 
@@ -27,8 +27,8 @@ class ForeignMesh:
     """A mesh of another pre-processor.
 
     points (n x 3); elements: [(shape, nodes)], including shells and unsupported types; element_sets, node_sets: name ->
-    indices; faces: name -> tuples of nodes; materials: element index -> constants as in AbaqusInput; dropped:
-    descriptions of everything that was not imported."""
+    indices; faces: name -> tuples of nodes; materials: element index -> material as in AbaqusInput; dropped:
+    descriptions of all omitted content."""
 
     def __init__(self):
         self.points, self.elements, self.dropped = np.empty((0, 3)), [], []
@@ -64,17 +64,17 @@ def from_input_file(source, path):
 
 
 def with_meshio(action, path):
-    """Return value and printed output of a call to meshio."""
+    """Return value and printed output of a call of meshio."""
     said = io.StringIO()
     try:
         with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said), np.errstate(all="ignore"):
             import meshio
             return action(meshio), said.getvalue().strip()
     except ImportError as error:
-        raise Error(f"{error.name} is missing", path, "apt-get install python3-meshio, or the missing module") from error
+        raise Error(f"the Python module {error.name} is missing", path, "apt-get install python3-meshio, or install this module") from error
     except (Exception, SystemExit) as error:  # meshio's readers raise various exceptions for invalid files
         what = " ".join(f"{said.getvalue()} {error!r}".split())
-        raise Error(f"meshio fails: {what}", path, "export it again, or in another format") from error
+        raise Error(f"meshio fails: {what}", path, "export the mesh again or in another format; check the free space") from error
 
 
 def from_meshio(path):

@@ -13,13 +13,13 @@ from squeal.errors import Error
 from squeal.importing import nastran_input
 from squeal.importing.mesh_shapes import read_text
 
-# Stiffness on the diagonal with which Abaqus fixes a dof
+# Diagonal stiffness with which Abaqus fixes a dof
 HELD = 1e36
 
 
 @dataclasses.dataclass
 class Entries:
-    """Entries of a matrix, by row and column (from 0, with the `shape`) or by labels (node, dof) if `shape` is None.
+    """Entries of a matrix by row and column from 0 or, if `shape` is None, by labels (node, dof).
     is_half: True if the file contains one triangle of the symmetric matrix; None if this is unknown."""
 
     rows: np.ndarray
@@ -31,7 +31,8 @@ class Entries:
     @classmethod
     def of(cls, matrix, path):
         if not sparse.issparse(matrix) and np.ndim(matrix) != 2 or matrix.dtype.kind not in "fiub":
-            raise Error(f"this is not a real matrix but {np.ndim(matrix)}-dimensional of type {matrix.dtype}", path, "write a real matrix")
+            raise Error(f"the data are a {np.ndim(matrix)}-dimensional array of type {matrix.dtype}, not a real matrix", path,
+                        "write a real matrix")
         matrix = sparse.coo_matrix(matrix)
         return cls(matrix.row, matrix.col, matrix.data.astype(float), matrix.shape, False)
 
@@ -41,7 +42,7 @@ def choose(found, variable, path):
     if variable is None and len(found) == 1:
         return next(iter(found.values()))
     if variable not in found:
-        what = "the file has several matrices" if variable is None else f"there is no matrix `{variable}`"
+        what = "the file has no matrix or several matrices" if variable is None else f"there is no matrix `{variable}`"
         raise Error(what, path, f"write `variable`, one of: {', '.join(sorted(found)) or '(none)'}")
     return found[variable]
 
@@ -55,18 +56,18 @@ def read_matlab(path, variable):
 
 
 def read_hdf5(path, variable):
-    """A matrix of a .mat file of version 7.3, which stores a dense matrix by columns and a sparse one as a group."""
+    """A matrix of a .mat file of version 7.3, in which dense matrices are transposed and sparse matrices are groups."""
     try:
         import h5py
     except ImportError as error:
-        raise Error("this is a .mat file of version 7.3 (HDF5), and h5py is not installed", path,
-                    "apt-get install python3-h5py, or write save(..., '-v7') in MATLAB") from error
+        raise Error("the .mat file has version 7.3 (HDF5), and h5py is not installed", path,
+                    "apt-get install python3-h5py, or save it with '-v7' in MATLAB") from error
     with h5py.File(path) as file:
         found = choose({name: value for name, value in file.items() if not name.startswith("#")}, variable, path)
         if isinstance(found, h5py.Dataset):
             return found[()].T
         if not {"data", "ir", "jc"} <= found.keys():
-            raise Error(f"`{variable}` is not a matrix", path, "write a numeric matrix")
+            raise Error("the variable is not a numeric matrix", path, "choose or save a numeric matrix")
         columns = found["jc"][()].astype(int)
         return sparse.csc_matrix((found["data"][()], found["ir"][()].astype(int), columns), (int(found.attrs["MATLAB_sparse"]), len(columns) - 1))
 
@@ -85,21 +86,20 @@ def read_text_matrix(path, variable):
 
 
 def read_abaqus(path, text):
-    """A matrix from lines `node, dof, node, dof, value` or `row, column, value`; the first form contains one triangle
-    of a symmetric matrix."""
+    """A matrix from lines `node, dof, node, dof, value` or `row, column, value`."""
     places = [number for number, line in enumerate(text.split("\n"), 1) if line.strip() and not line.lstrip().startswith(("*", "%", "#"))]
     lines = text.replace(",", " ").replace("D", "E").split("\n")
     width = len(lines[places[0] - 1].split()) if places else 0
     if width not in (3, 5):
-        raise Error("this is neither node, dof, node, dof, value nor row, column, value", path,
-                    "write *MATRIX OUTPUT, FORMAT=MATRIX INPUT or FORMAT=COORDINATE in Abaqus")
+        raise Error("the data do not begin with `node, dof, node, dof, value` or `row, column, value`", path,
+                    "use *MATRIX OUTPUT with FORMAT=MATRIX INPUT or FORMAT=COORDINATE in Abaqus")
     if bad := next((number for number in places if not is_entry(lines[number - 1].split(), width)), None):
-        raise Error(f"`{lines[bad - 1].strip()}` differs from the form of the lines above", f"{path}, line {bad}", "export it again")
+        raise Error(f"`{lines[bad - 1].strip()}` does not consist of {width - 1} integers and a number", f"{path}, line {bad}", "export it again")
     table = np.loadtxt([lines[number - 1] for number in places], ndmin=2, comments=None)
     numbers, values = table[:, :-1].astype(int), table[:, -1]
     if width == 5:
         return Entries(numbers[:, :2], numbers[:, 2:], values)
-    if (numbers <= 0).any():  # internal nodes have no positive number
+    if (numbers <= 0).any():  # numbers of internal nodes are not positive
         labels = [np.column_stack([column, np.zeros(len(column), dtype=int)]) for column in numbers.T]
         return Entries(*labels, values)
     return Entries(numbers[:, 0] - 1, numbers[:, 1] - 1, values, (numbers.max(), numbers.max()))
@@ -114,7 +114,7 @@ def is_entry(words, width):
 
 
 def read_dmig(path, variable):
-    """A real square matrix from DMIG cards; form 6 is symmetric, and the file contains one triangle."""
+    """A real square matrix from DMIG cards; if it is symmetric (form 6), the file contains one triangle."""
     headers, found = {}, {}
     for line, (card, name, *fields) in nastran_input.cards(path):
         if card != "DMIG":
@@ -122,7 +122,7 @@ def read_dmig(path, variable):
         try:
             if name not in headers:
                 if fields[0] != "0":
-                    raise ValueError("the first card of a matrix has 0 in its third field")
+                    raise ValueError("the first card of a matrix must have 0 in its third field")
                 headers[name], found[name] = (int(fields[1]), int(fields[2])), []
                 continue
             column = (int(fields[0]), int(fields[1] or 0))
@@ -130,11 +130,11 @@ def read_dmig(path, variable):
                 if fields[at]:
                     found[name].append(((int(fields[at]), int(fields[at + 1] or 0)), column, nastran_input.number(fields[at + 2])))
         except (ValueError, IndexError) as problem:
-            raise Error(f"DMIG cannot be read ({problem})", f"{path}, line {line}", "check this card") from problem
+            raise Error(f"DMIG cannot be read ({problem})", f"{path}, line {line}", "correct this card") from problem
     entries = choose(found, variable, path)
     form, kind = headers[next(name for name in found if found[name] is entries)]
     if form not in (1, 6) or kind not in (1, 2):
-        raise Error(f"the matrix has form {form} and type {kind}", path, "write a square (1) or symmetric (6) matrix of real numbers (type 1 or 2)")
+        raise Error(f"the matrix has form {form} and type {kind}", path, "write a square (form 1) or symmetric (form 6) real matrix (type 1 or 2)")
     table = np.array([(*row, *column, value) for row, column, value in entries]).reshape(-1, 5)
     return Entries(table[:, :2].astype(int), table[:, 2:4].astype(int), table[:, 4], is_half=form == 6)
 
@@ -156,9 +156,9 @@ ENDINGS = {".mat": "matlab", ".npy": "numpy", ".npz": "numpy", ".mtx": "text", "
 
 
 def read(path, variable=None, form=None):
-    """Entries of a matrix in the format `form`, by default the format of the file's suffix. Raises Error."""
+    """Entries of a matrix in the format `form`, by default the format of the file's suffix. Raises Error if the file is missing or invalid."""
     if not path.is_file():
-        raise Error("the file is missing", path, "check its name")
+        raise Error("the file is missing", path, "add it, or correct its name")
     form = form or ENDINGS.get(path.suffix.lower())
     if form not in READERS:
         raise Error(f"the format of `{path.name}` is unknown", path, f"write `format`, one of: {', '.join(READERS)}")
@@ -172,8 +172,8 @@ def read(path, variable=None, form=None):
 
 
 class Numbering:
-    """Numbering of the labels (node, dof) of all matrices by node and dof, with internal (negative) nodes last;
-    `labels` is None if there are none."""
+    """Numbering of the labels (node, dof) of all matrices by node and dof, with internal (negative) nodes last.
+    `labels` is None if the matrices have no labels."""
 
     def __init__(self, matrices):
         """matrices: pairs (source, Entries); their labels become row indices, -1 for fixed dofs. Raises Error if only
@@ -182,7 +182,7 @@ class Numbering:
         with_labels = [where for where, entries in matrices if entries.shape is None]
         if with_labels and len(with_labels) < len(matrices):
             without = next(where for where, entries in matrices if entries.shape is not None)
-            raise Error(f"{with_labels[0]} has nodes and dofs, {without} has rows", without, "write all matrices in one form")
+            raise Error(f"{with_labels[0]} is numbered by nodes and dofs, {without} by rows", without, "write all matrices in the same form")
         if not with_labels:
             self.size = max(max(entries.shape) for _, entries in matrices)
             return
@@ -207,7 +207,7 @@ class Numbering:
         if self.labels is not None:
             kept = (rows >= 0) & (columns >= 0)
             rows, columns, values = rows[kept], columns[kept], values[kept]
-        # The form row, column, value does not show the number of rows if trailing rows have no entries
+        # Use the common size: the form row, column, value omits empty trailing rows
         shape = (self.size, self.size) if self.labels is not None or entries.is_half is None else entries.shape
         matrix = sparse.csr_matrix((values, (rows, columns)), shape)
         other = sparse.csr_matrix((np.ones(len(rows)), (columns, rows)), shape)
@@ -217,5 +217,5 @@ class Numbering:
         if is_half is None:
             is_half = triangle.nnz > 0 and triangle.multiply(other).nnz == 0
             if is_half and symmetry == "none":
-                raise Error("only one triangle of the matrix is in the file", where, "write `symmetry: symmetric`")
+                raise Error("only one triangle of the matrix is in the file", where, "write `symmetry: symmetric` or `symmetry: skew`")
         return matrix + (-1 if symmetry == "skew" else 1) * triangle.T if is_half else matrix

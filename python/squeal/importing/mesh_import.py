@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Converts a mesh of another pre-processor to a .msh with named volumes and faces, and writes a parameter file."""
+"""Converts a mesh of another pre-processor to a .msh file with named volumes and faces, and writes a parameter file."""
 
 import collections
 import os
@@ -25,7 +25,7 @@ PLAUSIBLE_DENSITY = (100, 30000)  # plausible density [kg/m^3]
 def length_hint(mesh):
     extent = np.ptp(mesh.points[sorted({node for number, (_, nodes) in enumerate(mesh.elements) if mesh.is_solid(number) for node in nodes})], axis=0)
     fitting = [f"--unit {unit} ({size * extent.max():.3g} m)" for unit, size in UNITS.items() if PLAUSIBLE[0] <= size * extent.max() <= PLAUSIBLE[1]]
-    return " x ".join(f"{x:.4g}" for x in extent), " or ".join(fitting) or "none of a brake"
+    return " x ".join(f"{x:.4g}" for x in extent), " or ".join(fitting) or f"no unit for a brake of {PLAUSIBLE[0]} to {PLAUSIBLE[1]} m"
 
 
 def is_of_disc(name):
@@ -42,7 +42,7 @@ def is_surface(name):
 
 
 def chosen(given, sets, what, is_known, path):
-    """Name in squeal -> names in the file: the given names, and names that need no renaming."""
+    """Name in squeal -> names in the file, for the given names and for names that need no renaming."""
     result = {}
     for name, members in given.items():
         for member in members:
@@ -67,20 +67,20 @@ class Import:
         self.volumes = chosen(volumes, solids, "set of solids", is_volume, path)
         if not any(map(is_of_disc, self.volumes)):
             raise Error("no set of elements becomes the disc", path,
-                        f"use --volume disc=SET with sets from: {', '.join(sorted(solids)) or '(none)'}")
+                        f"use --volume disc=SET with a set from: {', '.join(sorted(solids)) or '(none)'}")
         for name, member in ((name, member) for name, members in self.volumes.items() for member in members):
             for number in mesh.element_sets[member]:
                 if not faces_of(mesh.elements[number][0]):
                     raise Error(f"`{member}` has elements of type {mesh.elements[number][0]}, which are not supported", path,
-                                "name sets without them")
+                                "choose sets without such elements")
                 if mesh.is_solid(number) and self.volume_of.setdefault(number, name) != name:
                     raise Error(f"elements of `{member}` are in volumes {self.volume_of[number]} and {name}", path,
-                                "name sets that share no elements")
+                                "choose sets that share no elements")
         self.outer = self._outer_faces()
         regions = {*mesh.node_sets, *mesh.faces, *filter(mesh.shells, mesh.element_sets)}
         self.surfaces = chosen(surfaces, regions, "surface, set of shells or set of nodes", is_surface, path)
         if both := self.surfaces.keys() & self.volumes.keys():
-            raise Error(f"`{both.pop()}` is both volume and surface", path, "give the surface another name")
+            raise Error(f"`{both.pop()}` is the name of a volume and of a surface", path, "give the surface another name")
         self.faces = {name: list({key: self.outer[key] for member in members for key in self._faces_of(name, member)}.values())
                       for name, members in self.surfaces.items()}
         self.is_quadratic = any(middle_nodes(*mesh.elements[number]) for number in self.volume_of)
@@ -100,7 +100,7 @@ class Import:
         return {key: faces[0] for key, faces in found.items() if len(faces) == 1}
 
     def _faces_of(self, name, member):
-        """Faces of a set that are on the boundary, as keys of `outer`."""
+        """Boundary faces of a set, as keys of `outer`."""
         found = [{tuple(sorted(face)) for face in faces} for faces in (self.mesh.faces.get(member), self.mesh.shells(member)) if faces]
         if nodes := set(self.mesh.node_sets.get(member, ())):
             found.append({key for key in self.outer if nodes.issuperset(key)})
@@ -108,7 +108,7 @@ class Import:
                 self.left.append(f"{alone} boundary nodes of {member} that do not form a complete face")
         outside = [sorted(keys & self.outer.keys()) for keys in found] or [[]]
         if any(other != outside[0] for other in outside):
-            raise Error(f"`{member}` names different faces as a surface and as a set", self.path, "rename one of them")
+            raise Error(f"`{member}` names different faces as a surface or set of shells and as a set of nodes", self.path, "rename one of them")
         if not outside[0]:
             raise Error(f"`{member}` has no face on the boundary of the volumes", self.path, f"choose boundary faces for {name}")
         if inside := len(found[0]) - len(outside[0]):
@@ -116,7 +116,7 @@ class Import:
         return outside[0]
 
     def write(self, path, scale):
-        """Writes Gmsh's format 2.2; an element with several names is written once for each name."""
+        """Writes Gmsh's format 2.2; a face that belongs to several surfaces is written for each of them."""
         order = sorted(self.volume_of)
         used = sorted({node for number in order for node in self.mesh.elements[number][1]})
         new = {node: number for number, node in enumerate(used)}
@@ -152,7 +152,7 @@ class Import:
         return "\n".join(lines + [f"  left out: {what}" for what in self.left])
 
     def materials(self, unit):
-        """Volume -> (constants, rho, axes) in SI units; only volumes with a single material in known units."""
+        """Volume -> (constants, rho, axes) in SI units, for volumes with a single material in known units."""
         found, (stress, density) = {}, STRESS_AND_DENSITY.get(unit, (0.0, 0.0))
         for name in self.volumes:
             known = {self.mesh.materials.get(number) for number, volume in self.volume_of.items() if volume == name}
@@ -161,13 +161,13 @@ class Import:
                 is_modulus = (1, 0) if axes is None else (1, 1, 1, 0, 0, 0, 1, 1, 1)
                 found[name] = tuple(x * stress if scaled else x for x, scaled in zip(constants, is_modulus)), rho * density, axes
             elif self.mesh.materials:
-                self.left.append(f"material of {name}: not a single isotropic material, or engineering constants in Cartesian axes or in "
-                                 "cylindrical axes about z, at one temperature, with a density in SI or N, mm, t, s")
+                self.left.append(f"material of {name}; required: one material at one temperature, isotropic or with engineering constants in "
+                                 "Cartesian axes or cylindrical axes about z, and a density in SI units or N, mm, t, s")
         return found
 
 
 def parameter_file(mesh_file, result, materials, contact, mounts):
-    """Text of the parameter file of the brake; unknown contact pairs and mounts are comments to be completed."""
+    """Text of the parameter file of the brake, with comments to be completed for unknown contact pairs and mounts."""
     def section(name, *lines):
         return f"subsection {name}\n" + "".join(f"  {line}\n" for line in lines) + "end\n"
 
@@ -203,12 +203,12 @@ def parameter_file(mesh_file, result, materials, contact, mounts):
 
 
 def names_of(arguments):
-    """Volumes, surfaces, contact, mounts and unit, from the command line and the file --names."""
+    """Volumes, surfaces, contact, mounts and unit from the command line and the file --names."""
     given = read_yaml(arguments.names, 'names') if arguments.names else {}
     if not (isinstance(given, dict) and given.keys() <= {"unit", "volumes", "surfaces", "contact", "mounts"} and
             all(isinstance(given.get(key, {}), dict) for key in ("volumes", "surfaces")) and
             all(isinstance(given.get(key, []), list) and all(isinstance(entry, str) for entry in given.get(key, [])) for key in ("contact", "mounts"))):
-        raise Error("the file does not consist of unit, volumes, surfaces, contact and mounts", arguments.names,
+        raise Error("an entry is not unit, volumes, surfaces, contact or mounts, or has the wrong type", arguments.names,
                     'write {unit: mm, volumes: {disc: [ROTOR]}, surfaces: {}, contact: [disc_top / pad_face], mounts: ["pad_back: 0, 0, 1e10"]}')
     result = []
     for key, words, is_known in (("volumes", arguments.volume, is_volume), ("surfaces", arguments.surface, is_surface)):
@@ -218,16 +218,17 @@ def names_of(arguments):
         for name, members in pairs:
             name = name.lower() if is_known(name) else name
             if not (re.fullmatch(r"[\w.-]+", name) and members and all(isinstance(m, (str, int)) and str(m).strip() for m in members)):
-                raise Error(f"`{name}` is not given as NAME=SET", arguments.names or "command line", "write, e.g., --volume disc=ROTOR")
+                raise Error(f"`{name}` is not a valid name or has no set", arguments.names or "command line",
+                            "use letters, digits, _, . and -, and name a set, e.g. disc=ROTOR")
             if name in names:
-                raise Error(f"`{name}` is given twice", arguments.names or "command line", "give each once")
+                raise Error(f"`{name}` is given twice", arguments.names or "command line", "give each name once")
             names[name] = [str(member).strip() for member in members]
         result.append(names)
     return *result, given.get("contact", []) + arguments.contact, given.get("mounts", []) + arguments.mount, arguments.unit or given.get("unit")
 
 
 def check_entries(entries, parse, surfaces, what, path):
-    """Rejects entries of Contact/Pairs or Mounts/Elastic mounts that name unknown surfaces."""
+    """Raises Error if an entry of Contact/Pairs or Mounts/Elastic mounts has the wrong form or an unknown surface."""
     for entry in entries:
         match = re.fullmatch(parse, entry)
         unknown = [name for name in match.groups() if name not in surfaces] if match else [""]
@@ -239,13 +240,13 @@ def check_entries(entries, parse, surfaces, what, path):
 def run(arguments):
     path = pathlib.Path(arguments.file)
     if not path.is_file():
-        raise Error("there is no such file", path, "check its name")
+        raise Error("the file is missing", path, "add it, or correct its name")
     mesh = read(path)
     shapes = ", ".join(f"{n} {shape}" for shape, n in collections.Counter(shape for shape, _ in mesh.elements).items())
     if not any(map(mesh.is_solid, range(len(mesh.elements)))):
         raise Error("the file has no solid elements", path, f"mesh the volumes; the file has {shapes or 'no elements'}")
     if not np.isfinite(mesh.points).all():
-        raise Error("coordinates are not finite", path, "export the mesh again")
+        raise Error("a coordinate is not finite", path, "export the mesh again")
     size, fitting = length_hint(mesh)
     summary = f"{path}: {len(mesh.points)} nodes, {shapes}; {size} in the file's unit"
     if not arguments.output:

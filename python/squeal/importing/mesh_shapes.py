@@ -39,8 +39,8 @@ def middle_nodes(shape, nodes):
 
 
 def shape_of(element_type):
-    """Shape and number of nodes of an Abaqus element type. Variants such as C3D8R and C3D10M have the nodes of the
-    basic element, continuum shells have the nodes of solids; for an unsupported type, the number of nodes is 0."""
+    """Shape and number of nodes of an Abaqus element type; 0 nodes for unsupported types. Variants such as C3D8R have
+    the nodes of the basic element, continuum shells the nodes of solids."""
     if match := re.fullmatch(r"(?:C3D|SC)(\d+)[A-Z]*", element_type):
         shapes = SOLIDS
     elif match := re.fullmatch(r"(?:S|M3D|SFM3D|R3D)(\d)(?:R5?|RS|S|)", element_type):

@@ -10,8 +10,8 @@ from squeal.importing.mesh_shapes import SHELLS, SOLIDS, read_text
 
 ELEMENTS = {"CHEXA": SOLIDS, "CPENTA": SOLIDS, "CTETRA": SOLIDS, "CPYRA": SOLIDS, "CPYRAM": SOLIDS, "CQUAD4": SHELLS, "CQUAD8": SHELLS,
             "CQUADR": SHELLS, "CTRIA3": SHELLS, "CTRIA6": SHELLS, "CTRIAR": SHELLS}
-CORNERS = {"CQUAD4": 4, "CQUADR": 4, "CTRIA3": 3, "CTRIAR": 3}  # number of corner nodes, which angle and offsets follow
-# Nastran lists the mid-side nodes of the vertical edges before those of the top
+CORNERS = {"CQUAD4": 4, "CQUADR": 4, "CTRIA3": 3, "CTRIAR": 3}  # number of corner nodes; angle and offsets follow on the card
+# Nastran lists the mid-side nodes of the vertical edges before the mid-side nodes of the top
 ORDER = {"hexahedron20": (*range(12), *range(16, 20), *range(12, 16)), "wedge15": (*range(9), *range(12, 15), *range(9, 12))}
 
 
@@ -47,14 +47,13 @@ def cards(path):
             yield first, card
         card, first = [fields[0].upper().rstrip("*").strip(), *data], count
     if has_control:
-        raise Error("the file ends without ENDDATA", path, "export it again, it may be incomplete")
+        raise Error("the file ends without ENDDATA", path, "export it again; it may be incomplete")
     if card:
         yield first, card
 
 
 class NastranInput:
-    """The content of a Nastran file, with the attributes of AbaqusInput; node sets, surfaces and materials are empty.
-    """
+    """The content of a Nastran file, with the attributes of AbaqusInput, but no node sets, surfaces or materials."""
 
     def __init__(self, path):
         self.points, self.elements, self.element_sets = {}, {}, {}
@@ -63,18 +62,18 @@ class NastranInput:
             try:
                 self._take(*card)
             except (ValueError, IndexError) as error:
-                raise Error(f"{card[0]} cannot be read ({error})", f"{path}, line {line}", "check this card") from error
+                raise Error(f"{card[0]} cannot be read ({error})", f"{path}, line {line}", "correct this card") from error
         self.dropped = [f"{n} elements {name}" for name, n in self._unread.items()]
 
     def _take(self, name, *fields):
         if name.startswith("INCLUDE"):
-            raise ValueError("write all cards to one file")
+            raise ValueError("includes are not supported; write all cards to one file")
         if name == "GRID":
             if fields[1] not in ("", "0"):
-                raise ValueError(f"node {fields[0]} is in coordinate system {fields[1]}; write nodes in the basic one")
+                raise ValueError(f"node {fields[0]} is in coordinate system {fields[1]}; use the basic system")
             self._add_unique(self.points, "node", fields[0], [number(word) for word in fields[2:5]])
         elif name == "GRDSET" and fields[1] not in ("", "0"):
-            raise ValueError("write nodes in the basic coordinate system")
+            raise ValueError(f"nodes are in coordinate system {fields[1]}; use the basic system")
         elif name in ELEMENTS:
             words = list(fields[2:CORNERS[name] + 2] if name in CORNERS else fields[2:])
             if name in ("CQUAD8", "CTRIA6"):

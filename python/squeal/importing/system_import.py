@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Builds a system from matrices of other programs according to a configuration file."""
+"""Builds a system from matrices of other programs as described by a configuration file."""
 
 import csv
 import pathlib
@@ -30,41 +30,41 @@ def ranges_of(numbers):
 
 
 def groups_of(entries, numbering, where):
-    """Ranges of dofs of each group, given directly or by ranges of `nodes`."""
+    """Ranges of dofs of each group, from ranges of dofs or of `nodes`."""
     groups = {}
     for name, entry in entries.items():
         if isinstance(entry, dict):
             check_keys(entry, ("nodes",), f"{where}, group `{name}`")
             if numbering.labels is None:
-                raise Error("the matrices have rows, not nodes", f"{where}, group `{name}`", "write ranges of dofs")
+                raise Error("the matrices are numbered by rows, not by nodes", f"{where}, group `{name}`", "write ranges of dofs")
             entry = ranges_of([row for row, (node, _) in enumerate(numbering.labels, start=1) if any(a <= node <= b for a, b in entry["nodes"])])
         groups[name] = entry
     return groups
 
 
 def points_of(config, folder, numbering, where):
-    """Positions of the nodes and their displacements (dofs 1 to 3), if the configuration names a file with nodes."""
+    """Positions of nodes and the matrix of their displacements (dofs 1 to 3), if `nodes` is given."""
     if "nodes" not in config:
         return {}
     if numbering.labels is None or config.get("unit") not in foreign_mesh.UNITS:
-        raise Error("`nodes` requires matrices with nodes and dofs, and a unit of length", where,
-                    f"write `unit`, one of: {', '.join(foreign_mesh.UNITS)}")
+        raise Error("`nodes` requires matrices numbered by nodes and dofs, and a unit of length", where,
+                    f"export such matrices and write `unit`, one of: {', '.join(foreign_mesh.UNITS)}")
     path = folder / config["nodes"]
     reader = foreign_mesh.READERS.get(path.suffix.lower())
     if reader is None or not path.is_file():
-        raise Error(f"`{path}` is not a file with nodes", where, f"name a file that ends in one of: {', '.join(foreign_mesh.READERS)}")
+        raise Error(f"`{path}` is missing or has an unsupported suffix", where, f"name a file that ends in one of: {', '.join(foreign_mesh.READERS)}")
     points, scale = reader(path).points, foreign_mesh.UNITS[config["unit"]]
     moves = [(node, dof, column) for column, (node, dof) in enumerate(numbering.labels) if node > 0 and dof in (1, 2, 3)]
     number = {node: i for i, node in enumerate(dict.fromkeys(node for node, *_ in moves))}
     if lost := [node for node in number if node not in points]:
-        raise Error(f"node {lost[0]} of the matrices is missing", path, "name the file of the model from which the matrices come")
+        raise Error(f"node {lost[0]} of the matrices is missing", path, "name the input file from which the matrices were computed")
     rows = [3 * number[node] + dof - 1 for node, dof, _ in moves]
     displacements = sparse.csr_matrix((np.ones(len(moves)), (rows, [column for *_, column in moves])), (3 * len(number), len(numbering.labels)))
     return {"positions": scale * np.array([points[node] for node in number]), "displacements": displacements}
 
 
 def import_system(path):
-    """The system described by a configuration, notes to print, and the numbering of its dofs. Raises Error."""
+    """The system described by a configuration file, notes to print, and the numbering of its dofs. Raises Error for invalid input."""
     path = pathlib.Path(path)
     config = as_kind(read_yaml(path, "configuration"), dict, path)
     check_keys(config, KNOWN, path)
@@ -86,15 +86,15 @@ def import_system(path):
         found = matrices.read(file, source.get("variable"), source.get("format"))
         loaded.append((file, found, term, number_of(source.get("scale", 1.0), where)))
     if not loaded:
-        raise Error("there are no terms", path, "write `terms`, a list")
+        raise Error("there are no terms", path, "add entries to the list `terms`")
     numbering = matrices.Numbering([(str(file), found) for file, found, *_ in loaded])
     remarks = []
     if numbering.held:
-        remarks.append(f"{len(numbering.held)} dofs are fixed ({matrices.HELD:g} on the diagonal) and omitted")
+        remarks.append(f"{len(numbering.held)} dofs are fixed ({matrices.HELD:g} or more on the diagonal) and omitted")
     for file, found, term, scale in loaded:
         term.matrix = scale * numbering.matrix(found, term.symmetry, file)
         if term.symmetry == "none" and term.matrix.nnz and term.matrix.shape[0] == term.matrix.shape[1]:
-            remarks += [f"term `{term.name}` is {symmetry}; write `symmetry: {symmetry}` to have it checked" for symmetry, sign in
+            remarks += [f"term `{term.name}` is {symmetry}; write `symmetry: {symmetry}` to check this" for symmetry, sign in
                         (("symmetric", 1), ("skew", -1)) if symmetry_defect(term.matrix, sign) < SYMMETRY_TOLERANCE]
     system = System(parameters, [term for _, _, term, _ in loaded], groups_of(config.get("groups", {}), numbering, path),
                     **points_of(config, path.parent, numbering, path), description=config.get("description", ""), where=path)
@@ -102,7 +102,7 @@ def import_system(path):
 
 
 def write_labels(path, labels):
-    """Writes node and dof of each row."""
+    """Writes the node and dof of each row."""
     with open(path, "w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerows([("row", "node", "dof"), *((row, *label) for row, label in enumerate(labels, start=1))])

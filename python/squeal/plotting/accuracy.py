@@ -30,7 +30,7 @@ def cost_figure(solutions):
     for panel, column in zip(picture.panels, (FREQUENCY, DIVERGENCE)):
         style.prepare(panel, "", TIME, TITLES[column])
         if all(solution.errors[column] <= FLOOR for solution in solutions):
-            panel.text(0.5, 0.5, "rounding errors only, outside clusters", transform=panel.transAxes, ha="center", color=style.GREY)
+            panel.text(0.5, 0.5, "only rounding errors outside clusters", transform=panel.transAxes, ha="center", color=style.GREY)
             panel.set_xticks([])
             panel.set_yticks([])
             continue
@@ -47,7 +47,7 @@ def cost_figure(solutions):
 
 
 def kind_figure(solutions):
-    """A panel for each method and quantity with a mark for each kind of error and mesh; rounding errors are omitted."""
+    """A panel for each method and quantity, with marks for the kinds of error on each mesh; rounding errors are omitted."""
     methods = list(dict.fromkeys(solution.method for solution in solutions))
     picture = style.Picture("Errors by kind", 2 * len(methods), len(methods), (4.4, 3.6))
     panels = iter(picture.panels)
@@ -64,6 +64,5 @@ def kind_figure(solutions):
 
 
 def figures(results):
-    """Figures of an accuracy study."""
     solutions = [Solution(row) for row in results.table("accuracy").rows]
     return {"accuracy": cost_figure(solutions), "accuracy_kinds": kind_figure(solutions)}

@@ -11,7 +11,7 @@ FAMILIES_PER_PICTURE = 3
 NAME_LENGTH = 0.2  # fraction of the width over which a curve must not cross its label
 NAME_MARGIN = 0.1  # space for labels above and below the frequencies of a family, as a fraction of their range
 
-# Charts without and with dissipation. The first is drawn on top; the second is wider, so that it remains visible
+# Looks of charts without and with dissipation; the first chart covers the second, which is therefore wider
 LOOKS = ({"color": style.BLACK, "linestyle": "-"}, {"color": style.GREY, "linestyle": (0, (4, 1.5))})
 GROWING_LOOKS = ({"color": style.VERMILLION, "linestyle": "-"}, {"color": style.ORANGE, "linestyle": (0, (3, 1))})
 WIDTHS, GROWING_WIDTHS = (0.9, 1.5), (2.4, 4.2)  # [points]
@@ -58,13 +58,12 @@ def draw_curves(panel, all_charts, chosen, quantity, width):
 
 
 def add_names(panel, chart, branches):
-    """Labels branches at their starting points, above the curve; of several branches, the lowest is labelled below its
-    curve."""
+    """Labels branches at their starting points above the curve, or below it for the lowest of several branches."""
     labels = [chart.labels[branch] for branch in branches]
     length = NAME_LENGTH * (chart.mus[-1] - chart.mus[0])
     starts = []
     for branch in branches:
-        # Omit a label that several branches share: it would only repeat the title
+        # Omit labels shared by several branches, because they would only repeat the title
         if labels.count(chart.labels[branch]) == 1:
             points = [point for point in chart.curve(branch) if point.is_shown]
             nearby = [point.frequency for point in points if point.mu <= points[0].mu + length]
@@ -98,9 +97,9 @@ def members(chart, name, partners):
     labels = list(chart.labels.values())
     result = []
     for branch, label in chart.labels.items():
-        # Of the unnamed branches, include only those that grow
+        # Include unnamed branches only if they grow
         is_member = charts.family(label) == name and (name != charts.NO_LABEL or chart.grows_somewhere(branch))
-        # A label that several branches share does not identify the partner in the other chart
+        # A label shared by several branches does not identify the partner in the other chart
         is_partner = label in partners and labels.count(label) == 1
         meets = any(threshold.partner == branch and charts.family(chart.labels[threshold.branch]) == name for threshold in chart.thresholds)
         if is_member or is_partner or meets:
@@ -117,7 +116,7 @@ def leave_room(panel):
 
 
 def family_picture(all_charts, names):
-    """Frequencies of each family, with the divergence rates below them, or next to them for a single family."""
+    """Frequencies of each family, with divergence rates below them (next to them for a single family)."""
     picture = style.Picture("Growing branches and their families", 2 * len(names), len(names) if len(names) > 1 else 2)
     for name, upper, lower in zip(names, picture.panels, picture.panels[len(names):]):
         partners = partners_of(all_charts, name)
@@ -162,7 +161,6 @@ def overview_figure(all_charts, band_end):
 
 
 def figures(results):
-    """Figures of a sweep."""
     all_charts = charts.read_charts(results)
     band_end = results.number("Band/Maximum frequency")
     return {**family_figures(all_charts), "complex_plane": complex_plane.sweep_figure(results, all_charts, band_end),

@@ -11,7 +11,7 @@ WITHOUT, WITH = "without radial dissipation", "with radial dissipation"
 
 @dataclasses.dataclass
 class Mode:
-    """A mode with frequency [Hz] and divergence rate [%]; both are None where a branch has no mode."""
+    """A mode with frequency [Hz] and divergence rate [%], which are None if the branch has no mode at this point."""
 
     label: str
     frequency: float
@@ -39,8 +39,7 @@ class Threshold:
 class Chart:
     """Modes of the band over the friction coefficient at one load and speed, with one contact set.
 
-    `mus` are all values of the chart in ascending order, `modes[branch][mu]` is a mode, `labels[branch]` the label of a
-    branch.
+    `mus`: all values in ascending order; `modes[branch][mu]`: a mode; `labels[branch]`: the label of a branch.
     """
 
     def __init__(self, title, branches, thresholds, counts, band_end):

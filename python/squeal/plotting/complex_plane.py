@@ -13,11 +13,11 @@ from squeal.results import symbol
 ROUNDING = 1e-6  # largest absolute divergence rate that is treated as zero [%]
 SAME_PLACE = 0.05  # fraction of the width within which modes of two series share a label
 
-Series = collections.namedtuple("Series", "title modes")  # modes with one form of the radial dissipation
+Series = collections.namedtuple("Series", "title modes")  # modes with or without radial dissipation
 
 
 class NameRoom:
-    """Finds positions for labels next to marks so that they do not overlap; units are points in the panel."""
+    """Finds positions for labels next to marks without overlaps, in points of the panel."""
 
     LETTER, LINE, GAP = 0.58 * style.SMALL, 1.25 * style.SMALL, 5.0
 
@@ -155,7 +155,7 @@ def series_of_run(results):
 
 
 def paper_figure(without, damped):
-    """Figure 6 of the paper: results without and with radial dissipation side by side, with the same axes."""
+    """Figure 6 of the paper: results without and with radial dissipation side by side on equal axes."""
     series = [series_of_run(results) for results in (without, damped)]
     picture = style.Picture(f"Stability charts for \u03bc = {without.number('Operation/Friction coefficient'):g}", 2, 2, (5.6, 4.4))
     for panel, caption, one in zip(picture.panels, ("(a) $C_b = 0$", "(b) $C_b \\neq 0$"), series):
@@ -177,5 +177,4 @@ def run_figure(results):
 
 
 def figures(results):
-    """Figures of a run at one friction coefficient."""
     return {"complex_plane": run_figure(results)}

@@ -11,7 +11,6 @@ MOST_VARIABLES, MOST_LABELS = 8, 10
 
 
 def figures(results):
-    """Figures of a design study."""
     table = results.table("designs")
     variables = variables_of(table)[:MOST_VARIABLES]
     solved = [outcome == "solved" for outcome in table.texts("outcome")]

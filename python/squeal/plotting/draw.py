@@ -18,13 +18,14 @@ PLOTS = {"complex_plane": "complex_modes", "branches": "branches", "stability_ma
 
 
 def figures(results):
-    """All figures of a run by name. Raises Error if there is no plot for any of its tables."""
+    """All figures of a run by name. Raises Error if there is nothing to plot."""
     found = {}
     for name, table in PLOTS.items():
         if results.has(table):
             found.update(importlib.import_module(f"squeal.plotting.{name}").figures(results))
     if not found:
-        raise Error("no table of this run has a plot", f"folder {results.folder}", "run squeal again")
+        raise Error("no table of this run contains data to plot", f"folder {results.folder}",
+                    f"choose a run with results in one of the tables: {', '.join(PLOTS.values())}")
     return found
 
 

@@ -15,14 +15,13 @@ COST = "cost relative to reference [-]"
 
 
 def draw_bars(panel, values, changed):
-    """Draws a bar for each available value; the colour shows whether the verdict changes."""
-    for colour, label, wanted in ((style.BLUE, "the verdict stays", False), (style.VERMILLION, "the verdict changes", True)):
+    """Draws a bar for each available value, coloured by whether the verdict changes."""
+    for colour, label, wanted in ((style.BLUE, "verdict unchanged", False), (style.VERMILLION, "verdict changed", True)):
         chosen = [place for place, flag in enumerate(changed) if flag is wanted and not math.isnan(values[place])]
         style.draw_bars(panel, chosen, [values[place] for place in chosen], colour, label, wanted)
 
 
 def figures(results):
-    """Figures of a study of ingredients."""
     table = results.table("ingredients")
     names = [f"{ingredient}: {tried}" if reason == "" else f"{ingredient}: not tried"
              for ingredient, tried, reason in zip(table.texts("ingredient"), table.texts("variant"), table.texts("reason not tried"))]

@@ -47,7 +47,7 @@ def draw_errors(panel, candidates, names, group, criteria):
     shown = []
     for candidate in candidates:
         number = names.index(candidate.name)
-        # Offset marks so that equal values remain visible
+        # Offset marks to keep equal values visible
         offset = 0.75 * (number / (len(names) - 1) - 0.5) if len(names) > 1 else 0.0
         values = [candidate.errors[group][column] for column in criteria]
         shown += values
@@ -67,7 +67,7 @@ def error_figure(candidates):
     truncations = list(dict.fromkeys(candidate.truncation for candidate in candidates if candidate.truncation)) or [""]
     groups = list(dict.fromkeys(group for candidate in candidates for group in candidate.errors))
     names = list(dict.fromkeys(candidate.name for candidate in candidates))
-    # Without growing modes, the error of the divergence rate is zero
+    # Omit criteria without errors, such as the divergence rate without growing modes
     criteria = [column for column in CRITERIA if any(candidate.largest(column) > 0 for candidate in candidates)]
     title = "Largest errors of reduced bases by group of modes"
     # One row for each truncation; if there is only one, its groups are wrapped
@@ -116,7 +116,6 @@ def cost_figure(candidates, with_friction):
 
 
 def figures(results):
-    """Figures of a study of reduced bases."""
     candidates = read_candidates(results)
     return {"reduction_errors": error_figure(candidates),
             "reduction_cost": cost_figure(candidates, results.parameter("Reduction/Problem") == "friction")}

@@ -12,7 +12,6 @@ N_BINS, MOST_SCATTERS = 30, 4
 
 
 def figures(results):
-    """Figures of a study of uncertain parameters."""
     modes, samples = results.table("sample_modes"), results.table("samples")
     indices = results.table("sobol_indices").rows if results.has("sobol_indices") else []
     indices = [row for row in indices if row["quantity"] == "largest divergence rate"]
@@ -50,7 +49,7 @@ def cloud(panel, modes):
 
 
 def cumulative(panel, onsets):
-    """Draws the percentage of samples with an onset up to each value of the parameter of the sweep."""
+    """Draws the percentage of samples with an onset up to each value of the swept parameter."""
     known = [missed == 0. for missed in onsets.numbers("values that miss the tolerance [-]")]
     columns = [column for column in onsets.columns if " of " in column and column.endswith("[-]") and not column.startswith("uncertainty")]
     style.prepare(panel, "", f"first onset: {columns[0].split(' of ')[0]} [-]", "samples with an onset up to this value [%]")

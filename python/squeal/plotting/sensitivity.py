@@ -9,7 +9,6 @@ MOST_MODES = 4
 
 
 def figures(results):
-    """Figures of a sensitivity study."""
     modes = list(filter(None, map(ranking, results.table("sensitivities").groups("mode [-]"))))[:MOST_MODES]
     names = [row["parameter"] for row in modes[0]]
     picture = style.Picture("Effect of a 1 % increase of each parameter", len(modes), len(modes), (3.9, style.BAR * len(names) + 1.3))

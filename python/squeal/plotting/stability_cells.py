@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Cells of a stability map: edges, boundaries between cells, regions with one leading mode and positions of its label."""
+"""Cells of a stability map: their edges and boundaries, regions with one leading mode, and positions of labels."""
 
 import itertools
 import math
@@ -18,7 +18,7 @@ ORDINATES = ("load per side [N]", "rotation speed [rad/s]")
 
 
 class StabilityMap:
-    """The cells of a map as arrays, rows by its second parameter, columns by its first."""
+    """The cells of a map as arrays, with rows for its second parameter and columns for its first."""
 
     def __init__(self, table):
         self.abscissa, self.ordinate = table.columns[:2]
@@ -49,8 +49,7 @@ class StabilityMap:
 
 
 def cell_edges(values, logarithmic):
-    """Cell edges halfway between values; the outer cells are symmetric about their value but do not extend across zero.
-    """
+    """Cell edges halfway between values. Outer cells are symmetric about their value, but end at zero."""
     v = np.log(values) if logarithmic else np.asarray(values)
     if len(v) > 1:
         edges = np.concatenate([[1.5 * v[0] - 0.5 * v[1]], 0.5 * (v[:-1] + v[1:]), [1.5 * v[-1] - 0.5 * v[-2]]])
@@ -100,8 +99,8 @@ def regions(stability):
 
 
 def place_of_name(region, shape, length):
-    """The cell of a region that is farthest from its boundary and, of several, nearest to its centre; None if there is
-    no space for the label."""
+    """The cell of a region farthest from the boundary and, among equals, nearest to the centre; None if there is no
+    space for the label."""
     inside = set(region)
     middle = np.mean(region, axis=0)
 

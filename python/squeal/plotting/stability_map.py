@@ -13,11 +13,11 @@ from squeal.plotting.stability_cells import COLOURS, StabilityMap, limits, logar
 from squeal.results import axis_title
 
 SCALE = LinearSegmentedColormap.from_list("growth", COLOURS)
-MOST_STEPS = 12  # largest number of modes up to which each number has its own colour
+MOST_STEPS = 12  # maximum number of unstable modes for which each number has its own colour
 
 
 def draw_cells(panel, stability, values, norm):
-    """Draws unstable cells in colour, stable cells white, and undecided and missing cells hatched."""
+    """Draws unstable cells in colour, stable cells in white, and undecided and missing cells with hatching."""
     x, y = stability.x_edges, stability.y_edges
     shown = np.where(stability.is_unstable, values, np.nan)
     panel.pcolormesh(x, y, np.ma.masked_invalid(shown), cmap=SCALE, norm=norm, edgecolors="face", linewidth=0.3)
@@ -99,5 +99,4 @@ def map_figure(table):
 
 
 def figures(results):
-    """Figures of a sweep with a map."""
     return {"map": map_figure(results.table("map"))}

@@ -25,8 +25,7 @@ FREQUENCY, DIVERGENCE = "frequency [Hz]", "divergence rate R/\u03c9 [%]"
 
 
 def mark_of(number):
-    """Colour, marker and face colour of a series. There are 24 different styles: filled markers first, then open ones.
-    """
+    """Colour, marker and face colour of a series: 12 styles with filled markers, then 12 with open markers."""
     colour = SERIES[number % len(SERIES)]
     return {"color": colour, "marker": MARKERS[number % len(MARKERS)],
             "markerfacecolor": "white" if number // len(MARKERS) % 2 else colour}

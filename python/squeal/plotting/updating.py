@@ -6,7 +6,6 @@ from squeal.plotting import style
 
 
 def figures(results):
-    """Figures of a fit to measured modes."""
     rows = [row for row in results.table("fit").rows if row["quantity"] == "frequency"]
     names = [" ".join(filter(None, (row["state"], row["label"], row["member"]))) for row in rows]
     picture = style.Picture("Fit to measured modes", 1, 1, (6.5, 0.8 * style.BAR * len(rows) + 1.3))

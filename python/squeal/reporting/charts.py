@@ -42,12 +42,10 @@ def best_so_far(rows, goal, **more):
 
 
 def name_of_mode(row):
-    """The name of a mode in a selection list."""
     return f"{row['label']}, {number(row[FREQUENCY]):.0f} Hz, ξ = {digits(number(row[RATE]), 3)} %"
 
 
 def confidence(row):
-    """The confidence interval of a probability of squeal."""
     lower, upper = (digits(number(row[f"{end} confidence limit [%]"]), 3) for end in ("lower", "upper"))
     return f"95 % confidence interval {lower} to {upper} %"
 

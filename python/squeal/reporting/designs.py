@@ -15,7 +15,7 @@ def variables_of(table):
 
 
 def name_of(variable):
-    """The name of a variable for an axis: that of its first parameter if several share a value."""
+    """The axis title of a variable; if several parameters share its value, the name of the first."""
     first, *others = variable.split(" + ")
     return first.split("/")[-1] + (" …" if others else "")
 
@@ -75,7 +75,6 @@ def checks(results):
 
 
 def about(row, variables, end):
-    """Hover text of a solved design."""
     return "<br>".join([f"<b>design {row['design [-]']}</b>", *(f"{name}: {plain(row[name])}" for name in variables),
                         f"onset at μ = {digits(number(row[ONSET]))} ({row['label at 0.01 %']})" if row[ONSET] else
                         f"quiet up to μ = {end:g}",
@@ -93,13 +92,13 @@ def onset_section(results):
         traces.append(points(label, [short(row[ONSET] or end) for row in own], [short(row[LARGEST] or "0") for row in own],
                              [about(row, variables, end) for row in own], marker={"size": 10}))
     return {"id": "designs_chart", "title": "Designs: onset of squeal and largest growth",
-            "caption": "Each point is a design, named after its fastest growing mode, at the onset μ where a divergence rate exceeds "
+            "caption": "Each point is a design, with the label of its fastest growing mode. At the onset μ, a divergence rate exceeds "
                        f"0.01 %. Designs at the lower right are quiet. The study ends at μ = {end:g}.",
             "data": traces, "layout": layout("μ of 0.01 %", "largest divergence rate [%]", showlegend=True)}
 
 
 def lines_section(results):
-    """Chart with each design as a line through its values; the mouse selects ranges on an axis."""
+    """Chart with each design as a line through its values; ranges can be selected on an axis."""
     table = results.table("designs")
     rows, end = solved(table), end_of_sweep(results)
     dimensions = []
@@ -112,8 +111,8 @@ def lines_section(results):
                    {"label": "largest rate [%]", "values": largest, "tickformat": ".4~g"}]
     by_rate = results.has("search") and results.parameter("Search/Goal") == "divergence rate"
     return {"id": "variables_chart", "title": "Which values make a design quiet",
-            "caption": "Each line is a design; drag along an axis to choose a range. Colour is the "
-                       + ("largest divergence rate [%]." if by_rate else "onset μ where it exceeds 0.01 %."),
+            "caption": "Each line is a design. Drag along an axis to choose a range. The colour shows the "
+                       + ("largest divergence rate [%]." if by_rate else "onset μ at which a divergence rate exceeds 0.01 %."),
             "data": [{"type": "parcoords", "dimensions": dimensions, "line": {"color": largest if by_rate else onset, "colorscale": "Viridis",
                                                                               "reversescale": by_rate, "showscale": True}}],
             "least width": 110 * len(dimensions) + 100,

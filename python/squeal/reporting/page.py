@@ -35,7 +35,7 @@ def style_of(path):
 
 
 def script(text):
-    """A script element; its text is escaped so that it cannot end the element."""
+    """A script element with escaped text, which cannot end the element."""
     return "<script>" + text.replace("</script", "<\\/script").replace("<!--", "<\\!--") + "</script>\n"
 
 
@@ -43,7 +43,7 @@ VIEWER = ('<div class="viewer"><div class="buttons" id="modes"></div><div id="ca
           '<label>size <input type="range" id="size" min="0" max="0.2" step="0.005" value="0.06"></label>'
           '<label><input type="checkbox" id="disc" checked> disc</label><button data-view="above">above</button>'
           '<button data-view="below">below</button><button data-view="side">side</button></div><p>Colour: amplitude, dark where large. '
-          "Rotate with the mouse or a finger. Hide the disc to see the contact faces of the pins.</p></div>")
+          "Drag to rotate. Hide the disc to see the contact faces of the pins.</p></div>")
 
 
 def section(title, body, name):
@@ -51,8 +51,8 @@ def section(title, body, name):
 
 
 def entry_section(entry):
-    """A section with the parts of its entry: caption, animated shapes, selection list, chart, picture, facts, notes,
-    command."""
+    """A section with the available parts of its entry: caption, selection list, animated shapes, chart, picture, facts,
+    notes, command."""
     parts, name = [], html.escape(entry["id"])
     if "caption" in entry:
         parts.append(f'<p>{html.escape(entry["caption"])} {choices(entry)}</p>')
@@ -107,7 +107,7 @@ def shown(cell):
 
 
 def not_shown(names):
-    return f"<p>Only in the folder: {html.escape(', '.join(name + '.csv' for name in names))}.</p>" if names else ""
+    return f"<p>Tables in the folder only: {html.escape(', '.join(name + '.csv' for name in names))}.</p>" if names else ""
 
 
 def body(content):
@@ -115,7 +115,7 @@ def body(content):
              f'<h1 id="verdict">{html.escape(content["verdict"])}</h1></header>\n']
     parts += map(entry_section, content["sections"])
     parts.append(section("Tables", "".join(table(entry) for entry in content["tables"]) +
-                         "<p>Numbers with six digits; the files have twelve.</p>" + not_shown(content["too long"]), "tables"))
+                         "<p>Numbers are rounded to six digits; the files have twelve.</p>" + not_shown(content["too long"]), "tables"))
     parts.append(section("Checks and accuracy",
                          "<dl>" + "".join(f"<dt>{html.escape(what)}</dt><dd>{html.escape(value)}</dd>" for what, value in content["checks"]) +
                          "</dl>" + "".join(f'<p class="warning">{html.escape(text)}</p>' for text in content["repeat"]["warnings"]), "checks"))
@@ -129,7 +129,7 @@ def body(content):
 def page(content):
     """The complete page. Raises Error if libraries are missing."""
     if missing := missing_packages():
-        raise Error("libraries of the report are missing", "Results.report()", f"apt-get install {' '.join(missing)} (or scripts/setup.sh)")
+        raise Error("JavaScript libraries are missing", "Results.report()", f"apt-get install {' '.join(missing)} (or scripts/setup.sh)")
     charts = [{part: entry[part] for part in ("id", "data", "layout", "choices", "chosen") if part in entry}
               for entry in content["sections"] if is_chart(entry)]
     data = {"charts": charts, "shapes": next((entry["shapes"] for entry in content["sections"] if "shapes" in entry), None)}

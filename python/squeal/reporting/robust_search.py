@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Page of a search with uncertain parameters: the best design with the samples of the search and with other samples."""
+"""Page of a search with uncertain parameters: the best design, with the samples of the search and with other samples."""
 
 from squeal.reporting.charts import STABLE, UNSTABLE, best_so_far, confidence, digits, layout, number, plain, points, short
 
 TABLES = ("best_design",)
-TITLES = {"best_design": "The best design with its own samples and with others", "search": "Designs in the order of evaluation",
-          "full_order": "The worst other sample at full order"}
+TITLES = {"best_design": "The best design with the samples of the search and with other samples", "search": "Designs in the order of evaluation",
+          "full_order": "The worst of the other samples at full order"}
 
 
 def goal_of(results):
@@ -23,9 +23,9 @@ def verdict(results):
     values = ", ".join(f"{name} = {plain(best[name], 4)}" for name in variables)
     name = goal.removesuffix(" [%]")
     level = "unstable" if number(other["probability of squeal [%]"]) > 0. else "stable"
-    return level, (f"Of {len(rows)} designs number {best['design [-]']} is the best ({values}): {name} {digits(number(best[goal]), 3)} %, with other "
-                   f"samples {digits(number(other[goal]), 3)} %; squeal in {digits(number(other['probability of squeal [%]']), 3)} % of these "
-                   f"({confidence(other)}).")
+    return level, (f"Of {len(rows)} designs, number {best['design [-]']} is the best ({values}): {name} {digits(number(best[goal]), 3)} %, or "
+                   f"{digits(number(other[goal]), 3)} % with other samples, of which {digits(number(other['probability of squeal [%]']), 3)} % "
+                   f"squeal ({confidence(other)}).")
 
 
 def sections(results):
@@ -36,7 +36,7 @@ def sections(results):
         traces.append(points(phase, [int(row["design [-]"]) for row in chosen], [short(row[goal]) for row in chosen],
                              marker={"color": colour, "size": 8, "symbol": symbol}))
     return [{"id": "history", "title": "History of the search", "data": traces, "layout": layout("evaluation", goal),
-             "caption": "Each mark is a design; the line is the best so far."}]
+             "caption": "Each mark is a design; the line shows the best value so far."}]
 
 
 def checks(results):

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Page of a study of uncertain parameters: the probability of squeal. Plots show the modes of all samples and the
-influential parameters."""
+"""Page of a study of uncertain parameters: the probability of squeal."""
 
 from squeal.reporting.charts import confidence, digits, number
 

@@ -43,14 +43,14 @@ def verdict(results):
         return "none", f"None of {len(search.table)} designs could be solved."
     row = search.designs[search.best["design [-]"]]
     grows = number(row[LARGEST] or "0") > WEAK
-    text = f"Of {len(search.table)} designs the best is {design_text(row, search.variables)}: "
+    text = f"Of {len(search.table)} designs, the best is {design_text(row, search.variables)}: "
     if grows:
         text += (f"a divergence rate of at most {digits(number(row[LARGEST]), 3)} % ({row['label of largest']}), "
                  f"above 0.01 % from μ = {digits(number(row[ONSET]), 3)}.")
     else:
         text += f"it stays below a divergence rate of {WEAK} % up to μ = {search.end:g}."
     if search.best_sample is not None and search.best_sample is not search.best:
-        text += f" The best of the samples reaches {search.text(search.best_sample)}, this one {search.text(search.best)}."
+        text += f" The best sample reaches {search.text(search.best_sample)}, this design {search.text(search.best)}."
     elif len(search.table) > sum(row["phase"] == "sample" for row in search.table.rows):
         text += " It is one of the samples: the searches from the best two samples found no better design."
     return "unstable" if grows else "stable", text
@@ -83,7 +83,7 @@ def history_section(search):
         traces.append(points("refused or failed", [int(row["design [-]"]) for row in left], [worst] * len(left),
                              [f"<b>design {row['design [-]']}</b><br>{'<br>'.join(textwrap.wrap(reason, 44))}" for row, reason in zip(left, reasons)],
                              marker={"symbol": "x", "color": "#8a939c", "size": 9}))
-    caption = ("Each mark is a design; the line is the best so far: first samples of the ranges, then searches from the best two samples."
+    caption = ("Each mark is a design; the line shows the best value so far. Searches from the best two samples follow the samples of the ranges."
                + (" Crosses are designs without a value." if left else ""))
     return {"id": "history", "title": "History of the search", "caption": caption, "data": traces, "layout": layout("evaluation", GOALS[search.goal])}
 
@@ -107,7 +107,7 @@ def best_section(results, search):
         ends = [float(end) for end in re.findall(r"[-+.\deE]+", ranges.get(name, "").replace(" to ", " "))[:2]]
         if value in ends:
             end = "lower" if value == ends[0] else "upper"
-            notes.append(f"{name} is at the {end} end of its range: a wider range may contain a better design.")
+            notes.append(f"{name} is at the {end} limit of its range; a wider range may contain a better design.")
     row = search.designs[search.best["design [-]"]]
     for full in results.table("full_order").rows if results.has("full_order") else []:
         text = (f"At full order, μ = {number(full['mu [-]']):.4g}: {full['unstable modes [-]']} of {full['modes [-]']} modes grow, "
@@ -119,7 +119,7 @@ def best_section(results, search):
     program = re.match(r"(?:[^\s'\\]|\\.|'[^']*')*", results.record.get("command", ""))[0] or "squeal"
     return {"id": "best", "title": f"The best design, number {search.best['design [-]']}",
             "facts": {"columns": ["parameter", "baseline", "range", "best"], "rows": facts}, "notes": notes,
-            "caption": "Its parameter file is best.prm next to this page. To repeat its sweep:",
+            "caption": "The parameter file of this design is best.prm next to this page. To repeat its sweep:",
             "command": f"{program} {shlex.quote(str(results.folder / 'best.prm'))}"}
 
 

@@ -21,9 +21,9 @@ def verdict(results):
     rows = modes_of(results.table("sensitivities"))[0]
     error = results.record.get("quantities", {}).get("largest estimated error of lambda [-]", 0)
     grows = number(rows[0][RATE]) / 100 - 3 * error > ROUNDING
-    text = f"At μ = {results.number('Operation/Friction coefficient'):g} {rows[0]['label']} at {number(rows[0][FREQUENCY]):.0f} Hz "
+    text = f"At μ = {results.number('Operation/Friction coefficient'):g}, {rows[0]['label']} at {number(rows[0][FREQUENCY]):.0f} Hz "
     text += (f"grows fastest, with a divergence rate of {digits(number(rows[0][RATE]), 3)} %. " if grows else
-             "is the least damped mode, and none grows. ")
+             "is the least damped mode; no mode grows. ")
     first, second = (*ranking(rows), None, None)[:2]
     if first is None or abs(number(first[CHANGE])) < LEAST_CHANGE:
         text += f"A 1 % increase of any single parameter changes its divergence rate by less than {LEAST_CHANGE:g} percentage points."
@@ -68,7 +68,7 @@ def thresholds_of(table):
 
 
 def ranking(rows, change=CHANGE):
-    """Rows of parameters of the whole model that have a change per 1 %, in descending order of the change."""
+    """Rows of parameters of the whole model with a change per 1 %, by descending magnitude of the change."""
     return sorted((row for row in rows if row[change] and not row["body"]), key=lambda row: -abs(number(row[change])))
 
 
@@ -160,18 +160,18 @@ def about_threshold(row):
 
 
 def notes_sections(results):
-    """Sections on pairs near exceptional points, where two modes coalesce, and on thresholds without derivatives."""
+    """Section on pairs near exceptional points, where two modes coalesce, and on thresholds without derivatives."""
     notes = []
     modes = modes_of(results.table("sensitivities"))
     for rows in modes:
         if rows[0]["derivative of"] != "lambda":
-            notes.append(f"{rows[0]['label']} at {number(rows[0][FREQUENCY]):.1f} Hz: its derivatives are those of the {rows[0]['derivative of']}.")
+            notes.append(f"{rows[0]['label']} at {number(rows[0][FREQUENCY]):.1f} Hz: derivatives of the {rows[0]['derivative of']}.")
     if results.has("sensitivities_thresholds"):
         thresholds = thresholds_of(results.table("sensitivities_thresholds"))
         pairs = sum(rows[0]["derivative of"] == "squared difference of the pair" for rows in thresholds)
         if pairs:
             notes.append(f"{pairs} of {len(thresholds)} thresholds are exceptional points: two modes coalesce and λ has no derivative. "
-                         "Their derivatives are those of the squared difference of the pair, (λ₁ − λ₂)², which is smooth there.")
+                         "The squared difference of the pair, (λ₁ − λ₂)², is smooth there and is differentiated instead.")
         for rows in thresholds:
             error = relative_error(rows, "mu per unit [-]", "estimated error per unit [-]")
             if rows[0]["derivative of"] == "none":
@@ -179,6 +179,6 @@ def notes_sections(results):
             elif error > ROUGH:
                 notes.append(f"{threshold_text(rows[0])}: estimated errors reach {100 * error:.2g} % of the largest derivative.")
     if all(rows[0]["derivative of"] == "lambda" for rows in modes):
-        notes.insert(0, "No mode is close to coalescence: all derivatives of modes are those of simple eigenvalues.")
+        notes.insert(0, "No mode is close to coalescence: all eigenvalues are simple and have derivatives.")
     return [{"id": "sensitivity_notes", "title": "Pairs near exceptional points, and limits", "notes": notes,
              "caption": "Derivatives are valid for changes that are small compared with the distance to the next mode."}]

@@ -24,7 +24,7 @@ def verdict(results):
         text = (f"{len(growing)} of the {where} {'grow' if len(growing) > 1 else 'grows'}; {worst['label']} at {number(worst[FREQUENCY]):.0f} Hz "
                 f"grows fastest, with a divergence rate of {digits(number(worst[RATE]), 3)} % (effective damping ratio {digits(number(worst[DAMPING]), 3)} %).")
     if static:
-        text += f" {len(static)} {'eigenvalues grow' if len(static) > 1 else 'eigenvalue grows'} without oscillating: static divergence."
+        text += f" {len(static)} {'eigenvalues are' if len(static) > 1 else 'eigenvalue is'} real and positive (static divergence)."
     if undecided:
         text += f" {len(undecided)} {'modes are' if len(undecided) > 1 else 'mode is'} undecided within the estimated errors."
     return ("unstable" if growing or static else "undecided" if undecided else "stable"), text

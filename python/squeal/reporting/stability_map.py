@@ -78,7 +78,7 @@ def spanned(stability):
 
 
 def heatmap(stability, texts, mask, **look):
-    """Cells for which a mask is true, coloured by their rates; the rate is zero if there is no mode in the band."""
+    """Cells for which a mask is true, coloured by rate; the rate is zero if there is no mode in the band."""
     shown = [[float(f"{rate:.6g}") if is_shown else None for rate, is_shown in zip(rates, are_shown)]
              for rates, are_shown in zip(np.nan_to_num(stability.rate), mask)]
     return {"type": "heatmap", "x": stability.x_edges.tolist(), "y": stability.y_edges.tolist(), "z": shown,

@@ -81,13 +81,12 @@ def branch_section(results, name, title):
                              hovertemplate=f"<b>%{{customdata[0]}}</b> {event}<br>{symbol(parameter)} = %{{x:.6g}} ± %{{customdata[3]}}<br>"
                                            "%{customdata[2]:.2f} Hz<br>%{customdata[1]}<extra></extra>",
                              marker={"symbol": marker, "size": 9, "color": "white", "line": {"color": "#222", "width": 1.3}}))
-    return {"id": name, "title": title, "caption": f"Every mode is a curve; red ones reach more than {WEAK} %. Triangles are thresholds.",
+    return {"id": name, "title": title, "caption": f"Each curve is a mode; red curves exceed {WEAK} %. Triangles are thresholds.",
             "data": traces, "layout": layout(axis_title(parameter), "divergence rate [%]")}
 
 
 def bifurcation_sections(results):
-    """Charts of the frequencies of pairs of modes, relative to the frequency at which they coalesce, for the pairs that
-    grow most."""
+    """Chart of the frequencies of the most strongly growing pairs of modes, relative to the frequency of coalescence."""
     name = "branches_without_dissipation" if results.has("branches_without_dissipation") else "branches"
     (branches, peaks), parameter = branches_of(results, name), results.table(name).parameter
     events = [row for row in events_of(results, name) if row["event"] == "onset" and row["partner [-]"] in branches]
@@ -105,7 +104,7 @@ def bifurcation_sections(results):
                                  showlegend=is_first, line={"color": colour, "width": 1.6},
                                  hovertemplate=f"<b>{rows[0]['label']}</b><br>{symbol(parameter)} = %{{x:.4g}}<br>%{{customdata[0]:.2f}} Hz"
                                                "<br>divergence rate %{customdata[1]:.4g} %<extra></extra>"))
-    caption = ("Frequencies of two modes minus the frequency at which they coalesce; beyond it both have one frequency and one mode grows. "
-               f"The {len(events)} pairs that grow most" + (", without radial dissipation." if "without" in name else "."))
+    caption = ("Frequencies of two modes minus the frequency at which they coalesce. After coalescence, both have the same frequency and one "
+               f"grows. Shown are the {len(events)} pairs that grow most" + (", without radial dissipation." if "without" in name else "."))
     return [{"id": "bifurcations", "title": "Coalescing modes", "caption": caption, "data": traces,
              "height": 500, "layout": layout(axis_title(parameter), "frequency difference [Hz]")}]

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Page of a fit to measured modes. The plot shows differences of frequencies before and after the fit."""
+"""Page of a fit to measured modes."""
 
 from squeal.reporting.charts import digits, number
 

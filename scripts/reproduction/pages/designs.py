@@ -11,7 +11,7 @@ RATE, HEIGHT = "largest divergence rate [%]", "Geometry/Pin height"
 def fifty(runs):
     rows = runs("designs", "studies/designs.prm").rows("designs")
     yield Number("designs", "50", len(rows))
-    yield Number("in which the pins flutter first", "48", sum(row["label at 0.01 %"] == "F1" for row in rows))
+    yield Number("with first onset in the pins", "48", sum(row["label at 0.01 %"] == "F1" for row in rows))
     for name, cell in table("designs", "height of the pins [mm]"):
         height, (least, greatest) = numbers_in(name)[0], numbers_in(cell)
         rates = [row[RATE] for row in rows if abs(1000 * row[HEIGHT] - float(height)) < 1e-6]
@@ -24,7 +24,7 @@ def fifty(runs):
 def one_mesh(runs):
     rows = runs("materials", "studies/materials.prm").rows("designs")
     best, worst = min(rows, key=lambda row: row[RATE]), max(rows, key=lambda row: row[RATE])
-    yield Number("modes of each, found", "66", min(row["modes [-]"] for row in rows))
+    yield Number("modes found in each", "66", min(row["modes [-]"] for row in rows))
     yield Number("  counted", "66", min(row["modes counted [-]"] for row in rows))
     yield Number("estimated error of lambda", "1.0e-6", max(row["estimated error of lambda [-]"] for row in rows), bound=True)
     for design, number, rate in ((best, "10", "0.666"), (worst, "17", "1.543")):

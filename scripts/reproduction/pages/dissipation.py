@@ -36,7 +36,7 @@ def all_readings(runs):
                 yield Number(f"{name}, {column}", quoted, rates[position])
 
 
-@entry("dissipation", "3. What remains is the mesh of the faces: 7, 19 and 37 nodes")
+@entry("dissipation", "3. Effect of the mesh of the faces: 7, 19 and 37 nodes")
 def meshes(runs):
     for nodes, most, least in ((7, "-2.96", "-2.22"), (19, "-1.80", "-1.36"), (37, "-1.60", "-1.21")):
         results = runs(f"sliding_{nodes}", "sliding.prm", NO_SHAPES, f"Geometry/Nodes per pin face={nodes}")
@@ -54,13 +54,13 @@ def small_friction(runs):
         yield Number(f"most damped F1, {reading} [%]", quoted, of_modes(results, "F1")[0])
 
 
-@entry("dissipation", "Seven more F1 modes have divergence rates of 0.01 to 0.04 %; those of the leading pairs fall by up to 0.15 points")
+@entry("dissipation", "Seven more F1 modes have divergence rates of 0.01 to 0.04 %; rates of the leading pairs decrease by up to 0.15 points")
 def destabilised(runs):
     rows = rates_with_all_readings(runs)
     yield Number("F1 modes with divergence rates above 0.001 % without it", "3", sum(rate > 0.001 for rate in rates_of(rows, "F1", "no C_b [%]")))
     for column, least, most in (("equal load consistent [%]", "0.01", "0.02"), ("steady sliding consistent [%]", "0.02", "0.04")):
         further = [rate for rate in rates_of(rows, "F1", column) if rate > 0.001][:-3]
-        yield Number(f"further ones that grow, {column}", "7", len(further))
+        yield Number(f"further growing modes, {column}", "7", len(further))
         yield Number("  least [%]", least, further[0])
         yield Number("  most [%]", most, further[-1])
     losses = [rates_of(rows, label, "no C_b [%]")[-1] - rates_of(rows, label, column)[-1]

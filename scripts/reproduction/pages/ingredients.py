@@ -36,8 +36,8 @@ def statements(runs):
     real, response = rows["complex modes", "real modes alone"], rows["complex modes", "real modes + 1st order"]
     yield Number("error of the divergence rate over that of real modes alone", "0.37", response[DIVERGENCE] / real[DIVERGENCE])
     slope = rows["friction slope", "-0.01 s/m"]
-    yield Number("more modes that grow with a slope", "34", slope["unstable modes in variant [-]"] - slope["unstable modes in reference [-]"])
-    yield Number("modes that half of the band loses", "49", rows["band", "to 2500 Hz"]["modes without counterpart [-]"])
+    yield Number("additional growing modes with a slope", "34", slope["unstable modes in variant [-]"] - slope["unstable modes in reference [-]"])
+    yield Number("modes lost by halving the band", "49", rows["band", "to 2500 Hz"]["modes without counterpart [-]"])
 
 
 @entry("ingredients", "The table of the model with all damping")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""doc/paper.md, except the numbers that have a page of their own"""
+"""doc/paper.md, except numbers reproduced for other pages"""
 
 import paper
 from reproduction.numbers import Number, entry, of_mode, table

@@ -21,8 +21,8 @@ NAMES = {"the same + damping": "real + 1st-ord. two-sided + damping", "POD of μ
 
 
 def compared(runs, head, columns, group=None):
-    """Errors of bases compared with a table of the page; its cells are `without
-    with` if the two differ. None skips a column."""
+    """Errors of bases compared with a table of the page, whose cells contain two numbers, without and with dissipation,
+    if they differ. None skips a column."""
     for number, dissipation in enumerate(STUDIES):
         rows = study(runs, dissipation, "errors")
         for basis, *cells in table("reduction", head):
@@ -61,7 +61,7 @@ def wrong_verdicts(runs):
         yield Number(f"{dissipation}: number of modes", quoted_modes, sum(row["modes [-]"] for row in rows))
 
 
-@entry("reduction", "Counterparts by eq. (17) that differ from one to one")
+@entry("reduction", "Counterparts by eq. (17) that differ from the one-to-one pairing")
 def counterparts(runs):
     for dissipation, all_pairs, clustered in (("without", "147", "123"), ("with", "56", "48")):
         differing = [row for row in study(runs, dissipation, "modes") if row["reduced mode [-]"] != row["reduced mode by eq. 17 [-]"]]

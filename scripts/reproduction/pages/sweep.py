@@ -60,7 +60,7 @@ def step_number(results, step, pattern):
     return float(re.search(pattern, text)[1])
 
 
-@entry("sweep", "Number of basis vectors initially, and when the tolerance is met")
+@entry("sweep", "Numbers of basis vectors initially and at the end")
 def vectors(runs):
     for name, start, end in (("without", "198", "220"), ("consistent", "263", "290")):
         results = sweep(runs, name)

@@ -64,7 +64,7 @@ def half_space(_):
         yield Number(f"mu = {friction_coefficient} [%]", quoted, 100 * PAD.half_space(friction_coefficient))
 
 
-@entry("well_posedness", "The largest growth rate of a ring up to the frequency that its mesh resolves, and that of the layer")
+@entry("well_posedness", "Largest growth rates of a ring, up to the frequency that its mesh resolves, and of the layer")
 def rings(runs):
     for layers, _, *cells in table("well_posedness", "up to [kHz]"):
         for friction_coefficient, quoted in ((0.4, cells[:3]), (1.5, cells[3:])):
@@ -96,7 +96,7 @@ def beyond_band(runs):
 
 
 def all_eigenvalues(results, friction_coefficient):
-    """lambda with Re >= 0 and Im >= 0 of the exported matrices without damping; every growing mode is included once."""
+    """lambda with Re >= 0 and Im >= 0 of the exported matrices without damping, with every growing mode once."""
     problem = exported_matrices.couple(exported_matrices.read_matrices(results.folder), friction_coefficient)
     squares = scipy.linalg.eigvals(scipy.linalg.solve(problem.mass.toarray(), problem.stiffness.toarray()))
     roots = np.sqrt(-squares[squares.imag >= 0])
