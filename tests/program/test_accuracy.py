@@ -108,9 +108,9 @@ class Goal(ProgramTest):
 
     def test_what_it_replaces_is_named(self):
         process = self.call("scene.prm", "--dry-run", "--set", "Accuracy=5 %", "--set", "Geometry/Element size=0.01")
-        self.assertIn("Geometry/Element size (Accuracy = 5 % chooses it)", process.stdout)
+        self.assertIn("Geometry/Element size (set by Accuracy = 5 %)", process.stdout)
         process = self.call(self.results / "parameters.prm", "--dry-run")
-        self.assertNotIn("chooses it", process.stdout)
+        self.assertNotIn("set by Accuracy", process.stdout)
 
     def test_unstable_modes_that_are_not_converged_are_named(self):
         """On coarse meshes with strong friction, errors of divergence rates exceed 0.1 percentage points."""

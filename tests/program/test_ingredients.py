@@ -59,7 +59,7 @@ class Ingredients(ProgramTest):
         self.assertNotIn("Friction slope", text.split("subsection", 1)[1])
         process = self.call(str(study / "cheapest.prm"), "--output", "cheapest")
         self.assertEqual((process.returncode, process.stderr), (0, ""))
-        self.assertNotIn("not used here", process.stdout)
+        self.assertNotIn("unused parameters", process.stdout)
         promise = next(line for line in text.splitlines() if line.startswith("# squeal: "))
         self.assertIn(promise[1:], process.stdout)
         found, promised = eigenvalues(self.folder / "cheapest"), tried_eigenvalues(study, "together")
