@@ -42,7 +42,7 @@ namespace Squeal
     std::vector<DesignVariable> result = design_variables(designs);
     for (const DesignVariable &variable : result)
       if (!variable.is_range)
-        throw ParameterError("a search needs ranges, but " + in_quotes(variable.name) + " has a list of values",
+        throw ParameterError("a search requires ranges, but " + in_quotes(variable.name) + " has a list of values",
                              "parameter Designs/Variables", "write Section/Name = a to b");
     return result;
   }

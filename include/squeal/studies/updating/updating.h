@@ -24,7 +24,7 @@ namespace Squeal
     }
   };
 
-  /// Fitted parameters, from Designs/Variables. Throws ParameterError if one has no range or starts outside its range.
+  /// Fitted parameters, from Designs/Variables. Throws ParameterError if a parameter has no range or starts outside its range.
   ///
   /// @param current value of a parameter in the model, by its name
   std::vector<FittedParameter> fitted_parameters(const DesignParameters                           &designs,
@@ -60,7 +60,7 @@ namespace Squeal
   /// Modes of all measured states and their derivatives, at given values of the fitted parameters. Collective.
   using ModesAtValues = std::function<std::vector<ComputedMode>(const std::vector<double> &values)>;
 
-  /// Modes of a meshed model, remeshed and reassembled when its matrices change. All arguments must outlive the function. Throws
+  /// Modes of a meshed model, which is remeshed and reassembled when its matrices change. All arguments must outlive the function. Throws
   /// ParameterError if a parameter cannot be fitted.
   ModesAtValues modes_of_scene(Scene &scene, const std::vector<FittedParameter> &parameters, const MeasuredModes &measured, Run &run);
 
