@@ -229,8 +229,8 @@ namespace Squeal
       run.progress.note(text("  reference: ", reference.name, ", extrapolated from ", reference.members.size(), " meshes up to ",
                              reference.members.back()->n_dofs, " dofs; error of its finest mesh about ",
                              decimal_text(100. * reference.error), " % (rms)"));
-      run.progress.note(text("  ", n, " modes; the frequencies of ", n_orders, " converge with an observed order, ", n_in_cluster,
-                             " are in clusters that mix from mesh to mesh"));
+      run.progress.note(text("  ", n, " modes: ", n_orders, " with an observed order of convergence of the frequency, ", n_in_cluster,
+                             " in clusters that mix differently on each mesh"));
     }
     Reason no_grown_basis(const Parameters &p)
     {
@@ -240,12 +240,12 @@ namespace Squeal
                                   const BasisRecipe *recipe = find_recipe(name);
                                   return recipe != nullptr && recipe->rests_on(BasisSource::residuals);
                                 }),
-                    "no residual-grown basis is measured");
+                    "no residual-grown basis is compared");
     }
   } // namespace
 
   /// `Study = accuracy`: solves the model on coarser and finer meshes, with every element, at full order and with reduced bases. Reports
-  /// the errors of every mode relative to the extrapolated modes of the best family, with their contributions, and the costs.
+  /// costs and, relative to the extrapolated modes of the best family, the errors of every mode and their contributions.
   static void run_accuracy_study(Scene &, Run &run)
   {
     const double       maximum_frequency = run.parameters.discretization.maximum_frequency;
@@ -270,7 +270,7 @@ namespace Squeal
 
   extern const Study accuracy_study = [] {
     Study study{"accuracy", run_accuracy_study, {"Accuracy study/"}};
-    study.rules = {{"Output/", [](const Parameters &) { return "the study writes no mode shapes"; }},
+    study.rules = {{"Output/", [](const Parameters &) { return "not written by Study = accuracy"; }},
                    {"Discretization/Element", [](const Parameters &) { return "the study compares elements"; }},
                    {"Geometry/Outlines", [](const Parameters &) { return "the study compares outlines"; }},
                    {"Accuracy study/Grown tolerance", no_grown_basis},

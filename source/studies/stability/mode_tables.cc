@@ -24,7 +24,7 @@ namespace Squeal
                    boost::irange<int>(0, modes.labels.size()));
     }
 
-    /// A column of modes with friction, by mode index, of one of the modal_quantities().
+    /// A column with one of the modal_quantities() of modes with friction, by mode index.
     Column<int> column_of(const FrictionModes &friction,
                           const std::string   &name,
                           const std::string   &unit,
@@ -55,7 +55,7 @@ namespace Squeal
       columns.insert(columns.end(), energies.begin(), energies.end());
       if (!modes.estimated_errors.empty())
         columns.push_back({"estimated error of lambda", "-", [&](const int j) { return modes.estimated_errors[j]; }, 1, true});
-      if (more.empty()) // With additional columns, the verdict among them includes the discretisation error
+      if (more.empty()) // additional columns contain a verdict that includes the discretisation error
         columns.push_back({"verdict", "", [&](const int j) { return to_string(friction.verdicts[j]); }});
       columns.insert(columns.end(), more.begin(), more.end());
       return Table(columns, boost::irange<int>(0, friction.labels.size()));
@@ -121,7 +121,7 @@ namespace Squeal
         run.screen << '\n';
         unstable_table(friction, n_shown_modes).print(run.screen);
         if (friction.n_unstable() > n_shown_modes)
-          run.progress.note(text("    and ", friction.n_unstable() - n_shown_modes, " more, see complex_modes.csv"));
+          run.progress.note(text("    and ", friction.n_unstable() - n_shown_modes, " more (complex_modes.csv)"));
       }
     run.screen << '\n';
     if (const std::string note = note_on_count(friction, frictionless.real.eigenvalues.size(), parameters.discretization.maximum_rate);

@@ -216,7 +216,7 @@ namespace Squeal
             stream << ',' << node.area << '\n';
           }
       });
-      run.progress.finish("M, C, K, C_b, P_n, P_t, P_b, K_n, T_c in Matrix Market form");
+      run.progress.finish("M, C, K, C_b, P_n, P_t, P_b, K_n, T_c in Matrix Market format");
     }
 
   } // namespace
@@ -230,7 +230,7 @@ namespace Squeal
     const OperationParameters &operation  = parameters.operation;
     const double               omega_max  = circular_frequency(parameters.discretization.maximum_frequency);
 
-    // Process 0 keeps the whole mesh to write it; other processes need only its names, because the model has their parts
+    // Keep the whole mesh only on process 0, which writes it; the model contains the parts of the other processes
     if (Mesh names; !run.is_root)
       {
         names.volume_names = scene.mesh.volume_names;

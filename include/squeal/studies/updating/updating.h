@@ -38,8 +38,8 @@ namespace Squeal
     ParameterValues   contact; ///< rates of the friction coefficient and contact damping
   };
 
-  /// dλ/dp = i dω/dp of each mode without friction and damping with respect to each parameter, ω' = φᵀ (K' − ω² M') φ / 2ω. Zero for ω = 0;
-  /// in a cluster of equal ω, every mode has the mean. Collective.
+  /// dλ/dp = i dω/dp of each mode without friction and damping with respect to each parameter, ω' = φᵀ (K' − ω² M') φ / 2ω; zero for ω = 0.
+  /// In a cluster of equal ω, every mode has the mean derivative. Collective.
   ///
   /// @param squares ω² [rad²/s²]
   /// @param shapes  φ, mass-normalised
@@ -47,7 +47,8 @@ namespace Squeal
                                                                        const MultiVector            &shapes,
                                                                        const std::vector<BodyRates> &rates);
 
-  /// dλ/dp of complex modes from D and the N of each parameter, see eigenvalue_derivative(); in a cluster, every mode has the mean.
+  /// dλ/dp of complex modes from D and the N of each parameter, see eigenvalue_derivative(). In a cluster, every mode has the mean
+  /// derivative.
   std::vector<std::vector<std::complex<double>>> complex_mode_derivatives(const std::vector<std::complex<double>> &lambda,
                                                                           const std::vector<ComplexDenseMatrix>   &N,
                                                                           const ComplexDenseMatrix                &D);
