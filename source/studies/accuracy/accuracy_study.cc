@@ -240,7 +240,7 @@ namespace Squeal
                                   const BasisRecipe *recipe = find_recipe(name);
                                   return recipe != nullptr && recipe->rests_on(BasisSource::residuals);
                                 }),
-                    "no residual-grown basis is compared");
+                    "only for residual-grown bases");
     }
   } // namespace
 
