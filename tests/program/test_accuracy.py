@@ -133,7 +133,7 @@ class Refusals(ProgramTest):
                 (["cannot be refined"], "Accuracy=1 %", "Geometry/File=bodies.msh"),
                 (["`Element size`", "NAME = VALUE", "Discretization/Coarser mesh"], "Discretization/Coarser mesh=Pin layers = 1, Element size"),
                 (["`Geometry/disk_size`", "Discretization/Coarser mesh"], "Discretization/Coarser mesh=disk_size = 0.1"),
-                (["required for extrapolation", "Largest number of dofs"], *STUDY, "Accuracy study/Largest number of dofs=10")):
+                (["extrapolation requires two solved meshes", "Largest number of dofs"], *STUDY, "Accuracy study/Largest number of dofs=10")):
             with self.subTest(mentions):
                 self.assert_refused(mentions, *overrides)
 

@@ -398,7 +398,7 @@ class Refusals(SweepTest):
                 (["ascend", "Sweep/First friction coefficient"], "Sweep/First friction coefficient=0.45"),
                 (["0.5 is outside", "Sweep/Mode shapes at"], "Sweep/Mode shapes at=0.2, 0.5"),
                 (["0.45 is outside", "Sweep/Count modes at"], "Sweep/Number of friction coefficients=1", "Sweep/Count modes at=0.45"),
-                (["without contact damping", "speed", "Sweep/Map parameter"], "Sweep/Map parameter=speed"),
+                (["requires contact damping", "speed", "Sweep/Map parameter"], "Sweep/Map parameter=speed"),
                 (["begins at zero", "Sweep/First map value"], *load, "Sweep/First map value=0"),
                 (["ascend", "Sweep/First map value"], *load, "Sweep/First map value=2000", "Sweep/Last map value=1000"),
                 (["ascend", "Map friction coefficients"], *load, "Sweep/First friction coefficient=0.5",

@@ -151,7 +151,8 @@ namespace Squeal
     if (families.empty())
       throw SolverError("extrapolation requires two solved meshes with the same element and outline, but there are none",
                         "Study = accuracy",
-                        "give more or smaller Accuracy study/Mesh factors, or remove the causes for which meshes were skipped");
+                        "give more or smaller Accuracy study/Mesh factors, raise Accuracy study/Largest number of dofs, or remove "
+                        "other causes of skipped meshes");
     return *std::min_element(families.begin(), families.end(),
                              [](const ConvergedFamily &a, const ConvergedFamily &b) { return a.error < b.error; });
   }

@@ -66,7 +66,7 @@ namespace Squeal
     if (const std::string &varied = frictionless.linearisation.coupled.varied; !varied.empty())
       result.at = text(" at ", varied, " = ", exact_text(mu));
     result.cost = run.progress.finish(text(found.lambda.size(), " found, ", result.n_unstable(), " unstable", result.at,
-                                           found.n_rigid_body > 0 ? text(", ", found.n_rigid_body, " rigid-body modes") : "",
+                                           found.n_rigid_body > 0 ? text(", rigid-body modes: ", found.n_rigid_body) : "",
                                            found.real_values.empty() ? "" : text(", ", found.real_values.size(), " real eigenvalues"), "; ",
                                            found.summary));
     return result;
