@@ -64,7 +64,7 @@ namespace Squeal
       return columns;
     }
 
-    /// Solved designs from the quietest to the loudest: by descending weak onset, then by ascending largest divergence rate.
+    /// Solved designs from the quietest to the loudest: by descending weak_onset, then by ascending largest divergence rate.
     std::vector<DesignResult> by_quietness(const std::vector<DesignResult> &designs)
     {
       std::vector<DesignResult> result;

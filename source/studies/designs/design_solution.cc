@@ -254,7 +254,7 @@ namespace Squeal
         if (model.known.size() < regime.points.size())
           throw SolverError(text("estimated errors exceed Sweep/Tolerance at ", regime.points.size() - model.known.size(), " of ",
                                  regime.points.size(), " friction coefficients"),
-                            "sweep", "raise Sweep/Tolerance, or Sweep/Maximum basis if it limits the basis");
+                            "sweep of the design", "raise Sweep/Tolerance, or Sweep/Maximum basis if it limits the basis");
         const std::size_t before = charts[0].size();
         follow_branches(model, charts);
         for (std::size_t s = before; s < charts[0].size(); ++s)

@@ -35,7 +35,7 @@ namespace Squeal
     for (std::size_t i = 0; i < systems.plan.regimes.size(); ++i)
       {
         if (!systems.middles[i].linearisation.coupled.stiffness)
-          throw ParameterError("the system has no definite part: its samples are solved at full order, without a reduced model",
+          throw ParameterError("samples of a system without a definite part are solved at full order, without a reduced model",
                                where_requested, "set it to full or none, or set Study = sweep");
         const std::vector<OperatingPoint> &points = systems.plan.regimes[i].points;
         for (std::size_t k = 1; systems.plan.scene != nullptr && k < systems.n_samples[i]; ++k)

@@ -5,7 +5,7 @@
 
 #include <boost/math/distributions/binomial.hpp>
 
-// ComposedDistribution is called JointDistribution since OpenTURNS 1.23
+// ComposedDistribution has been called JointDistribution since OpenTURNS 1.23
 #if __has_include(<openturns/JointDistribution.hxx>)
 #  include <openturns/JointDistribution.hxx>
 #else

@@ -34,9 +34,9 @@ namespace Squeal
     /// Summary of the modes in the band of a sample.
     struct SampleRate
     {
-      double rate      = std::numeric_limits<double>::infinity(); ///< largest divergence rate [-]; infinite if the tolerance is missed
-      bool   grows     = false;                                   ///< at least one mode is unstable
-      bool   undecided = true;                                    ///< tolerance missed, or undecided but no unstable modes
+      double rate = std::numeric_limits<double>::infinity(); ///< largest divergence rate [-]; infinite without results within the tolerance
+      bool   grows     = false;                              ///< at least one mode is unstable
+      bool   undecided = true;                               ///< no results within the tolerance, or undecided but no unstable modes
     };
 
     SampleRate sample_rate(const SweepModel &model, const ChartPoint &point)
@@ -65,7 +65,7 @@ namespace Squeal
       double       quantile;    ///< quantile of the largest divergence rates of the samples [-]
       double       worst_error; ///< largest estimated error of λ [-]
       int          n_vectors;   ///< size of the basis
-      int          worst;       ///< sample with the largest rate; −1 if none meets the tolerance
+      int          worst;       ///< sample with the largest rate; −1 if no sample meets the tolerance
 
       /// Probability of squeal with undecided samples counted as squeal, so that the search does not favour undecided designs [%].
       double probability_of_doubt() const

@@ -15,7 +15,7 @@ namespace Squeal
 
   namespace
   {
-    /// Maximum number of searches, each from a different start.
+    /// Maximum number of searches, each from a different starting point.
     constexpr std::size_t most_searches = 2;
 
     nlopt::algorithm algorithm(const SearchMethod method)

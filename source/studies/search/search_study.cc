@@ -113,8 +113,8 @@ namespace Squeal
       std::string                end;
     };
 
-    /// Runs a method from a start until it needs the objective at a new point. Because methods are deterministic, the search can be repeated
-    /// after the point has been solved, and points of several searches are solved concurrently.
+    /// Runs a method from a starting point until it needs the objective at a new point. Because methods are deterministic, the search can be
+    /// repeated after the point has been solved, and points of several searches are solved concurrently.
     NextStep next_step(const SearchPoint &start, const Evaluations &evaluations)
     {
       NextStep result;
@@ -127,7 +127,7 @@ namespace Squeal
       return result;
     }
 
-    /// Runs searches from several starts concurrently; returns the reasons for termination.
+    /// Runs searches from several starting points concurrently; returns the reasons for termination.
     std::vector<std::string> search(const std::vector<SearchPoint> &starts, Evaluations &evaluations)
     {
       std::vector<std::string> ends(starts.size());

@@ -7,7 +7,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Relative step of operation parameters [-]; contact damping is nearly a product of their powers.
+    /// Relative step of central differences with respect to operation parameters [-].
     constexpr double operation_step = 1e-4;
 
     /// Minimum reference value for steps of friction coefficient [-] and slope [s/m].

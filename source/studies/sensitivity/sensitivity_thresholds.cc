@@ -9,8 +9,8 @@ namespace Squeal
   {
     using Complex = std::complex<double>;
 
-    /// First step of μ around a coalescence, relative to the distance from the next event of either branch; δ² is nearly linear within
-    /// such steps [-].
+    /// First step of μ around a coalescence relative to the distance from the next event of either branch, small enough for δ² to be nearly
+    /// linear [-].
     constexpr double first_distance = 0.03;
 
     /// Maximum number of attempts to follow the modes, each with a tenth of the previous step.

@@ -40,13 +40,12 @@ namespace Squeal
       if (!parameters.operation.rotating_disc || !parameters.has_friction())
         return;
       int       n_null = 0;
-      const int n      = count_negative_eigenvalues(*coupled.stiffness, "stiffness of the turning disc", &n_null);
+      const int n      = count_negative_eigenvalues(*coupled.stiffness, "stiffness of the rotating disc", &n_null);
       if (n + n_null > 0)
         throw ParameterError(
-          text("at ", exact_text(parameters.operation.rotation_speed), " rad/s the disc turns beyond a critical speed: ",
-               "the stiffness K - Omega^2 rho N has ", n + n_null, " eigenvalue", n + n_null == 1 ? "" : "s",
-               " that are not positive. The critical speed is an estimate from the rotation terms alone: centrifugal prestress, "
-               "which is of the same order Omega^2 and stiffens the disc, is not in the model"),
+          text("the rotation speed of ", exact_text(parameters.operation.rotation_speed), " rad/s exceeds a critical speed: ",
+               "the stiffness K - Omega^2 rho N has ", n + n_null, " non-positive eigenvalue", n + n_null == 1 ? "" : "s",
+               ". The model does not contain centrifugal prestress, which is of the same order Omega^2 and stiffens the disc"),
           "parameter Operation/Rotation speed", "lower it, or set Operation/Gyroscopic forces = false");
     }
 

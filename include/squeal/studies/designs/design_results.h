@@ -122,7 +122,7 @@ namespace Squeal
   /// Modes of all designs.
   Table design_mode_table(const std::vector<DesignResult> &designs);
 
-  /// Solved designs without a weak onset, then designs by descending weak onset; as many as fit on the screen.
+  /// Solved designs without weak_onset, then other designs by descending weak_onset; as many as fit on the screen.
   Table quietest_designs(const std::vector<std::string> &names, const std::vector<DesignResult> &designs);
 
   /// Lines with the quietest design, the loudest design and the numbers of solved, rejected, failed and incomplete designs.

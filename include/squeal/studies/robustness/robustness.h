@@ -165,7 +165,7 @@ namespace Squeal
   /// @param n_samples number of leading points of the contact set that do not belong to a line
   void follow_samples(SweepModel &model, std::size_t n_samples, std::vector<FollowedSample> &followed);
 
-  /// Writes the tables of onsets and reports them.
+  /// Writes the tables of onsets and prints their distributions.
   void write_onsets(const std::vector<FollowedSample> &followed, const std::string &parameter, Run &run);
 
   /// Columns with the number of a sample and its uncertain numbers; rows are indices of samples. @p plan must outlive them.
@@ -175,7 +175,7 @@ namespace Squeal
   Table sample_table(const SamplePlan &plan, const std::vector<std::optional<Sample>> &samples);
   Table cloud_table(const SamplePlan &plan, const std::vector<std::optional<Sample>> &samples);
 
-  /// Writes and reports the results of the samples.
+  /// Writes the tables of the samples and prints a summary.
   void write_samples(const SamplePlan &plan, const std::vector<std::optional<Sample>> &samples, Run &run);
 
   /// Mode with the largest divergence rate among the unstable modes of a sample; −1: none.
