@@ -125,7 +125,7 @@ namespace Squeal
         rows);
     }
 
-    /// "0.12 % in frequency (A0-4 +) and 0.003 percentage points in divergence rate (F1)"
+    /// "0.12 % in frequency (A0-4 +), 0.003 percentage points in divergence rate (F1)"
     std::string largest_changes(const Effect &effect)
     {
       const auto of = [](const std::string &label) { return label.empty() ? "" : " (" + label + ")"; };

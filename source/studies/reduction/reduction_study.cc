@@ -111,8 +111,8 @@ namespace Squeal
       return candidate;
     }
 
-    /// Measures all bases: bases of component modes for every truncation, of real coupled modes for every frequency, of snapshots, and
-    /// bases grown from the real modes of the band.
+    /// Compares all bases with the reference: bases of component modes for every truncation, of real coupled modes for every frequency, of
+    /// snapshots, and bases grown from the real modes of the band.
     std::vector<MeasuredBasis> all_measured(ReductionSets               &sets,
                                             const ReferenceSolution     &reference,
                                             std::vector<TruncatedModes> &truncations)
@@ -155,7 +155,7 @@ namespace Squeal
       return result;
     }
 
-    /// Writes the tables of measured bases for a system with @p n uncoupled dofs.
+    /// Writes the tables of all bases for a system with @p n uncoupled dofs.
     void write_tables(const std::vector<MeasuredBasis> &candidates, const ReferenceSolution &reference, const int n, Run &run)
     {
       run.write_table("reduction_bases", reduction_basis_table(candidates, n, reference.seconds));
@@ -167,7 +167,7 @@ namespace Squeal
       run.finish();
     }
 
-    /// Measures all bases for a system with @p n uncoupled dofs, and writes the tables.
+    /// Compares all bases for a system with @p n uncoupled dofs, and writes the tables.
     void measure_bases(const ReductionPlan     &plan,
                        const FrictionlessModes &frictionless,
                        const CoupledSystem     &system,

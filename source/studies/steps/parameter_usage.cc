@@ -74,7 +74,7 @@ namespace Squeal
          [](const Parameters &p) -> Reason {
            const bool by_reduced_models =
              (p.study->has("Designs/") && !p.study->has("Search/")) || (p.study->has("Sensitivity/") && !p.system);
-           return by_reduced_models ? "the study solves reduced models" : no_damping(p);
+           return by_reduced_models ? "the study uses reduced models" : no_damping(p);
          }},
         {"Complex modes/Solver", [](const Parameters &p) { return unless(p.has_friction(), "the problem is frictionless"); }},
         {"Complex modes/Shift inverse", no_krylov},

@@ -32,7 +32,7 @@ namespace Squeal
       double                   height = 0., contact_area = 0., volume = 0.; ///< extent along z [m]; [m²]; [m³]
       double                   mass           = 0.;                         ///< mass of each body [kg]
       double                   bar_speed      = 0.;                         ///< √(E/ρ), speed of longitudinal waves in a bar [m/s]
-      bool                     is_orthotropic = false;                      ///< orthotropic: the bar lies along material axis 1
+      bool                     is_orthotropic = false;                      ///< if true, the bar lies along material axis 1
 
       bool is_like(const Body &other) const
       {

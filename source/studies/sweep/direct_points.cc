@@ -42,7 +42,7 @@ namespace Squeal
       return result;
     }
 
-    /// Differences between the modes of a reduced model and those at full order.
+    /// Differences between reduced and full-order modes.
     struct Differences
     {
       double largest_error = 0.; ///< |λ̂ − λ| / |λ|

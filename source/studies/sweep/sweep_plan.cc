@@ -117,7 +117,7 @@ namespace Squeal
     const SweepParameters &sweep  = run.parameters.sweep;
     NamedRange             result = sweep.varied_parameter();
     if (sweep.parameter.empty() && file.find(result.name) == nullptr)
-      throw ParameterError("it is empty, but the system has no parameter mu to be varied by default", "parameter Sweep/Parameter",
+      throw ParameterError("no parameter is given for the sweep, and the system has no parameter mu", "parameter Sweep/Parameter",
                            "give the varied parameter, its first and last value and the number of values: omega, 6.28, 25.1, 31");
     std::map<std::string, double> given = run.parameters.system.values;
     for (const double value : {result.values.first, result.values.last})

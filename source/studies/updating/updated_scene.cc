@@ -94,7 +94,7 @@ namespace Squeal
       return result;
     }
 
-    /// A meshed model at changing values of the fitted parameters.
+    /// A meshed model with variable values of the fitted parameters.
     class ChangingScene
     {
     public:

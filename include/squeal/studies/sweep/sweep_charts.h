@@ -164,7 +164,7 @@ namespace Squeal
   /// Evaluates all points of the contact set within Sweep/Tolerance, as a step of the run.
   void evaluate_points(SweepModel &model);
 
-  /// Evaluates all known points again with the current basis, which is not extended for thresholds any more. Collective.
+  /// Evaluates all known points again with the current basis, which is no longer extended for thresholds. Collective.
   void evaluate_again(SweepModel &model);
 
   /**
