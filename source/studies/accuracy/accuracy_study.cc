@@ -39,7 +39,6 @@ namespace Squeal
       return a;
     }
 
-    /// Columns of the mesh and element.
     template <typename Row>
     Columns<Row> mesh_columns(const std::function<const MeshAndElement &(const Row &)> &of)
     {
@@ -50,7 +49,6 @@ namespace Squeal
         {"mesh factor", "-", [of](const Row &row) { return of(row).factor; }, 2}};
     }
 
-    /// Columns of the mesh, element and method.
     template <typename Row>
     Columns<Row> identity(const std::function<const ComparedMethod &(const Row &)> &of)
     {
@@ -81,7 +79,7 @@ namespace Squeal
       return row.mode->number < 0 ? "none" : row.mode->in_cluster ? "in a cluster" : "by shape";
     }
 
-    /// One row for each mesh, element and method: size, cost and largest errors.
+    /// One row for each mesh, element and method.
     Table accuracy_table(const std::vector<ComparedMethod> &methods)
     {
       using Row                 = ComparedMethod;
@@ -202,7 +200,6 @@ namespace Squeal
                    rows);
     }
 
-    /// Meshes and elements that were not solved: element, outlines, mesh factor, reason.
     Table left_out_table(const std::vector<LeftOut> &meshes)
     {
       return Table(mesh_columns<LeftOut>([](const LeftOut &row) -> const MeshAndElement & { return row.mesh; }) +

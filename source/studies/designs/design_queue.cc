@@ -50,7 +50,7 @@ namespace Squeal
       replace_file(folder / key_file, title + key);
     }
 
-    /// Designs that one process solves in turn.
+    /// A process that solves designs in turn.
     struct Worker
     {
       std::vector<int>               designs; ///< all designs of this worker

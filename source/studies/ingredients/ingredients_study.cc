@@ -51,8 +51,7 @@ namespace Squeal
               }};
     }
 
-    /// One row for each change: the change, its largest effects, the verdict, and its cost relative to the reference; the screen shows
-    /// fewer columns.
+    /// One row for each change; the screen shows fewer columns.
     Table ingredient_table(const std::vector<IngredientResult> &results, const ReferenceModel &reference, const bool is_short)
     {
       using Row            = IngredientResult;

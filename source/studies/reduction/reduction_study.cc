@@ -155,7 +155,7 @@ namespace Squeal
       return result;
     }
 
-    /// Writes the tables of all bases for a system with @p n uncoupled dofs.
+    /// Writes the tables; @p n: number of uncoupled dofs.
     void write_tables(const std::vector<MeasuredBasis> &candidates, const ReferenceSolution &reference, const int n, Run &run)
     {
       run.write_table("reduction_bases", reduction_basis_table(candidates, n, reference.seconds));
@@ -167,7 +167,7 @@ namespace Squeal
       run.finish();
     }
 
-    /// Compares all bases for a system with @p n uncoupled dofs, and writes the tables.
+    /// Compares all bases and writes the tables; @p n: number of uncoupled dofs.
     void measure_bases(const ReductionPlan     &plan,
                        const FrictionlessModes &frictionless,
                        const CoupledSystem     &system,

@@ -99,7 +99,6 @@ namespace Squeal
                    rows);
     }
 
-    /// First onsets of each sample.
     Table sample_onset_table(const std::vector<FollowedSample> &followed, const std::string &parameter)
     {
       using Row        = int;
@@ -126,7 +125,6 @@ namespace Squeal
       return Table(columns, all);
     }
 
-    /// Onsets of all modes of each sample.
     Table mode_onset_table(const std::vector<FollowedSample> &followed, const std::string &parameter)
     {
       using Row = std::pair<int, const SquealOnset *>;

@@ -132,7 +132,6 @@ namespace Squeal
         return std::min_element(designs.begin(), designs.end(), smaller) - designs.begin();
       }
 
-      /// Evaluates a design with other samples.
       RobustDesign solve_again(const DesignValues &values, const SamplePlan &other)
       {
         return solve(values, other, "other samples", "Other samples");

@@ -78,7 +78,6 @@ namespace Squeal
       std::vector<DesignResult>         results; ///< results in the order of the design numbers
 
     private:
-      /// Values of the variables at a point.
       std::vector<std::string> values_at(const SearchPoint &point) const
       {
         std::vector<std::string> result;

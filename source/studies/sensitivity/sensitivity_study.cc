@@ -50,7 +50,6 @@ namespace Squeal
       return rows;
     }
 
-    /// One row for each mode and parameter.
     Table mode_sensitivity_table(const std::vector<ModeSensitivity> &modes, const std::vector<SensitivityParameter> &parameters)
     {
       using Row = SensitivityRow;

@@ -14,7 +14,6 @@ namespace Squeal
     /// Maximum number of unstable modes on the screen.
     constexpr std::size_t n_shown_modes = 20;
 
-    /// Real coupled modes: label, share, frequency, residual.
     Table real_table(const FrictionlessModes &modes)
     {
       return Table(Columns<int>{{"label", "", [&](const int j) { return modes.labels[j]; }},
@@ -37,8 +36,7 @@ namespace Squeal
               digits};
     }
 
-    /// Complex modes: label, share, frequency, growth and divergence rate, effective damping ratio, residuals, verdict, location of the
-    /// energy, error estimates if available, and columns @p more by mode index.
+    /// Table of the complex modes, with columns @p energies and @p more by mode index.
     Table complex_table(const FrictionModes &friction, const Columns<int> &energies, const Columns<int> &more)
     {
       const ComplexModes &modes   = friction.modes;
@@ -61,7 +59,7 @@ namespace Squeal
       return Table(columns, boost::irange<int>(0, friction.labels.size()));
     }
 
-    /// Growing modes, largest divergence rate first: label, frequency, growth and divergence rate, share. At most @p n_largest rows.
+    /// Growing modes, largest divergence rate first; at most @p n_largest rows.
     Table unstable_table(const FrictionModes &friction, const std::size_t n_largest)
     {
       std::vector<int> growing;
@@ -79,7 +77,7 @@ namespace Squeal
                    growing);
     }
 
-    /// Real eigenvalues, fastest growth first: growth rate, kind.
+    /// Real eigenvalues, fastest growth first.
     Table real_eigenvalue_table(std::vector<double> values)
     {
       std::reverse(values.begin(), values.end());
@@ -104,7 +102,6 @@ namespace Squeal
       run.measure("largest growth rate of a real eigenvalue [1/s]", friction.modes.real_values.back());
   }
 
-  /// Prints the verdict and the unstable modes.
   void report_modes(const FrictionlessModes                &frictionless,
                     const FrictionModes                    &friction,
                     const std::vector<DiscretisationError> &mesh_errors,

@@ -18,7 +18,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Component modes below ω² = @p largest_eigenvalue: component, contact, label, frequency, residual.
+    /// Component modes below ω² = @p largest_eigenvalue.
     Table component_table(const FrictionlessModes &modes, const double largest_eigenvalue)
     {
       using Row = ListedComponentMode;
@@ -148,8 +148,6 @@ namespace Squeal
          {"damping", "%", [](const PowerRow &row) { return 100. * row.damping; }}};
       run.store_table("energy", Table(columns, rows));
     }
-
-    // ------------------------------------------------------------------ tables
 
     // ---------------------------------------------------------------- matrices
 

@@ -7,7 +7,6 @@ namespace Squeal
 {
   namespace
   {
-    /// Contact state, one row for each pin.
     Table pin_table(const std::vector<PinContact> &pins)
     {
       return Table(Columns<PinContact>{{"pin", "", &PinContact::pin},

@@ -225,7 +225,6 @@ namespace Squeal
                    onsets);
     }
 
-    /// Stability map over the friction coefficient and the load or speed.
     Table map_table(std::vector<MapCell> cells, const SweepPlan &plan)
     {
       using Row        = MapCell;
@@ -251,7 +250,6 @@ namespace Squeal
                    cells);
     }
 
-    /// Modes at the friction coefficients of the complex plane.
     Table plane_table(const std::vector<PlaneMode> &modes, const SweepAxis &axis)
     {
       using Row           = PlaneMode;
@@ -269,7 +267,6 @@ namespace Squeal
                    modes);
     }
 
-    /// Numbers of modes from the sweep and from the argument principle.
     Table argument_table(const std::vector<CountAt> &counts, const SweepAxis &axis)
     {
       using Row = CountAt;

@@ -365,7 +365,6 @@ namespace Squeal
       return result;
     }
 
-    /// Fitted parameters of a meshed model.
     std::vector<FittedParameter> parameters_of_scene(const Parameters &parameters)
     {
       return fitted_parameters(parameters.designs,

@@ -116,10 +116,8 @@ namespace Squeal
   /// One row for each design; @p names: names of the variables.
   Table design_table(const std::vector<std::string> &names, const std::vector<DesignResult> &designs);
 
-  /// Thresholds of all designs.
   Table design_threshold_table(const std::vector<DesignResult> &designs);
 
-  /// Modes of all designs.
   Table design_mode_table(const std::vector<DesignResult> &designs);
 
   /// Solved designs without weak_onset, then other designs by descending weak_onset; as many as fit on the screen.

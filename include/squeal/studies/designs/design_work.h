@@ -68,7 +68,6 @@ namespace Squeal
     /// Number of @p designs that are finished.
     std::size_t n_known(const std::vector<int> &designs) const;
 
-    /// Stores the result of a design.
     void keep(const DesignResult &result) const;
 
     /// File with the reference modes, in the folder of the study.
@@ -112,7 +111,6 @@ namespace Squeal
   /// Initial result of a design, before it is solved.
   DesignResult unfinished(const Run &run, const DesignPlan &plan, int design);
 
-  /// Message of an error in one line.
   std::string in_one_line(const Error &error);
 
   /// Reference modes for the labels of designs, read from the file if it exists, otherwise computed from the given model.

@@ -38,7 +38,6 @@ namespace Squeal
   /// Title of a complex mode in its file: "A0-4 +, 2353 Hz, divergence rate 0.6798 %, unstable".
   std::string mode_title(const ModeLabel &label, const std::complex<double> &lambda);
 
-  /// Options of animations from the parameters.
   AnimationOptions animation_options(const OutputParameters &output);
 
   /// Writes the requested fields, as steps of the run: complex modes, with the energy input and animations of unstable modes; real coupled

@@ -142,7 +142,6 @@ namespace Squeal
     std::map<Place, ChartPoint> known;
 
   private:
-    /// Creates the reduced model.
     void start();
 
     /// Shares of component modes in the modes of a point, for labels.
@@ -158,7 +157,6 @@ namespace Squeal
   /// Indices among n friction coefficients for training a basis: the last, the middle, the quarters and the first.
   std::vector<int> ends_and_quarters(int n);
 
-  /// Point with the largest contact damping.
   const OperatingPoint &most_damped(const ContactRegime &regime);
 
   /// Evaluates all points of the contact set within Sweep/Tolerance, as a step of the run.
@@ -221,7 +219,6 @@ namespace Squeal
                       double                         largest_circular_frequency,
                       const std::string             &parameter);
 
-  /// Table of the contact sets along the lines.
   Table contact_table(const SweepPlan &plan, std::size_t n_pairs);
 
   /// Writes tables of the @p charts of each line: branches, counts, thresholds, crossings of the band's end.
