@@ -353,19 +353,21 @@ namespace Squeal
       return unless(p.sweep.map_parameter != MapParameter::none, "Sweep/Map parameter = none");
     };
     Study study{"sweep", run_sweep_study, {"Sweep/", "Output/Write system"}};
-    study.rules             = {{"Output/Write system", is_used},
-                               {"Output/",
-                                [](const Parameters &p) {
-                      return p.sweep.mode_shapes.empty() && p.output.fields != FieldSelection::none ? "Sweep/Mode shapes at is empty" :
-                                                                                                                  as_in_general;
-                    }},
-                               {"Operation/Friction coefficient", [](const Parameters &) { return "a sweep uses the friction coefficients of Sweep"; }},
-                               {"Operation/Rotation speed", no_sliding_speed},
-                               {"Complex modes/", [](const Parameters &) { return "a sweep uses reduced models"; }},
-                               {"Sweep/First map value", map_axis},
-                               {"Sweep/Last map value", map_axis},
-                               {"Sweep/Number of map values", map_axis},
-                               {"Sweep/Map friction coefficients", map_axis}};
+    study.rules = {
+      {"Output/Write system", is_used},
+      {"Output/",
+       [](const Parameters &p) {
+         return p.sweep.mode_shapes.empty() && p.output.fields != FieldSelection::none ?
+                  "fields are written only for the values of Sweep/Mode shapes at" :
+                  as_in_general;
+       }},
+      {"Operation/Friction coefficient", [](const Parameters &) { return "a sweep uses the friction coefficients of section Sweep"; }},
+      {"Operation/Rotation speed", no_sliding_speed},
+      {"Complex modes/", [](const Parameters &) { return "a sweep uses reduced models"; }},
+      {"Sweep/First map value", map_axis},
+      {"Sweep/Last map value", map_axis},
+      {"Sweep/Number of map values", map_axis},
+      {"Sweep/Map friction coefficients", map_axis}};
     study.check             = check_map;
     study.run_of_system     = run_sweep_of_system;
     study.has_reduced_model = true;
