@@ -88,7 +88,7 @@ class DesignsTest(ProgramTest):
         self.assertEqual(*((folder / "designs" / "2.prm").read_text(encoding="utf-8") for folder in (some, self.study)))
 
     def test_unknown_designs_are_refused(self):
-        for designs, what in (("7", "is not a number of designs"), (",", "--designs")):
+        for designs, what in (("7", "is neither the number of a design"), (",", "--designs")):
             process = self.call("scene.prm", "--output", "none", "--designs", designs, *settings((*STUDY, VARIABLES)))
             self.assert_message(process, [what])
             self.assertFalse((self.folder / "none").exists())
@@ -164,7 +164,7 @@ class DesignsTest(ProgramTest):
         self.assertEqual([row["outcome"] for row in rows], ["solved"])
 
     def test_what_lies_in_the_way_is_left_alone(self):
-        for name, text, words in (("letter.txt", "keep me", "other than an unfinished study"),
+        for name, text, words in (("letter.txt", "keep me", "contains no unfinished study"),
                                   ("study.key", "squeal designs 1\n",
                                    "`squeal designs 1` there, `squeal designs 4` here")):
             folder = self.folder / "mine.checkpoint"

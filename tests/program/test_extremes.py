@@ -77,7 +77,7 @@ class Extremes(ProgramTest):
             n_real.add(len(growing))
             self.assertEqual("static divergence" in screen, bool(growing))
             if growing:
-                found = re.search(r"static divergence: (\d+) real eigenvalues? above zero at mu = \d+, the largest growth rate (\S+) 1/s", screen)
+                found = re.search(r"static divergence: (\d+) real eigenvalues? above zero at mu = \d+, largest growth rate (\S+) 1/s", screen)
                 self.assertEqual(int(found[1]), len(growing))
                 self.assertAlmostEqual(float(found[2]) / max(growing), 1, delta=1e-3)
                 self.assertIn('"growing real eigenvalues": ' + str(len(growing)), (folder / "run.json").read_text(encoding="utf-8"))

@@ -96,7 +96,7 @@ class GyroscopicForces(ProgramTest):
     def test_free_disc(self):
         process = self.call("scene.prm", "--output", "refused", "--set", "Operation/Gyroscopic forces=true", "--set", "Mounts/Elastic mounts=")
         self.assertEqual(process.returncode, 1)
-        self.assertIn("rigid body", process.stderr)
+        self.assertIn("rigid-body", process.stderr)
 
 
 class Mounts(ProgramTest):

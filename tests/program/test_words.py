@@ -48,9 +48,9 @@ class Words(ProgramTest):
         in_vain = {"Operation/Load per side": "500", "Operation/Rotation speed": "7", "Steady sliding/Gaps": "pin_top_1: 1e-5",
                    "Sweep/Tolerance": "1e-5", "Reduction/POD tolerance": "1e-3", "Complex modes/Iteration tolerance": "1e-5"}
         screen = self.screen(*(f"{name}={value}" for name, value in in_vain.items()), output="in_vain")
-        notes = [line for line in screen.splitlines() if "not used here" in line]
+        notes = [line for line in screen.splitlines() if "unused parameters" in line]
         self.assertEqual(len(notes), 1, screen)
-        self.assertLess(screen.index("not used here"), screen.index("  Mesh "))
+        self.assertLess(screen.index("unused parameters"), screen.index("  Mesh "))
         for name in in_vain:
             self.assertIn(f"{name} (", notes[0])
         self.run_scene("plain")

@@ -285,5 +285,5 @@ TEST(ParameterUsage, NoFalseAlarmOnShippedFiles)
 TEST(ParameterUsage, TheNoteNamesAllWithTheirReasons)
 {
   EXPECT_EQ(unused_parameters_note(parameters_of({"Operation/Load per side=500", "Sweep/Tolerance=1e-5"})),
-            "  note: not used here: Operation/Load per side (no contact damping), Sweep/Tolerance (of Study = sweep)");
+            "  note: unused parameters: Operation/Load per side (no contact damping), Sweep/Tolerance (a parameter of Study = sweep)");
 }

@@ -22,7 +22,7 @@ namespace Squeal
 
     ConvergedMode converged(const int                              number,
                             const std::vector<const SolvedMesh *> &members,
-                            const std::vector<ModePairing>        &pairings) // each member but the last, paired with the last
+                            const std::vector<ModePairing>        &pairings) // of each member except the last with the last
     {
       const SolvedMesh   &finest = *members.back();
       ConvergedMode       mode{finest.labels[number], false, {}, {}, {}};
@@ -120,7 +120,7 @@ namespace Squeal
       return result;
     }
 
-    /// Marks the Pareto-optimal methods with respect to CPU time and error, ignoring lost modes.
+    /// Marks the Pareto-optimal methods with respect to CPU time and error, excluding methods with lost modes.
     void mark_front(std::vector<ComparedMethod> &methods)
     {
       const auto beats = [](const ComparedMethod &a, const ComparedMethod &b) {
@@ -149,8 +149,10 @@ namespace Squeal
   const ConvergedFamily &best_family(const std::vector<ConvergedFamily> &families)
   {
     if (families.empty())
-      throw SolverError("no element was solved on two meshes, as required for extrapolation", "study of accuracy",
-                        "give more Accuracy study/Mesh factors, smaller ones, or raise Accuracy study/Largest number of dofs");
+      throw SolverError("extrapolation requires two solved meshes with the same element and outline, but there are none",
+                        "Study = accuracy",
+                        "give more or smaller Accuracy study/Mesh factors, raise Accuracy study/Largest number of dofs, or remove "
+                        "other causes of skipped meshes");
     return *std::min_element(families.begin(), families.end(),
                              [](const ConvergedFamily &a, const ConvergedFamily &b) { return a.error < b.error; });
   }

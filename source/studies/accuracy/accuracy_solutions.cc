@@ -46,7 +46,7 @@ namespace Squeal
               frictionless.cpu_seconds - modes.factorisation.cpu_seconds - modes.solution.cpu_seconds, frictionless.peak_memory};
     }
 
-    /// @p before: cost of the steps shared by all bases.
+    /// Solves the modes with a reduced basis; @p before: cost of the steps shared by all bases.
     ModesByMethod reduced(const BasisRecipe             &recipe,
                           ReductionSets                 &sets,
                           const ComplexModes            &full,
@@ -74,7 +74,7 @@ namespace Squeal
       ModesByMethod result{recipe.name, basis.size(), cost, {}, {}};
       for (const ModeError &error : reduction_errors(sets.system, *sets.frictionless.inverse, model, modes, full))
         result.lambda.push_back(error.reduced);
-      result.algebraic_errors.assign(result.lambda.size(), 0.); // dense eigenproblems: rounding errors only
+      result.algebraic_errors.assign(result.lambda.size(), 0.); // dense eigenproblems have rounding errors only
       return result;
     }
 
@@ -108,7 +108,7 @@ namespace Squeal
       return result;
     }
 
-    /// @param resident_before memory of this process before the first mesh [byte]
+    /// Solves the model on one mesh; @p resident_before: memory of this process before the first mesh [byte].
     SolvedMesh solved(const MeshAndElement &mesh, const double resident_before, std::optional<CommonPoints> &points, Run &run)
     {
       const Parameters parameters = with(mesh, run.parameters);
@@ -120,7 +120,8 @@ namespace Squeal
       Scene     scene  = mesh_scene(part);
       const int n_dofs = scene.model->n_dofs();
       if (n_dofs > parameters.accuracy.largest_dofs)
-        throw MeshError(Squeal::text(n_dofs, " dofs, more than Accuracy study/Largest number of dofs"), mesh.text(), "raise that number");
+        throw MeshError(Squeal::text("the mesh has ", n_dofs, " dofs, more than Accuracy study/Largest number of dofs"), mesh.text(),
+                        "raise this limit");
       FrictionlessModes frictionless  = damped_modes(scene, part);
       Cost              to_real_modes = watch.cost();
       to_real_modes.peak_memory       = memory();

@@ -39,7 +39,6 @@ namespace Squeal
       return a;
     }
 
-    /// Columns of the mesh and element.
     template <typename Row>
     Columns<Row> mesh_columns(const std::function<const MeshAndElement &(const Row &)> &of)
     {
@@ -50,7 +49,6 @@ namespace Squeal
         {"mesh factor", "-", [of](const Row &row) { return of(row).factor; }, 2}};
     }
 
-    /// Columns of the mesh, element and method.
     template <typename Row>
     Columns<Row> identity(const std::function<const ComparedMethod &(const Row &)> &of)
     {
@@ -81,7 +79,7 @@ namespace Squeal
       return row.mode->number < 0 ? "none" : row.mode->in_cluster ? "in a cluster" : "by shape";
     }
 
-    /// One row for each mesh, element and method: size, cost and largest errors.
+    /// One row for each mesh, element and method.
     Table accuracy_table(const std::vector<ComparedMethod> &methods)
     {
       using Row                 = ComparedMethod;
@@ -202,7 +200,6 @@ namespace Squeal
                    rows);
     }
 
-    /// Meshes and elements that were not solved: element, outlines, mesh factor, reason.
     Table left_out_table(const std::vector<LeftOut> &meshes)
     {
       return Table(mesh_columns<LeftOut>([](const LeftOut &row) -> const MeshAndElement & { return row.mesh; }) +
@@ -229,8 +226,8 @@ namespace Squeal
       run.progress.note(text("  reference: ", reference.name, ", extrapolated from ", reference.members.size(), " meshes up to ",
                              reference.members.back()->n_dofs, " dofs; error of its finest mesh about ",
                              decimal_text(100. * reference.error), " % (rms)"));
-      run.progress.note(text("  ", n, " modes; the frequencies of ", n_orders, " converge with an observed order, ", n_in_cluster,
-                             " are in clusters that mix from mesh to mesh"));
+      run.progress.note(text("  ", n, " modes: ", n_orders, " with an observed order of convergence of the frequency, ", n_in_cluster,
+                             " in clusters that mix differently on each mesh"));
     }
     Reason no_grown_basis(const Parameters &p)
     {
@@ -240,12 +237,12 @@ namespace Squeal
                                   const BasisRecipe *recipe = find_recipe(name);
                                   return recipe != nullptr && recipe->rests_on(BasisSource::residuals);
                                 }),
-                    "no residual-grown basis is measured");
+                    "only for residual-grown bases");
     }
   } // namespace
 
   /// `Study = accuracy`: solves the model on coarser and finer meshes, with every element, at full order and with reduced bases. Reports
-  /// the errors of every mode relative to the extrapolated modes of the best family, with their contributions, and the costs.
+  /// costs and, relative to the extrapolated modes of the best family, the errors of every mode and their contributions.
   static void run_accuracy_study(Scene &, Run &run)
   {
     const double       maximum_frequency = run.parameters.discretization.maximum_frequency;
@@ -270,7 +267,7 @@ namespace Squeal
 
   extern const Study accuracy_study = [] {
     Study study{"accuracy", run_accuracy_study, {"Accuracy study/"}};
-    study.rules = {{"Output/", [](const Parameters &) { return "the study writes no mode shapes"; }},
+    study.rules = {{"Output/", [](const Parameters &) { return "not written by Study = accuracy"; }},
                    {"Discretization/Element", [](const Parameters &) { return "the study compares elements"; }},
                    {"Geometry/Outlines", [](const Parameters &) { return "the study compares outlines"; }},
                    {"Accuracy study/Grown tolerance", no_grown_basis},

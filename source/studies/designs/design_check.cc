@@ -13,7 +13,7 @@ namespace Squeal
   {
     using dealii::Utilities::split_string_list;
 
-    /// Parameters of the solution method, which define no designs.
+    /// Parameters of the study and its solution method, which cannot vary between designs.
     constexpr const char *of_the_solution[] = {"Study",
                                                "Designs/",
                                                "Search/",
@@ -27,16 +27,16 @@ namespace Squeal
                                                "Geometry/Meshing time limit",
                                                "Geometry/Meshing memory limit"};
 
-    /// Reason why a parameter has no effect on a design; empty if it has an effect. @p as_written: the design without the changes by
+    /// Reason why a parameter has no effect on a design; empty if it has an effect. @p as_written: the design without the settings of
     /// Accuracy.
     std::string why_unused(const std::string &name, const Parameters &design, const Parameters &as_written)
     {
       const std::string path = dealii::Utilities::trim(name.substr(0, name.find('[')));
       for (const char *numerical : of_the_solution)
         if (concerns(numerical, path))
-          return "it controls the solution method, not the design";
+          return "it controls the study, not its designs";
       if (current_value(design, name) != current_value(as_written, name))
-        return "Accuracy = " + to_string(design.goal) + " chooses it";
+        return "set by Accuracy = " + to_string(design.goal);
       try
         {
           const auto unused = unused_among({path}, design);
@@ -48,7 +48,7 @@ namespace Squeal
         }
     }
 
-    /// Reason why no parameter of a variable has an effect; empty if one has.
+    /// Reason why no parameter of a variable has an effect; empty if any parameter has an effect.
     std::string why_all_unused(const std::string &variable, const Parameters &design, const Parameters &as_written)
     {
       std::string reason;
@@ -78,7 +78,7 @@ namespace Squeal
     [[noreturn]] void refuse_unused(const UnusedParameter &variable, const std::string &where)
     {
       throw ParameterError(in_quotes(variable.path) + " varies, but has no effect: " + variable.why, where,
-                           "remove it, or change the parameters on which its effect depends");
+                           "vary other parameters instead, or change the setting that disables this one");
     }
 
     /// True if two designs differ only in the unused variables.
@@ -96,7 +96,7 @@ namespace Squeal
       return false;
     }
 
-    /// Reason why a design is rejected; empty if it is accepted.
+    /// Error with which a design is rejected; empty if it is accepted.
     std::optional<ParameterError> refusal(const Parameters               &parameters,
                                           const std::vector<std::string> &names,
                                           const std::vector<std::string> &values)

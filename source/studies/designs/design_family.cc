@@ -61,7 +61,7 @@ namespace Squeal
 
   void DesignFamily::solve(const std::vector<OperatingPoint> &points, const std::vector<int> &training)
   {
-    // Basis size above which small matrices become expensive
+    // Basis size above which reduced matrices become expensive
     constexpr int               most_vectors = 900;
     ErrorControlledSweepOptions options;
     options.tolerance     = run.parameters.sweep.tolerance;
@@ -73,8 +73,8 @@ namespace Squeal
     const ErrorControlledSweep found =
       error_controlled_sweep(*model->reduced, points, training, options, keep, run.communicator, run.progress);
     if (found.n_left > 0)
-      throw SolverError(text("one basis does not suffice for this design and the previous ones: ", found.why_stopped),
-                        "designs on one mesh", "solve it alone");
+      throw SolverError(text("the common basis is not accurate enough: ", found.why_stopped), "designs on one mesh",
+                        "solve the designs individually");
     run.progress.finish(
       text(points.size(), " operating points, ", model->reduced->size(), " vectors, estimated error ", found.worst_error));
   }
@@ -82,7 +82,7 @@ namespace Squeal
   DesignFamily::Member DesignFamily::solve(const std::size_t design)
   {
     const std::vector<OperatingPoint> points = points_of(design);
-    model->known.clear(); // free memory: the vectors of all designs may exceed it
+    model->known.clear(); // the vectors of all designs may exceed the memory
     solve(points, {});
 
     run.progress.begin("Mode count");

@@ -30,27 +30,27 @@ namespace Squeal
     {
       const std::string name = folder.string();
       if (fs::exists(folder) && !fs::is_directory(folder))
-        throw FileError("`" + name + "` is a file, but an unfinished study needs a folder with this name", "file " + name,
+        throw FileError("the folder for unfinished results cannot be created, because `" + name + "` is a file", "file " + name,
                         "choose another --output, or move the file");
       if (fs::exists(folder) && !fs::is_empty(folder))
         {
           const std::string there = content(folder / key_file);
           if (there.rfind("squeal designs", 0) != 0)
-            throw FileError("the folder `" + name + "` contains files other than an unfinished study", "folder " + name,
-                            "choose another --output, or empty the folder");
+            throw FileError("the folder for unfinished results `" + name + "` is not empty and contains no unfinished study",
+                            "folder " + name, "choose another --output, or empty the folder");
           if (there != title + key)
             throw FileError(
               "the folder contains an unfinished study with other parameters, another model or another version of the program: " +
                 first_difference(there, title + key),
               "folder " + name,
-              "finish it with its own parameters, at the beginning of `" + (folder / key_file).string() +
-                "`; choose another --output; or delete the folder");
+              "finish that study with the version, parameters and model listed in `" + (folder / key_file).string() +
+                "`, choose another --output, or delete the folder");
         }
       fs::create_directories(folder);
       replace_file(folder / key_file, title + key);
     }
 
-    /// Designs solved by one process, one after the other.
+    /// A process that solves designs in turn.
     struct Worker
     {
       std::vector<int>               designs; ///< all designs of this worker
@@ -70,7 +70,7 @@ namespace Squeal
 
   std::string checkpoint_folder(const std::string &output)
   {
-    // Remove a trailing slash, so that the checkpoint is next to the folder, not in it
+    // Remove a trailing slash, so that the checkpoint is next to the folder of results, not in it
     return (fs::path(output) / "").lexically_normal().parent_path().string() + ".checkpoint";
   }
 
@@ -172,10 +172,10 @@ namespace Squeal
       };
       worker.left.erase(std::remove_if(worker.left.begin(), worker.left.end(), is_found), worker.left.end());
     };
-    /// If a process ends early, mark the next design in its list as failed
+    /// Marks the next design of a process that ended early as failed.
     const auto blame_next = [&](Worker &worker, const std::string &end) {
       DesignResult result = unfinished(worker.left.front());
-      result.reason       = "its process was " + end;
+      result.reason       = "its process ended early: " + end;
       result.seconds      = worker.stopwatch.cost().seconds;
       store.keep(result);
       report(result);

@@ -16,20 +16,20 @@ namespace Squeal
   {
     constexpr std::size_t n_shown = 20;
 
-    /// Overlaps compare shapes; more digits are not significant.
+    /// Overlap rounded to its significant digits; empty if there is none.
     Entry overlap_cell(const boost::optional<double> &overlap)
     {
       return overlap ? Entry(std::round(1e6 * *overlap) / 1e6) : Entry();
     }
 
-    /// A value that only solved designs have.
+    /// Value of a solved design; empty for other designs.
     template <typename Value>
     std::function<Entry(const DesignResult &)> of_solved(Value value)
     {
       return [value](const DesignResult &row) { return row.outcome == DesignOutcome::solved ? Entry(std::invoke(value, row)) : Entry(); };
     }
 
-    /// A value at one of the friction coefficients; empty if the design has no such value.
+    /// A member of an onset or of the largest growth; empty if the design has none.
     template <typename Value>
     std::function<Entry(const DesignResult &)> at(boost::optional<DesignGrowth> DesignResult::*growth,
                                                   Value DesignGrowth::*value,
@@ -64,7 +64,7 @@ namespace Squeal
       return columns;
     }
 
-    /// Quiet designs first: by descending onset of squeal, then by the largest divergence rate.
+    /// Solved designs from the quietest to the loudest: by descending weak_onset, then by ascending largest divergence rate.
     std::vector<DesignResult> by_quietness(const std::vector<DesignResult> &designs)
     {
       std::vector<DesignResult> result;
@@ -85,7 +85,7 @@ namespace Squeal
         values.push_back(names[v] + " = " + row.values[v]);
       return text("design ", row.number, " (", boost::algorithm::join(values, "; "), "): ", outcome_of(row),
 
-                  row.worst ? text(", ", decimal_text(100. * row.worst->divergence_rate), " % maximum (", row.worst->label, " at ",
+                  row.worst ? text(", maximum ", decimal_text(100. * row.worst->divergence_rate), " % (", row.worst->label, " at ",
                                    decimal_text(row.worst->frequency), " Hz)") :
                               ", no mode grows");
     }
@@ -96,9 +96,9 @@ namespace Squeal
     if (result.outcome != DesignOutcome::solved)
       return to_string(result.outcome) + ": " + result.reason;
     const std::string limit = text(100. * weak_divergence, " %");
-    return result.weak_onset ?
-             text("exceeds ", limit, " at mu = ", result.weak_onset->friction_coefficient, " (", result.weak_onset->label, ")") :
-             "nowhere above " + limit;
+    return result.weak_onset ? text("divergence rate exceeds ", limit, " at mu = ", result.weak_onset->friction_coefficient, " (",
+                                    result.weak_onset->label, ")") :
+                               "divergence rate always below " + limit;
   }
 
   Table design_table(const std::vector<std::string> &names, const std::vector<DesignResult> &designs)
@@ -199,10 +199,10 @@ namespace Squeal
     if (ordered.size() > 1)
       {
         const auto rate = [](const DesignResult &row) { return row.worst ? row.worst->divergence_rate : 0.; };
-        lines.push_back("  squeals most: " + described(names, *std::max_element(ordered.begin(), ordered.end(),
-                                                                                [&](const DesignResult &a, const DesignResult &b) {
-                                                                                  return rate(a) < rate(b);
-                                                                                })));
+        lines.push_back(
+          "  largest divergence rate: " +
+          described(names, *std::max_element(ordered.begin(), ordered.end(),
+                                             [&](const DesignResult &a, const DesignResult &b) { return rate(a) < rate(b); })));
       }
     const auto n = [&](const DesignOutcome outcome) {
       return std::count_if(designs.begin(), designs.end(), [outcome](const DesignResult &row) { return row.outcome == outcome; });
@@ -212,7 +212,8 @@ namespace Squeal
     const auto n_incomplete = std::count_if(
       designs.begin(), designs.end(), [](const DesignResult &row) { return row.outcome == DesignOutcome::solved && !row.is_complete; });
     if (n_incomplete > 0)
-      lines.push_back(text("  note: in ", n_incomplete, " designs the number of modes differs from the count, see designs.csv"));
+      lines.push_back(
+        text("  note: designs in which the number of modes differs from a count: ", n_incomplete, " (column `complete` of designs.csv)"));
     return lines;
   }
 } // namespace Squeal

@@ -12,7 +12,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Rows of the shapes that belong to bodies in @p chosen.
+    /// Rows of the reference shapes that belong to the bodies in @p chosen.
     DenseMatrix rows_of(const ReferenceModes &reference, const CommonPoints &chosen)
     {
       DenseMatrix  result(3 * chosen.n(), reference.shapes.cols());
@@ -32,7 +32,7 @@ namespace Squeal
       return result;
     }
 
-    /// Labels of the branches of a chart by reference modes, at the first point of each branch.
+    /// Labels of the branches of a chart: names of the reference modes most similar to the first mode of each branch.
     std::vector<ReferenceName> names_of_branches(const SweepModel &model, const SweepChart &chart, const ReferenceModes &reference)
     {
       const std::vector<Branch>      &branches = chart.chart.branches;
@@ -43,7 +43,7 @@ namespace Squeal
       const Linearisation &linearisation = model.frictionless.linearisation;
       for (const auto &[i, members] : branches_from)
         {
-          // Compare all modes of the point: names are assigned to modes jointly
+          // Compare all modes of the point, because names are assigned jointly
           const ChartPoint &point = chart.chart.points[i];
           ComplexModes      modes;
           std::vector<int>  all(point.lambda.size());
@@ -59,7 +59,7 @@ namespace Squeal
       return result;
     }
 
-    /// First onset over several charts: replaces @p found by an earlier one.
+    /// Replaces @p found if @p onset has a smaller friction coefficient; gives the first onset of several charts.
     void keep_first(const std::optional<GrowthOnset> &onset, const std::vector<std::string> &labels, boost::optional<DesignGrowth> &found)
     {
       if (!onset || (found && found->friction_coefficient <= onset->friction_coefficient))
@@ -74,8 +74,7 @@ namespace Squeal
       return name.in_cluster || name.name.empty() ? boost::optional<double>() : name.overlap;
     }
 
-    /// Adds the results of a chart to its design. There are several charts, each for a part of the friction coefficients, if the contact
-    /// set changes.
+    /// Adds the results of a chart to its design. If the contact set changes, each chart covers a part of the friction coefficients.
     void take_over(SweepModel           &model,
                    const SweepChart     &sweep,
                    const ReferenceModes &reference,
@@ -120,7 +119,7 @@ namespace Squeal
                 mode.verdict                   = to_string(point.verdicts[j]);
                 mode.largest_divergence_rate   = std::max(mode.largest_divergence_rate, quantities.divergence_rate);
                 grows                          = grows || point.verdicts[j] == Verdict::unstable;
-                // Skip refinement points: they lie near coalescences, where errors of λ are large and not representative
+                // Skip refinement points, which lie near coalescences, where errors of λ are large and not representative
                 if (!chart.is_refinement[i])
                   {
                     result.largest_error    = std::max(result.largest_error, point.errors[j]);
@@ -253,9 +252,9 @@ namespace Squeal
         SweepModel model(plan, regime, part);
         evaluate_points(model);
         if (model.known.size() < regime.points.size())
-          throw SolverError(
-            text(regime.points.size() - model.known.size(), " of ", regime.points.size(), " friction coefficients miss the tolerance"),
-            "sweep", "raise Sweep/Tolerance or Sweep/Maximum basis");
+          throw SolverError(text("estimated errors exceed Sweep/Tolerance at ", regime.points.size() - model.known.size(), " of ",
+                                 regime.points.size(), " friction coefficients"),
+                            "sweep of the design", "raise Sweep/Tolerance, or Sweep/Maximum basis if it limits the basis");
         const std::size_t before = charts[0].size();
         follow_branches(model, charts);
         for (std::size_t s = before; s < charts[0].size(); ++s)

@@ -22,7 +22,7 @@ namespace Squeal
     {
       const auto refuse = [&](const std::string &what) {
         throw ParameterError(what, "command line, --designs " + legible(list),
-                             text("give numbers from 1 to ", n, ", as in --designs 3,7-9"));
+                             text("list numbers or ranges from 1 to ", n, ", separated by commas"));
       };
       std::set<int> result;
       for (const std::string &part : dealii::Utilities::split_string_list(list, ','))
@@ -32,7 +32,7 @@ namespace Squeal
           const bool              is_range = std::regex_match(part, ends, pattern);
           const int first = is_range ? std::stoi(ends[1]) : 0, last = is_range && ends[2].matched ? std::stoi(ends[2]) : first;
           if (first < 1 || last < first || last > n)
-            refuse(in_quotes(part) + " is not a number of designs in this study");
+            refuse(in_quotes(part) + " is neither the number of a design nor an ascending range of such numbers");
           for (int design = first; design <= last; ++design)
             result.insert(design);
         }
@@ -74,7 +74,7 @@ namespace Squeal
         }
       catch (const FileError &)
         {
-          throw; // the design is not the cause
+          throw; // not caused by the design
         }
       catch (const Error &error)
         {
@@ -85,13 +85,13 @@ namespace Squeal
       catch (const std::bad_alloc &)
         {
           result.outcome = DesignOutcome::failed;
-          result.reason  = "the memory is exhausted";
+          result.reason  = "out of memory";
         }
       result.seconds = stopwatch.cost().seconds;
       return result;
     }
 
-    /// Solves one design as a worker process of the study, or several designs on a common mesh in turn, with a growing basis.
+    /// Solves the designs of a worker process: one design, or several on a common mesh with one growing basis.
     void solve_part(Run &run, const DesignWork &work, const ReferenceModes &reference, const DesignStore &store)
     {
       const auto              alone = [&](const int design) { return solve_here(run, work, design, reference); };
@@ -148,9 +148,8 @@ namespace Squeal
     }
   } // namespace
 
-  /// `Study = geometry`: sweeps of many designs, each remeshed, with their thresholds. Modes are labelled by the most similar modes of the
-  /// given model. Each design is solved in a worker process, which runs this study for that design; designs on a common mesh share a worker
-  /// process.
+  /// `Study = geometry`: sweeps and thresholds of many designs. Modes are labelled by the most similar modes of the given model. Each worker
+  /// process runs this study for one design, or for several designs on a common mesh.
   static void run_design_study(Scene &scene, Run &run)
   {
     const DesignWork           work = work_of(run);
@@ -165,7 +164,7 @@ namespace Squeal
         return;
       }
     for (const UnusedParameter &variable : unused_variables(run.parameters, work.plan))
-      run.progress.note(text("  note: without effect on the designs: ", variable.path, " (", variable.why, ")"));
+      run.progress.note(text("  note: ", variable.path, " has no effect on the designs: ", variable.why));
 
     if (work.designs.size() == 1)
       {
@@ -192,7 +191,7 @@ namespace Squeal
     });
   }
 
-  /// `Study = geometry` for a system file: modes at lists of parameter values, by one reduced model.
+  /// `Study = geometry` for a system file: modes at lists of parameter values, from one reduced model.
   static void run_designs_of_system(Run &run)
   {
     SystemFile       file = read_system(run);
@@ -207,7 +206,7 @@ namespace Squeal
 
   extern const Study design_study = [] {
     const auto of_samples = [](const Parameters &p) {
-      return unless(p.designs.is_sampled(), "only a Latin hypercube and a Sobol sequence are samples");
+      return unless(p.designs.is_sampled(), "only for Designs/Plan = Latin hypercube or Sobol sequence");
     };
     Study study = study_of_designs(
       "geometry", run_design_study,

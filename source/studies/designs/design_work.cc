@@ -22,13 +22,13 @@ namespace Squeal
 
   namespace
   {
-    /// Relative extension of the reference modes beyond the band, so that modes of stiffer and softer designs find counterparts [-].
+    /// Relative margin of the reference modes above the band, for the counterparts of modes of softer designs [-].
     constexpr double reference_margin = 0.2;
 
     /// Typical number of basis vectors of a family of designs.
     constexpr double usual_family_basis = 500.;
 
-    /// Values of the variables in a design; a variable that it does not set has the value of the given model.
+    /// Values of the variables of a design, with the values of the given model for variables that the design does not set.
     std::vector<std::string> shown_values(const Parameters &parameters, const DesignPlan &plan, const std::vector<std::string> &values)
     {
       std::vector<std::string> result = values;
@@ -53,15 +53,14 @@ namespace Squeal
       return static_cast<unsigned int>(std::max(1., std::floor(std::min(by_cores, by_memory))));
     }
 
-    /// Minimum number of designs in a family; sharing costs more than it saves in smaller families, which are solved individually.
+    /// Minimum number of designs in a family: for fewer designs, a common basis costs more than it saves.
     constexpr std::size_t least_family = 4;
 
-    /// Maximum number of designs that a process solves in turn. Independent of the number of processes, because results must not depend on
-    /// it.
+    /// Maximum number of designs that a process solves in turn; constant, because results must not depend on the number of processes.
     constexpr std::size_t largest_batch = 25;
 
-    /// Assigns designs to worker processes: designs on a common mesh are solved in turn, in parts of nearly equal size; other designs
-    /// individually. Rejected designs need no process.
+    /// Assigns designs to worker processes: batches of nearly equal size of designs on a common mesh, and other designs individually.
+    /// Rejected designs need no process.
     std::vector<std::vector<int>> batches_of(const Run &run, const DesignWork &work)
     {
       std::map<std::string, std::vector<int>> families;
@@ -168,7 +167,7 @@ namespace Squeal
     Run                     part(parameters, run, silent);
     const FrictionlessModes modes  = frictionless_modes(linearised_scene(scene, part), part, reference_margin);
     ReferenceModes          result = reference_modes(modes, run.parameters.materials);
-    run.progress.finish(text(result.names.size(), " modes of the given model, for labels of the designs"));
+    run.progress.finish(text(result.names.size(), " modes of the given model, to label the modes of designs"));
     return result;
   }
 
@@ -244,7 +243,7 @@ namespace Squeal
     run.screen << '\n';
     for (const std::string &line : verdict(names, results))
       run.progress.note(line);
-    run.screen << "\n  the quietest designs; all designs: designs.csv\n\n";
+    run.screen << "\n  quietest designs (all designs: designs.csv)\n\n";
     quietest_designs(names, results).print(run.screen);
     run.screen << '\n';
     run.store_table("designs", design_table(names, results));
@@ -255,7 +254,7 @@ namespace Squeal
   void write_parameter_file(Parameters design, const std::string &name, const Run &run)
   {
     const GeometryCopy copy = copy_of(design.geometry.path());
-    // Write the path of a copied geometry relative to the file; a geometry that was not copied is found by its name
+    // Refer to a copied geometry by its path relative to the parameter file
     const bool is_below  = name.find('/') != std::string::npos;
     design.geometry.file = (is_below && !copy.files.empty() ? "../" : "") + copy.name;
     design.designs       = {};
@@ -268,16 +267,14 @@ namespace Squeal
     Study study{name, run, {"Designs/", "Sweep/"}};
     study.rules = std::move(own_rules);
     study.rules.push_back(
-      {"Operation/Friction coefficient", [](const Parameters &) { return "designs use Sweep/First to Sweep/Last friction coefficient"; }});
+      {"Operation/Friction coefficient", [](const Parameters &) { return "designs use the friction coefficients of Sweep"; }});
     study.rules.push_back({"Operation/Rotation speed", no_sliding_speed});
-    study.rules.push_back({"Complex modes/", [](const Parameters &) { return "designs are solved as reduced models"; }});
+    study.rules.push_back({"Complex modes/", [](const Parameters &) { return "designs are solved with reduced models"; }});
     for (const char *path : {"Sweep/Parameter", "Sweep/Second parameter", "Sweep/Compare dissipation", "Sweep/Mode shapes at",
                              "Sweep/Complex plane at", "Sweep/Count modes at", "Sweep/Map parameter", "Sweep/First map value",
                              "Sweep/Last map value", "Sweep/Number of map values", "Sweep/Map friction coefficients"})
-      study.rules.push_back(
-        {path, [](const Parameters &) { return "designs have no maps, complex planes or mode shapes; use Study = sweep"; }});
-    study.rules.push_back(
-      {"Output/", [](const Parameters &) { return "the study writes no mode shapes; parameter files of its designs do"; }});
+      study.rules.push_back({path, [](const Parameters &) { return "not evaluated for designs; use Study = sweep"; }});
+    study.rules.push_back({"Output/", [](const Parameters &) { return "only for runs with the parameter file of a design"; }});
     return study;
   }
 } // namespace Squeal

@@ -12,8 +12,8 @@ namespace Squeal
     /// |λ_1 − λ_2| / |λ_1| up to which modes with the same label may be counterparts regardless of their shapes [-].
     constexpr double same_name_within = 0.1;
 
-    /// Pairs modes that have the same label but no counterpart by shape, closest λ first. These are modes of a doublet or of equal pins,
-    /// whose shapes a change may mix.
+    /// Pairs modes that have the same label but no counterpart by shape so that their λ are close. These are modes of a doublet or of equal
+    /// pins, whose shapes a change may mix.
     void pair_by_name(std::vector<PairedMode> &pairs, const FrictionModes &first, const FrictionModes &second)
     {
       std::vector<int>  left_1, left_2;
@@ -60,10 +60,10 @@ namespace Squeal
       return result;
     }
 
-    /// Largest relative effect that meets the accuracy.
+    /// Largest effect relative to the required accuracy that is acceptable [-].
     constexpr double allowed = 1.;
 
-    /// The next change of the same ingredient after @p number that meets the accuracy and has a smaller effect.
+    /// The next change of the same ingredient after @p number that is acceptable and has a smaller effect.
     std::optional<int> next_of_ingredient(const std::vector<CheaperChange> &changes, const int number)
     {
       const double bound = std::min(allowed, changes[number].severity);

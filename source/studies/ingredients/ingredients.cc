@@ -6,9 +6,9 @@ namespace Squeal
 {
   namespace
   {
-    /// Relative distance beyond the end of the band up to which a basis with upper modes has real modes.
+    /// Relative margin above the band of the real modes in a basis with upper modes [-].
     constexpr double upper_modes = 0.5;
-    /// End of the narrower band, as a fraction of the band in the parameters.
+    /// End of the narrower band, as a fraction of the end of the given band [-].
     constexpr double shorter_band = 0.5;
 
     // Names of values ------------------------------------------------------------
@@ -25,13 +25,13 @@ namespace Squeal
 
     Reason no_sliding(const Parameters &p, const std::optional<SlidingState> &)
     {
-      return p.operation.load_per_side > 0. && p.operation.rotation_speed > 0. ? nullptr : "no load, or no rotation speed";
+      return p.operation.load_per_side > 0. && p.operation.rotation_speed > 0. ? nullptr : "requires a load and a rotation speed";
     }
 
     Reason no_open_node(const Parameters &, const std::optional<SlidingState> &state)
     {
       if (!state)
-        return "equal shares of the load close all nodes; see contact state";
+        return "all nodes are closed with equal shares of the load";
       return std::count(state->closed.begin(), state->closed.end(), false) > 0 ? nullptr : "no node lifts off";
     }
 
@@ -44,8 +44,8 @@ namespace Squeal
 
     using P = const Parameters &;
 
-    /// Ingredient that sets the parameter found by @p member to @p value. It is present if the parameter has this value, unless @p
-    /// is_present says otherwise.
+    /// Ingredient that sets the parameter found by @p member to @p value. It is present if @p is_present is true or, by default, if the
+    /// parameter has this value.
     template <typename Member, typename Value>
     Ingredient option(const char                                    *name,
                       const Member                                  &member,
@@ -113,7 +113,7 @@ namespace Squeal
        [](Variation &v) { v.parameters.operation.friction_slope = v.parameters.ingredients.trial_slope; }, ChangeKind::adds,
        Departure::friction,
        [](P p, const std::optional<SlidingState> &state) {
-         return p.ingredients.trial_slope == 0. ? "the model has none, and Ingredients/Trial friction slope = 0" : no_sliding(p, state);
+         return p.ingredients.trial_slope == 0. ? "Ingredients/Trial friction slope = 0" : no_sliding(p, state);
        }},
 
       // ------------------------------------------------------------------- bodies
@@ -123,7 +123,7 @@ namespace Squeal
            material->rayleigh_alpha = material->rayleigh_beta = 0.;
        },
        ChangeKind::removes, Departure::mesh,
-       [](P p, const std::optional<SlidingState> &) { return unless(has_rayleigh_damping(p), "the materials have none"); }},
+       [](P p, const std::optional<SlidingState> &) { return unless(has_rayleigh_damping(p), "the materials have no Rayleigh damping"); }},
       {"modal damping", modal_here, nothing, [](P p) { return p.damping.modal_ratios.empty(); },
        [](Variation &v) { v.parameters.damping.modal_ratios.clear(); }, ChangeKind::removes, Departure::friction},
       {"modal damping", modal_here, [](P p) { return exact_text(p.ingredients.trial_damping_ratio); },
@@ -133,7 +133,7 @@ namespace Squeal
        },
        ChangeKind::adds, Departure::friction,
        [](P p, const std::optional<SlidingState> &) {
-         return unless(p.ingredients.trial_damping_ratio > 0., "the model has none, and Ingredients/Trial damping ratio = 0");
+         return unless(p.ingredients.trial_damping_ratio > 0., "Ingredients/Trial damping ratio = 0");
        }},
       option("rotation of the disc", rotation, false, ChangeKind::removes, Departure::mesh),
       option("rotation of the disc", rotation, true, ChangeKind::adds, Departure::mesh,

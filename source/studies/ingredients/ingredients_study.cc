@@ -12,7 +12,7 @@ namespace Squeal
 {
   namespace
   {
-    /// A column that is empty for changes that could not be made.
+    /// A column with entries only for changes that were made.
     template <typename Value>
     Column<IngredientResult> where_made(const std::string &name, const std::string &unit, const Value &value, const int digits = 3)
     {
@@ -51,8 +51,7 @@ namespace Squeal
               }};
     }
 
-    /// One row for each change: the change, its largest effects, the verdict, and its cost relative to the reference; the screen shows
-    /// fewer columns.
+    /// One row for each change; the screen shows fewer columns.
     Table ingredient_table(const std::vector<IngredientResult> &results, const ReferenceModel &reference, const bool is_short)
     {
       using Row            = IngredientResult;
@@ -125,7 +124,7 @@ namespace Squeal
         rows);
     }
 
-    /// "0.12 % in frequency (A0-4 +) and 0.003 percentage points in divergence rate (F1)"
+    /// "0.12 % in frequency (A0-4 +), 0.003 percentage points in divergence rate (F1)"
     std::string largest_changes(const Effect &effect)
     {
       const auto of = [](const std::string &label) { return label.empty() ? "" : " (" + label + ")"; };
@@ -134,7 +133,7 @@ namespace Squeal
                   effect.changes_verdict() ? "; the verdict changes" : "");
     }
 
-    /// Solvers count as faster if the CPU time of the whole model falls to this fraction or below [-].
+    /// A change counts as faster if the CPU time of the whole model is below this fraction of the reference [-].
     constexpr double clearly_faster = 0.95;
 
     std::vector<std::string> answer_of(const SolvedModel &model)
@@ -155,11 +154,11 @@ namespace Squeal
           result.n_dofs             = variant.scene->model->free_map().n();
           result.answer             = answer_of(variant);
         }
-      // Report an impossible model as a result
+      // Report a model that cannot be solved as a result
       catch (const Error &error)
         {
           result.obstacle = error.reason;
-          run.progress.finish("refused");
+          run.progress.finish("not possible");
           return;
         }
       run.progress.finish(largest_changes(result.effect));
@@ -248,7 +247,7 @@ namespace Squeal
     {
       for (const IngredientResult &result : results)
         if (!result.obstacle.empty())
-          run.progress.note("  not tried: " + result.name + " = " + result.tried + ": " + result.obstacle);
+          run.progress.note("  not possible: " + result.name + " = " + result.tried + " (" + result.obstacle + ")");
     }
 
     /// Reports features that the model lacks and whose effect exceeds the required accuracy, one line each.
@@ -256,8 +255,8 @@ namespace Squeal
     {
       for (const IngredientResult &result : results)
         if (result.obstacle.empty() && result.ingredient != nullptr && result.ingredient->kind == ChangeKind::adds && result.severity > 1.)
-          run.progress.note("  missing in the model, with a significant effect: " + result.name + " = " + result.tried +
-                            " changes by up to " + largest_changes(result.effect));
+          run.progress.note("  missing feature with a significant effect: " + result.name + " = " + result.tried + ", up to " +
+                            largest_changes(result.effect));
     }
 
     /// Writes the non-default parameters that are used as a parameter file.
@@ -274,7 +273,7 @@ namespace Squeal
         {
           const auto slash = path.find('/');
           if (slash == std::string::npos || unused.count(path) > 0)
-            continue; // the study is the default one; unused parameters have no effect
+            continue; // omit the study, which is the default, and unused parameters
           if (path.substr(0, slash) != section)
             {
               end_section();
@@ -307,11 +306,11 @@ namespace Squeal
       const std::string            asked =
         text(exact_text(accuracy.frequency_tolerance), " % and ", exact_text(accuracy.divergence_tolerance), " percentage points");
       if (cheapest.changes.empty())
-        return {text("  cheapest model within ", asked, ": the given model; no feature of it can be removed")};
+        return {text("  cheapest model within ", asked, ": the given model")};
       const double here = reference.costs.sum(&Cost::cpu_seconds), there = cheapest.together.costs.sum(&Cost::cpu_seconds);
       const std::vector<std::string> result = {
         text("  cheapest model within ", asked, ": ", changes_text(cheapest.changes)),
-        text("    it changes up to ", largest_changes(cheapest.together.effect), "; ", cheapest.together.effect.n_unstable(true),
+        text("    largest changes: ", largest_changes(cheapest.together.effect), "; ", cheapest.together.effect.n_unstable(true),
              " unstable modes instead of ", cheapest.together.effect.n_unstable(false)),
         text("    ", decimal_text(there, 3), " s of CPU time instead of ", decimal_text(here, 3), " s")};
       return result;
@@ -340,7 +339,7 @@ namespace Squeal
     for (const std::string &line : lines)
       run.progress.note(line);
     for (const IngredientResult *back : cheapest.put_back)
-      run.progress.note("    not included, effect too large in combination: " + back->name + " = " + back->tried);
+      run.progress.note("    not included, because its effect is too large in combination: " + back->name + " = " + back->tried);
     note_missing(results, run);
     run.screen << '\n';
     ingredient_table(results, reference, true).print(run.screen);
@@ -355,8 +354,8 @@ namespace Squeal
 
   extern const Study ingredients_study = [] {
     Study study{"ingredients", run_ingredients_study, {"Ingredients/"}};
-    study.rules = {{"Output/", [](const Parameters &) { return "the study writes no mode shapes"; }}};
-    // Count these parameters as used: variants change contact states, dissipation, speeds and solvers
+    study.rules = {{"Output/", [](const Parameters &) { return "not written by Study = ingredients"; }}};
+    // Count these parameters as used, because variants change contact states, dissipation, speeds and solvers
     const auto of_use = [](const Parameters &) -> Reason { return nullptr; };
     for (const char *path : {"Operation/Load per side", "Operation/Rotation speed", "Steady sliding/", "Complex modes/"})
       study.rules.push_back({path, of_use});

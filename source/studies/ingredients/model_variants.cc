@@ -21,7 +21,7 @@ namespace Squeal
       return result;
     }
 
-    /// Broadcasts costs: decisions must use the same times on all processes.
+    /// Broadcasts costs, because all processes must decide on the basis of the same times.
     void agree(MPI_Comm communicator, StepCosts &costs)
     {
       for (Cost StepCosts::*step : {&StepCosts::mesh, &StepCosts::assembly, &StepCosts::sliding, &StepCosts::modes, &StepCosts::friction})
@@ -81,7 +81,7 @@ namespace Squeal
   {
     ReferenceModel result;
     result.parameters = run.parameters;
-    for (const StepRecord &step : run.progress.steps()) // steps so far, which belong to the mesh
+    for (const StepRecord &step : run.progress.steps()) // all steps so far belong to the mesh
       {
         result.costs.mesh.seconds += step.seconds;
         result.costs.mesh.cpu_seconds += step.cpu_seconds;

@@ -22,7 +22,7 @@ namespace Squeal
       return join({modes.real_part.get(), modes.imaginary_part.get(), &left_re, &left_im});
     }
 
-    /// Modes of the reduced model, including modes beyond the band, which may be counterparts.
+    /// Modes of the reduced model, including modes beyond the band, which may be counterparts of modes in the band.
     ReducedModes modes_of(const ReducedModel &model, const double value, const double omega_max, Run &run)
     {
       constexpr double   margin = 0.3;
@@ -88,7 +88,7 @@ namespace Squeal
           snapshots.push_back(snapshot(modes));
       }
     if (snapshots.empty())
-      throw SolverError("no mode of the snapshots lies in the band", "parameter Reduction/Snapshots",
+      throw SolverError("there are no modes in the band at any snapshot", "parameter Reduction/Snapshots",
                         "give other values, or raise Band/Maximum frequency");
     std::vector<const MultiVector *> parts;
     for (const MultiVector &part : snapshots)

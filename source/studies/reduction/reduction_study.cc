@@ -21,7 +21,7 @@ namespace Squeal
       return disc_shares(*scene.model, scene.system, *frictionless.linearisation.coupled.kernel, modes);
     }
 
-    /// Labels of some real coupled modes as pin modes, even if the disc moves more.
+    /// Labels of real coupled modes by pin modes, even if the disc moves more.
     std::vector<ModeLabel> pin_labels(const FrictionlessModes &frictionless, const ComplexModes &modes)
     {
       const SparseMatrix    &mass = *frictionless.linearisation.scene->system.mass;
@@ -79,8 +79,9 @@ namespace Squeal
       return modes;
     }
 
-    /// Builds a basis and compares its modes with the reference, as a step of the run called @p name. @p number of the basis is counted
-    /// from one.
+    /// Builds a basis and compares its modes with the reference, as a step of the run with this @p name.
+    ///
+    /// @param number of the basis, counted from one
     MeasuredBasis measured(const ReductionSets     &sets,
                            const ReferenceSolution &reference,
                            const BasisRecipe       &recipe,
@@ -102,16 +103,16 @@ namespace Squeal
       const ReducedModes modes = timed_modes(sets.plan, model, candidate.solve_seconds);
       candidate.errors         = reduction_errors(sets.system, *sets.frictionless.inverse, model, modes, reference.modes);
       progress.finish(text(candidate.basis.n_r0, " vectors, ", candidate.basis.size(),
-                           " after connection and rank, largest error of lambda ", largest_error(candidate)));
+                           " after coupling and rank reduction, largest error of lambda ", largest_error(candidate)));
       write_reduced_system(model, sets.plan, candidate, number, sets.run);
-      // Free hundreds of vectors that are no longer needed
+      // Free the vectors, which are no longer needed
       candidate.n_r = candidate.basis.size();
       candidate.basis.vectors.reset();
       return candidate;
     }
 
-    /// Measures all bases: bases of component modes for every truncation, of real coupled modes for every frequency, of snapshots, and
-    /// bases grown from the real modes of the band.
+    /// Compares all bases with the reference: bases of component modes for every truncation, of real coupled modes for every frequency, of
+    /// snapshots, and bases grown from the real modes of the band.
     std::vector<MeasuredBasis> all_measured(ReductionSets               &sets,
                                             const ReferenceSolution     &reference,
                                             std::vector<TruncatedModes> &truncations)
@@ -154,7 +155,7 @@ namespace Squeal
       return result;
     }
 
-    /// Writes the tables of measured bases for a system with @p n uncoupled dofs.
+    /// Writes the tables; @p n: number of uncoupled dofs.
     void write_tables(const std::vector<MeasuredBasis> &candidates, const ReferenceSolution &reference, const int n, Run &run)
     {
       run.write_table("reduction_bases", reduction_basis_table(candidates, n, reference.seconds));
@@ -162,11 +163,11 @@ namespace Squeal
       run.write_table("reduction_estimates", reduction_estimate_table(candidates, reference));
       run.store_table("reduction_modes", reduction_mode_table(candidates, reference));
       run.screen << '\n';
-      run.progress.note(text("  full order: ", reference.seconds, " s of CPU for ", reference.labels.size(), " modes"));
+      run.progress.note(text("  full order: ", reference.seconds, " s of CPU time for ", reference.labels.size(), " modes"));
       run.finish();
     }
 
-    /// Measures all bases for a system with @p n uncoupled dofs, and writes the tables.
+    /// Compares all bases and writes the tables; @p n: number of uncoupled dofs.
     void measure_bases(const ReductionPlan     &plan,
                        const FrictionlessModes &frictionless,
                        const CoupledSystem     &system,
@@ -185,7 +186,7 @@ namespace Squeal
     }
   } // namespace
 
-  /// `Study = reduction`: compares reduced bases with full-order modes: the bases of Tables 2, 4 and 5 of the paper and additional ones.
+  /// `Study = reduction`: compares modes of reduced bases, including the bases of Tables 2, 4 and 5 of the paper, with full-order modes.
   /// Reports sizes, ranks, errors by groups of modes, error estimates with their verdicts, and costs.
   static void run_reduction_study(Scene &scene, Run &run)
   {
@@ -198,7 +199,7 @@ namespace Squeal
                   scene.model->free_map().n(), run);
   }
 
-  /// `Study = reduction` for a system file: bases of its modes and of their responses.
+  /// `Study = reduction` for a system file, without bases of component modes.
   static void run_reduction_of_system(Run &run)
   {
     const GivenSystem   given = given_system(run);
@@ -218,12 +219,12 @@ namespace Squeal
   extern const Study reduction_study = [] {
     Study study{"reduction", run_reduction_study, {"Reduction/", "Output/Write system"}, reduction_usage()};
     study.rules.push_back({"Output/Write system", is_used});
-    study.rules.push_back({"Output/", [](const Parameters &) { return "the study writes no mode shapes"; }});
+    study.rules.push_back({"Output/", [](const Parameters &) { return "not written by Study = reduction"; }});
     study.has_reduced_model = true;
     study.check             = [](const Parameters &p) {
       const auto &pairs = p.contact.pairs;
       if (std::any_of(pairs.begin(), pairs.end(), [](const ContactPair &pair) { return pair.normal_stiffness > 0.; }))
-        throw ParameterError("the bases of section Reduction require rigid contact", "parameter Contact/Pairs",
+        throw ParameterError("reduced bases require rigid contact, but a pair has a normal stiffness", "parameter Contact/Pairs",
                                          "remove the normal stiffness, or choose Study = stability or sweep");
       reduction_plan(p);
     };

@@ -75,7 +75,7 @@ namespace Squeal
                    [&](const OperatingPoint &point) { return !samples[point.line]; });
       if (points.empty())
         return 0;
-      // Labels are found in parallel, for several points at a time
+      // Determine labels in parallel, for several points at a time
       constexpr std::size_t                   n_at_once = 128;
       std::vector<std::pair<int, ChartPoint>> kept;
       const auto                              label = [&] {
@@ -98,7 +98,7 @@ namespace Squeal
       const ErrorControlledSweep result = solve_points(model, points, n_training, tolerance, keep, "Samples");
       label();
       if (result.n_left > 0)
-        model.run.warn(text(result.n_left, " samples miss the tolerance of ", tolerance, ": ", result.why_stopped,
+        model.run.warn(text(result.n_left, " samples have no results within the tolerance of ", tolerance, ": ", result.why_stopped,
                             "; they count as undecided. Raise the tolerance"));
       return result.n_growths;
     }
@@ -144,9 +144,10 @@ namespace Squeal
       const auto &ends = parameters.robustness.frequency_bands;
       if (!ends.empty() && (ends.size() == 1 || std::adjacent_find(ends.begin(), ends.end(), std::greater_equal<>()) != ends.end() ||
                             ends.back() > parameters.discretization.maximum_frequency))
-        throw ParameterError(exact_text(ends) + " are not limits of bands below " +
+        throw ParameterError("the limits " + exact_text(ends) + " Hz do not define bands up to " +
                                exact_text(parameters.discretization.maximum_frequency) + " Hz",
-                             "parameter Robustness/Frequency bands", "give two or more in ascending order, up to Band/Maximum frequency");
+                             "parameter Robustness/Frequency bands",
+                             "give two or more limits in ascending order, none above Band/Maximum frequency");
     }
 
     /// @param model content of the model, for the key of the checkpoint
@@ -262,7 +263,7 @@ namespace Squeal
         int        n_growths = solve_contact_set(*model, systems.n_samples[i], n_training_samples, tolerance, checkpoint, result.samples);
         if (keep && systems.n_samples[i] > 0)
           {
-            // All samples with the final basis, which the estimates of the written model refer to
+            // Solve all samples with the final basis, to which the estimates of the written model refer
             while (model->reduced && n_growths > 0)
               {
                 for (std::size_t k = 0; k < systems.n_samples[i]; ++k)
@@ -283,7 +284,7 @@ namespace Squeal
     return result;
   }
 
-  /// `Study = robustness`: complex modes of samples of uncertain parameters by one reduced model, with estimated errors at every sample.
+  /// `Study = robustness`: complex modes for samples of uncertain parameters, from one reduced model, with estimated errors for each sample.
   /// Reports the probability of squeal and the influence of the parameters.
   static void run_robustness_study(Scene &scene, Run &run)
   {
@@ -308,11 +309,10 @@ namespace Squeal
   extern const Study robustness_study = [] {
     const auto of_onsets = [](const Parameters &p) { return unless(p.robustness.n_onsets > 0, "Robustness/Samples with onsets = 0"); };
     Study      study{"robustness", run_robustness_study, {"Robustness/", "Output/Write system"}};
-    study.rules = {
-      {"Output/Write system", is_used},
-      {"Operation/Rotation speed", no_sliding_speed},
-      {"Complex modes/", [](const Parameters &) { return "samples are solved by a reduced model"; }},
-      {"Output/", [](const Parameters &) { return "the study writes no mode shapes; parameter files of its worst samples do"; }}};
+    study.rules = {{"Output/Write system", is_used},
+                   {"Operation/Rotation speed", no_sliding_speed},
+                   {"Complex modes/", [](const Parameters &) { return "samples are solved with a reduced model"; }},
+                   {"Output/", [](const Parameters &) { return "only for runs with the parameter file of a worst sample"; }}};
     for (const char *path : {"Sweep/First friction coefficient", "Sweep/Last friction coefficient", "Sweep/Number of friction coefficients",
                              "Sweep/Tolerance", "Sweep/Maximum basis", "Sweep/Threshold tolerance", "Sweep/Parameter"})
       {

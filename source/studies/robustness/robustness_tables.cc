@@ -30,7 +30,7 @@ namespace Squeal
     {
       double   first, last; ///< [Hz]
       Estimate squeal;
-      double   undecided; ///< fraction of samples that have no unstable mode but an undecided one, or no results
+      double   undecided; ///< fraction of samples without results, or with undecided but no unstable modes [-]
     };
 
     BandProbability band_probability(const SamplePlan &plan, const Samples &samples, const double first, const double last)
@@ -81,7 +81,7 @@ namespace Squeal
       std::string         label;
       std::vector<double> frequencies, growth_rates; ///< ascending
       int                 usual_number = 0;          ///< most frequent number of such modes in a sample
-      int                 n_unusual    = 0;          ///< samples with another number, in which labels have changed
+      int                 n_unusual    = 0;          ///< number of samples with another number of such modes
       Estimate            grows{};                   ///< probability that a mode with this label grows
     };
 
@@ -95,7 +95,7 @@ namespace Squeal
         if (samples[s])
           {
             ++n_known;
-            std::map<std::string, std::pair<int, bool>> here; // for each label: number of modes, and whether one of them grows
+            std::map<std::string, std::pair<int, bool>> here; // number of modes with each label, and whether any of them grows
             for (const SampledMode &mode : *samples[s])
               {
                 const ModalQuantities quantities = modal_quantities(mode.lambda);
@@ -316,12 +316,12 @@ namespace Squeal
     const BandProbability             &all   = bands.front();
     run.progress.note(text("\n  probability of squeal below ", all.last, " Hz: ", percent(all.squeal.value), " (",
                            percent(all.squeal.lower), " to ", percent(all.squeal.upper), " with 95 % confidence, ", plan.n_independent,
-                           " samples), undecided ", percent(all.undecided)));
+                           " samples), undecided samples ", percent(all.undecided)));
     std::vector<NamedMode> growing;
     std::copy_if(modes.begin(), modes.end(), std::back_inserter(growing), [](const NamedMode &mode) { return mode.grows.value > 0.; });
     if (!growing.empty())
       {
-        run.screen << "\n  modes that grow in some samples; all modes: mode_distributions.csv\n\n";
+        run.screen << "\n  modes that grow in some samples (all modes: mode_distributions.csv)\n\n";
         mode_table(growing, plan.n_independent).print(run.screen);
         run.screen << '\n';
       }
@@ -338,7 +338,7 @@ namespace Squeal
                      [](const IndexRow &row) { return row.output == "largest divergence rate"; });
         if (!of_rate.empty())
           {
-            run.screen << "  Sobol' indices; all: sobol_indices.csv\n\n";
+            run.screen << "  Sobol' indices (all: sobol_indices.csv)\n\n";
             index_table(of_rate).print(run.screen);
             run.screen << '\n';
           }
@@ -346,6 +346,7 @@ namespace Squeal
     if (run.parameters.robustness.has_indices &&
         std::none_of(rows.begin(), rows.end(), [](const IndexRow &row) { return row.output == "largest divergence rate"; }))
       run.progress.note(text("  note: no Sobol' indices of the largest divergence rate: ",
-                             plan.has_indices ? "squeal is too rare, or samples miss the tolerance" : "parameters are correlated"));
+                             plan.has_indices ? "the rate does not vary within a set of samples, or samples have no results" :
+                                                "parameters are correlated"));
   }
 } // namespace Squeal

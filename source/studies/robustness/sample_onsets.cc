@@ -48,7 +48,7 @@ namespace Squeal
       return result;
     }
 
-    /// Distributions of the first onset of any mode, then of each label with an onset, most frequent first; each for both divergence rates.
+    /// Distributions of the first onset of any mode, then of the onsets of each label, most frequent first; each for both divergence rates.
     std::vector<OnsetDistribution> distributions(const std::vector<FollowedSample> &followed)
     {
       std::set<std::string> labels;
@@ -99,7 +99,6 @@ namespace Squeal
                    rows);
     }
 
-    /// First onsets of each sample.
     Table sample_onset_table(const std::vector<FollowedSample> &followed, const std::string &parameter)
     {
       using Row        = int;
@@ -126,7 +125,6 @@ namespace Squeal
       return Table(columns, all);
     }
 
-    /// Onsets of all modes of each sample.
     Table mode_onset_table(const std::vector<FollowedSample> &followed, const std::string &parameter)
     {
       using Row = std::pair<int, const SquealOnset *>;
@@ -187,13 +185,14 @@ namespace Squeal
         const std::vector<SquealOnset> onsets = mode_onsets(model, s);
         followed[s].onsets.insert(followed[s].onsets.end(), onsets.begin(), onsets.end());
         n_onsets += onsets.size();
-        model.known.clear(); // free memory: the vectors of all samples may exceed it
+        model.known.clear(); // the vectors of all samples may exceed the memory
       }
     const std::string how = model.reduced ? text(model.reduced->size(), " vectors") : "full order";
     run.progress.finish(text(followed.size(), " samples, ", how, ", ", n_onsets, " onsets"));
     if (n_missed > 0)
-      run.warn(text(n_missed, " points of the followed samples miss the tolerance ", options.tolerance, ": ", why_stopped,
-                    ". The distributions of onsets exclude these samples. Raise Sweep/Tolerance or Sweep/Maximum basis"));
+      run.warn(
+        text(n_missed, " points of samples with onsets have no results within the tolerance of ", options.tolerance, ": ", why_stopped,
+             "; distributions of onsets exclude these samples. Raise Sweep/Tolerance, or Sweep/Maximum basis if it limits the basis"));
   }
 
   void write_onsets(const std::vector<FollowedSample> &followed, const std::string &parameter, Run &run)

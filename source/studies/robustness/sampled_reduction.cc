@@ -13,10 +13,10 @@ namespace Squeal
   {
     constexpr const char *where_requested = "parameter Output/Write system";
 
-    /// Relative rounding error of values in tables, which have twelve digits.
+    /// Relative rounding error of values in tables, which have twelve digits [-].
     constexpr double rounding = 1e-11;
 
-    /// Extends the range of each parameter by its value in a sample.
+    /// Extends the range of each parameter to include its value in a sample.
     void cover(std::vector<FileParameter> &ranges, const std::vector<FileParameter> &of_sample)
     {
       for (const FileParameter &parameter : of_sample)
@@ -35,15 +35,16 @@ namespace Squeal
     for (std::size_t i = 0; i < systems.plan.regimes.size(); ++i)
       {
         if (!systems.middles[i].linearisation.coupled.stiffness)
-          throw ParameterError("the system has no definite part: its samples are solved at full order, without a reduced model",
+          throw ParameterError("samples of a system without a definite part are solved at full order, without a reduced model",
                                where_requested, "set it to full or none, or set Study = sweep");
         const std::vector<OperatingPoint> &points = systems.plan.regimes[i].points;
         for (std::size_t k = 1; systems.plan.scene != nullptr && k < systems.n_samples[i]; ++k)
           for (const auto &[name, value] : points[k].values)
             if (systems.scales[i].count(name) == 0 && value != points.front().values.at(name))
-              throw ParameterError("the contact damping differs from sample to sample, but is constant in a system file", where_requested,
-                                   "set Operation/Radial dissipation = none and Operation/Friction slope = 0; or vary neither load, speed "
-                                   "nor friction coefficient");
+              throw ParameterError(
+                "contact damping varies between samples, but must be constant in a system file", where_requested,
+                "set Operation/Radial dissipation = none and Operation/Friction slope = 0, or keep load, speed, friction "
+                "slope and friction coefficient constant");
       }
   }
 
@@ -84,11 +85,11 @@ namespace Squeal
         rename = [&scales = systems.scales[contact_set], names = first.names, without_scales](const Coefficient &coefficient) {
           Coefficient result = in_names(coefficient, without_scales);
           for (const auto &[name, scale] : scales)
-            if (coefficient.contains(name)) // to the first power
+            if (coefficient.contains(name)) // always to the first power
               result = result * Coefficient(scale.first) * in_names(scale.second, names);
           return result;
         };
-        // Constants that do not vary are part of the matrices
+        // Remove parameters that no term contains, because their constant values are included in the matrices
         const std::vector<Term> &terms = model.reduced->reduced().full_order().terms;
         parameters.erase(std::remove_if(parameters.begin(), parameters.end(),
                                         [&](const FileParameter &parameter) {

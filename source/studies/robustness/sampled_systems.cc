@@ -21,7 +21,7 @@ namespace Squeal
 
     constexpr const char *where_uncertain = "parameter Robustness/Distributions";
 
-    /// The model in which each pin has its own material with the same constants.
+    /// Parameters with a separate but equal material for each pin that has its own uncertain numbers.
     Parameters with_single_pins(Parameters parameters, const std::vector<UncertainNumber> &numbers)
     {
       std::vector<VolumeMaterial> &volumes = parameters.materials.volumes;
@@ -49,11 +49,12 @@ namespace Squeal
           const UncertainNumber &number = samples.numbers[static_cast<std::size_t>(j)];
           if (number.pin.empty() &&
               text_without_coefficients(with_design(parameters, {number.parameter}, {exact_text(samples.values(0, j))})) != scene)
-            throw ParameterError(in_quotes(number.parameter) +
-                                   " cannot vary: it changes matrices and not only coefficients, or its term is zero in the model",
-                                 number.where,
-                                 "choose moduli, densities, Rayleigh coefficients, mounts, friction coefficient, load, speed or slope with "
-                                 "nonzero nominal values; use Study = geometry for other parameters");
+            throw ParameterError(
+              in_quotes(number.parameter) +
+                " cannot vary between samples, because it is not a coefficient of terms, or its term is zero in the model",
+              number.where,
+              "vary moduli, densities, Rayleigh coefficients, mounts, friction coefficient, load, speed or slope with "
+              "nonzero nominal values, or use Study = geometry for other parameters");
         }
     }
   } // namespace
@@ -72,7 +73,7 @@ namespace Squeal
             if (!(value > 0.))
               throw ParameterError(in_quotes(uncertain.name) + " is " + exact_text(value) +
                                      "; percentages require a positive nominal value",
-                                   where_uncertain, "give numbers without %");
+                                   where_uncertain, "give absolute numbers, without %");
             for (double &x : distribution.numbers)
               x *= value / 100.;
           }
@@ -82,11 +83,11 @@ namespace Squeal
             continue;
           }
         if (numbers_of_pins.count(uncertain.name) == 0)
-          throw ParameterError(in_quotes(uncertain.name) + " cannot differ from pin to pin", where_uncertain,
-                               "remove `for each pin`; it applies to Young modulus, Density, Rayleigh alpha and Rayleigh beta of Pin "
-                               "material");
+          throw ParameterError("`for each pin` is not available for " + in_quotes(uncertain.name), where_uncertain,
+                               "use it only for Young modulus, Density, Rayleigh alpha and Rayleigh beta of Pin material");
         if (pins.empty())
-          throw ParameterError("there are no pins with the material Pin material", where_uncertain, "remove `for each pin`");
+          throw ParameterError("`for each pin` has no effect, because no pin uses the constants of Pin material", where_uncertain,
+                               "remove " + in_quotes(uncertain.name) + ", or use Pin material for at least one pin");
         for (const std::string &pin : pins)
           result.numbers.push_back({uncertain.name + " of " + pin, uncertain.name, pin, distribution, uncertain.is_relative});
       }
@@ -111,8 +112,9 @@ namespace Squeal
     result.n_independent = result.has_indices ? 2 * half : n;
     result.n_followed    = static_cast<int>(parameters.n_onsets);
     if (result.n_followed > result.n_independent)
-      throw ParameterError(text(result.n_followed, " samples with onsets exceed the ", result.n_independent, " independent samples"),
-                           "parameter Robustness/Samples with onsets", "give fewer, or raise Robustness/Number of samples");
+      throw ParameterError(
+        text("onsets are requested for ", result.n_followed, " samples, but there are only ", result.n_independent, " independent samples"),
+        "parameter Robustness/Samples with onsets", "lower it, or raise Robustness/Number of samples");
     return result;
   }
 
@@ -145,7 +147,7 @@ namespace Squeal
     if (const auto number = parse_number(value))
       return *number;
     throw ParameterError("the value of " + in_quotes(name) + " is " + in_quotes(value) + ", not a number", where,
-                         "select its k-th number: Section/Name[k]");
+                         "give a parameter with a number, or select the k-th number of a list with Section/Name[k]");
   }
 
   std::vector<std::string> alike_pins(const Scene &scene, const Parameters &parameters)
@@ -230,7 +232,7 @@ namespace Squeal
           add_point(operations[s], mu, s);
       }
     result.n_samples.resize(regimes.size(), 0);
-    run.progress.finish(text(samples.n(), " of ", samples.numbers.size(), " uncertain numbers, ", regimes.size(),
+    run.progress.finish(text(samples.n(), " samples of ", samples.numbers.size(), " uncertain numbers, ", regimes.size(),
                              regimes.size() == 1 ? " contact set" : " contact sets"));
 
     for (ContactRegime &regime : regimes)
@@ -248,7 +250,7 @@ namespace Squeal
           {
             const ParameterValues &values = family.terms.members[i];
             regime.points[i].values.insert(values.begin(), values.end());
-            // Values are the same in every contact set: with several contact sets, the bodies do not vary
+            // Values are the same in every contact set, because the bodies do not vary if there are several contact sets
             if (const int s = regime.points[i].line; s < samples.n_followed)
               result.plan.lines[s].values = values;
           }

@@ -5,7 +5,7 @@
 
 #include <boost/math/distributions/binomial.hpp>
 
-// ComposedDistribution is called JointDistribution since OpenTURNS 1.23
+// ComposedDistribution has been called JointDistribution since OpenTURNS 1.23
 #if __has_include(<openturns/JointDistribution.hxx>)
 #  include <openturns/JointDistribution.hxx>
 #else
@@ -77,8 +77,8 @@ namespace Squeal
         }
       catch (const OT::Exception &)
         {
-          throw ParameterError("the correlations contradict each other: their matrix is not positive definite",
-                               "parameter Robustness/Correlations", "give smaller values");
+          throw ParameterError("the correlation matrix is not positive definite", "parameter Robustness/Correlations",
+                               "give correlations closer to zero");
         }
     }
 
@@ -156,7 +156,7 @@ namespace Squeal
     const double place = p * static_cast<double>(sorted.size() - 1);
     const auto   i     = static_cast<std::size_t>(place);
     const double part  = place - static_cast<double>(i);
-    // Avoid interpolating between values that may be infinite
+    // Avoid the difference of two infinite values
     return i + 1 == sorted.size() || part == 0. || sorted[i + 1] == sorted[i] ? sorted[i] : sorted[i] + part * (sorted[i + 1] - sorted[i]);
   }
 } // namespace Squeal

@@ -15,7 +15,7 @@ namespace Squeal
 
   namespace
   {
-    /// Minimum number of initial designs, so that terms with coefficients in a fixed ratio are detected and the initial basis is trained.
+    /// Minimum number of initial designs that detect terms with proportional coefficients and train the initial basis.
     constexpr std::size_t fewest_first_designs = 4;
 
     /// Values of the variables of a design.
@@ -34,9 +34,9 @@ namespace Squeal
     /// Summary of the modes in the band of a sample.
     struct SampleRate
     {
-      double rate      = std::numeric_limits<double>::infinity(); ///< largest divergence rate [-]; infinite if the tolerance is missed
-      bool   grows     = false;                                   ///< at least one mode is unstable
-      bool   undecided = true;                                    ///< no mode is unstable, but at least one is undecided
+      double rate = std::numeric_limits<double>::infinity(); ///< largest divergence rate [-]; infinite without results within the tolerance
+      bool   grows     = false;                              ///< at least one mode is unstable
+      bool   undecided = true;                               ///< no results within the tolerance, or undecided but no unstable modes
     };
 
     SampleRate sample_rate(const SweepModel &model, const ChartPoint &point)
@@ -61,13 +61,13 @@ namespace Squeal
       DesignValues values;
       std::string  phase;
       Estimate     squeal;      ///< probability that a mode grows
-      double       doubtful;    ///< fraction of undecided samples
+      double       doubtful;    ///< fraction of undecided samples [-]
       double       quantile;    ///< quantile of the largest divergence rates of the samples [-]
       double       worst_error; ///< largest estimated error of λ [-]
       int          n_vectors;   ///< size of the basis
-      int          worst;       ///< sample with the largest rate; −1 if none meets the tolerance
+      int          worst;       ///< sample with the largest rate; −1 if no sample meets the tolerance
 
-      /// Probability of squeal if undecided samples count as squeal, so that the search does not favour designs that cannot be judged [%].
+      /// Probability of squeal with undecided samples counted as squeal, so that the search does not favour undecided designs [%].
       double probability_of_doubt() const
       {
         return 100. * (squeal.value + doubtful);
@@ -99,7 +99,7 @@ namespace Squeal
       return result;
     }
 
-    /// Evaluated designs and the model that evaluates them.
+    /// Evaluated designs and their common model.
     class RobustDesigns
     {
     public:
@@ -132,7 +132,6 @@ namespace Squeal
         return std::min_element(designs.begin(), designs.end(), smaller) - designs.begin();
       }
 
-      /// Evaluates a design with samples from another seed.
       RobustDesign solve_again(const DesignValues &values, const SamplePlan &other)
       {
         return solve(values, other, "other samples", "Other samples");
@@ -192,8 +191,8 @@ namespace Squeal
         return result;
       }
 
-      /// Ratio of the nominal value of an uncertain number in a design to that in the parameter file; 1 unless its distribution is in per
-      /// cent.
+      /// Ratio of the nominal value of an uncertain number in a design to its nominal value in the parameter file; 1 for an absolute
+      /// distribution.
       double scale(const DesignValues &design, const UncertainNumber &number) const
       {
         return number.is_relative ? nominal_in(design, number) / space.nominal(run.parameters, number.parameter) : 1.;
@@ -210,8 +209,8 @@ namespace Squeal
         for (const UncertainNumber &number : inner.numbers)
           if (!number.is_relative && nominal_in(lowest, number) != nominal_in(highest, number))
             throw ParameterError(in_quotes(number.parameter) + " varies from design to design, but its distribution is absolute",
-                                 number.where, "give the distribution in % of the value in the design");
-        // Check the samples at the ends of the ranges before anything is computed
+                                 number.where, "give the distribution in % of the nominal value");
+        // Reject illegal samples at the ends of the ranges before the first solution
         for (const DesignValues &corner : {lowest, highest})
           {
             const SamplePlan samples = samples_of({corner}, inner);
@@ -381,9 +380,9 @@ namespace Squeal
       run.count("designs", found.designs.size());
       run.count("samples of a design", other.n());
       run.count("basis vectors", checked.n_vectors);
-      run.progress.note(text("  search: the best design is ", best + 1, " of ", found.designs.size(), "; ",
+      run.progress.note(text("  search: design ", best + 1, " of ", found.designs.size(), " is the best; ",
                              goal_column(search.goal, search).name, ": ", decimal_text(*std::min_element(values.begin(), values.end())),
-                             " % for the best initial design, ", decimal_text(winner.objective(search.goal)), " % for the best design, ",
+                             " % for the best initial design, ", decimal_text(winner.objective(search.goal)), " % for this design, ",
                              decimal_text(checked.objective(search.goal)), " % with other samples"));
       for (const std::string &end : ends)
         run.progress.note(end);

@@ -15,7 +15,7 @@ namespace Squeal
 
   namespace
   {
-    /// Maximum number of searches, each from a different start.
+    /// Maximum number of searches, each from a different starting point.
     constexpr std::size_t most_searches = 2;
 
     nlopt::algorithm algorithm(const SearchMethod method)
@@ -42,7 +42,7 @@ namespace Squeal
     std::vector<DesignVariable> result = design_variables(designs);
     for (const DesignVariable &variable : result)
       if (!variable.is_range)
-        throw ParameterError("a search needs ranges, but " + in_quotes(variable.name) + " has a list of values",
+        throw ParameterError("a search requires ranges, but " + in_quotes(variable.name) + " has a list of values",
                              "parameter Designs/Variables", "write Section/Name = a to b");
     return result;
   }

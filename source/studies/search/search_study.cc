@@ -37,7 +37,7 @@ namespace Squeal
       {
         for (const DesignVariable &variable : variables)
           plan.names.push_back(variable.name);
-        // Count all stored results at once: the search repeats its rounds in sequence
+        // Count the results of all designs now, because the search requests its designs step by step
         std::vector<int> designs(run.parameters.search.n_evaluations);
         std::iota(designs.begin(), designs.end(), 1);
         if (const std::size_t n_known = store.n_known(designs); n_known > 0)
@@ -51,7 +51,7 @@ namespace Squeal
         return place == plan.designs.end() ? std::nullopt : std::optional(objective(results[place - plan.designs.begin()], run.parameters));
       }
 
-      /// Solves the points that have not been evaluated, concurrently; false if this would exceed the number of evaluations.
+      /// Solves new points concurrently; false, without solving, if this would exceed Search/Evaluations.
       bool solve(const std::vector<SearchPoint> &points)
       {
         DesignWork work{plan, {}};
@@ -78,7 +78,6 @@ namespace Squeal
       std::vector<DesignResult>         results; ///< results in the order of the design numbers
 
     private:
-      /// Values of the variables at a point.
       std::vector<std::string> values_at(const SearchPoint &point) const
       {
         std::vector<std::string> result;
@@ -89,7 +88,7 @@ namespace Squeal
 
       void solve(const DesignWork &work)
       {
-        // Worker processes read the designs from a file; rejected designs have no values there
+        // Worker processes read the designs from a file, in which rejected designs have no values
         const fs::path file   = store.folder / "designs.csv";
         DesignPlan     listed = plan;
         for (std::size_t i = 0; i < plan.designs.size(); ++i)
@@ -106,15 +105,15 @@ namespace Squeal
       }
     };
 
-    /// Next point at which a method needs the objective; if the method has ended, no point, but the reason as part of a sentence.
+    /// Next point at which a method needs the objective, or the reason why the method has ended.
     struct NextStep
     {
       std::optional<SearchPoint> asked;
       std::string                end;
     };
 
-    /// Runs a method from a start until it needs an unknown point. Methods are deterministic: once the point is solved, the search is
-    /// repeated and continues, so that the points of several searches can be solved concurrently.
+    /// Runs a method from a starting point until it needs the objective at a new point. Because methods are deterministic, the search can be
+    /// repeated after the point has been solved, and points of several searches are solved concurrently.
     NextStep next_step(const SearchPoint &start, const Evaluations &evaluations)
     {
       NextStep result;
@@ -127,7 +126,7 @@ namespace Squeal
       return result;
     }
 
-    /// Runs searches from several starts concurrently; returns the reasons for termination.
+    /// Runs searches from several starting points concurrently; returns the reasons for termination.
     std::vector<std::string> search(const std::vector<SearchPoint> &starts, Evaluations &evaluations)
     {
       std::vector<std::string> ends(starts.size());
@@ -152,7 +151,7 @@ namespace Squeal
         }
     }
 
-    /// Table of the evaluations and the best value so far.
+    /// Table of all evaluations, each with the best value so far.
     Table search_table(const Evaluations &evaluations, const std::size_t n_samples)
     {
       struct Row
@@ -182,8 +181,8 @@ namespace Squeal
     }
   } // namespace
 
-  /// `Study = search`: finds a quiet design within the ranges of the variables with a limited number of evaluations. Evaluates samples,
-  /// runs a derivative-free method from the best two of them, and solves the best design at full order.
+  /// `Study = search`: finds a quiet design within the ranges of the variables with a limited number of evaluations. Evaluates samples, runs
+  /// a derivative-free method from the two best samples, and solves the best design at full order.
   static void run_search_study(Scene &scene, Run &run)
   {
     if (is_robust(run.parameters.search))
@@ -209,17 +208,19 @@ namespace Squeal
                         [&](const DesignResult &a, const DesignResult &b) { return objective(a, parameters) < objective(b, parameters); });
     const auto design = parameters_of(run, evaluations.plan, winner.number);
     if (!design || winner.outcome != DesignOutcome::solved)
-      throw SolverError("no design of the search could be solved: " + winner.reason, "search", "choose other ranges in Designs/Variables");
+      throw SolverError("no design of the search could be solved; one reason: " + winner.reason, "search",
+                        "remove the cause, or choose other ranges in Designs/Variables");
     std::vector<FullOrder> checked = {at_full_order(*design, parameters.sweep.friction_coefficients.last, run)};
     if (winner.worst && winner.worst->friction_coefficient != parameters.sweep.friction_coefficients.last)
       checked.push_back(at_full_order(*design, winner.worst->friction_coefficient, run));
 
     // ----------------------------------------------------------------- results
     write_designs(evaluations.plan.names, evaluations.results, run);
-    run.progress.note(text("  search: design ", winner.number, " of ", evaluations.results.size(), " is the best; ",
-                           decimal_text(std::abs(objective(evaluations.results[order.front()], parameters))), " at the best sample, ",
-                           decimal_text(std::abs(objective(winner, parameters))),
-                           options.goal == SearchGoal::onset ? " there (mu of 0.01 %)" : " % there (largest divergence rate)"));
+    run.progress.note(
+      text("  search: design ", winner.number, " of ", evaluations.results.size(),
+           " is the best: ", decimal_text(std::abs(objective(evaluations.results[order.front()], parameters))), " for the best sample, ",
+           decimal_text(std::abs(objective(winner, parameters))),
+           options.goal == SearchGoal::onset ? " for this design (mu of 0.01 %)" : " for this design (largest divergence rate in %)"));
     for (std::size_t i = 0; i < ends.size(); ++i)
       run.progress.note(text("    from design ", order[i] + 1, ": ", ends[i]));
     run.store_table("search", search_table(evaluations, points.size()));
@@ -235,16 +236,16 @@ namespace Squeal
   static void run_search_of_system(Run &run)
   {
     if (!is_robust(run.parameters.search))
-      throw ParameterError("a search for " + in_quotes(to_string(run.parameters.search.goal)) + " needs a mesh", "parameter Search/Goal",
-                           "set it to probability or quantile, or leave System empty");
+      throw ParameterError("the goal " + in_quotes(to_string(run.parameters.search.goal)) + " is not available for system files",
+                           "parameter Search/Goal", "set it to probability or quantile, or leave System empty");
     run_robust_search_of_system(run);
   }
 
   extern const Study search_study = [] {
     const auto always = [](const Parameters &) { return "a search uses the ranges of Designs/Variables"; };
-    const auto robust = [](const Parameters &p) { return unless(is_robust(p.search), "Search/Goal is neither probability nor quantile"); };
+    const auto robust = [](const Parameters &p) { return unless(is_robust(p.search), "only for Search/Goal = probability or quantile"); };
     const auto swept  = [](const Parameters &p) {
-      return is_robust(p.search) ? "samples are solved at one friction coefficient each" : as_in_general;
+      return is_robust(p.search) ? "each sample is solved at one friction coefficient" : as_in_general;
     };
     Study study = study_of_designs(
       "search", run_search_study,
@@ -252,7 +253,7 @@ namespace Squeal
        {"Designs/File", always},
        {"Designs/Number of designs", always},
        {"Designs/Processes",
-        [](const Parameters &p) { return is_robust(p.search) ? "one reduced model serves all designs" : as_in_general; }},
+        [](const Parameters &p) { return is_robust(p.search) ? "all designs are solved with one reduced model" : as_in_general; }},
        {"Operation/Friction coefficient", [](const Parameters &p) { return is_robust(p.search) ? nullptr : as_in_general; }},
        {"Search/Quantile", robust},
        {"Robustness/", robust},
@@ -265,7 +266,7 @@ namespace Squeal
         return;
       p.robustness.parsed_correlations();
       if (p.needs_steady_sliding())
-        throw ParameterError("a search for " + in_quotes(to_string(p.search.goal)) + " needs one contact set for all designs",
+        throw ParameterError("the goal " + in_quotes(to_string(p.search.goal)) + " is not available with steady sliding",
                              "parameter Steady sliding/Contact state", "set it to equal load, or set Search/Goal = divergence rate");
     };
     study.run_of_system = run_search_of_system;

@@ -7,15 +7,15 @@ namespace Squeal
 {
   namespace
   {
-    /// Relative step of parameters of the operation: contact damping is nearly a product of powers of them [-].
+    /// Relative step of central differences with respect to operation parameters [-].
     constexpr double operation_step = 1e-4;
 
-    /// Minimum reference values for steps: friction coefficient [-] and slope [s/m].
+    /// Minimum reference value for steps of friction coefficient [-] and slope [s/m].
     constexpr double least_of_operation = 1e-2;
 
-    /// f' = −K' u + μ (P_t')ᵀ r of reaction_rates() for each parameter, n × parameters. If only its drive holds the disc, inertia balances
-    /// the friction moment; the change of this inertia load is neglected, because torsion of a body of revolution moves no contact node
-    /// along its normal.
+    /// f' = −K' u + μ (P_t')ᵀ r of reaction_rates() for each parameter, n × parameters. If the disc is held only by its drive, inertia
+    /// balances the friction moment. The change of this inertia load is neglected, because torsion of a body of revolution moves no contact
+    /// node along its normal.
     MultiVector force_rates(const SlidingModel                      &sliding,
                             const SlidingState                      &state,
                             const double                             mu,
@@ -113,7 +113,7 @@ namespace Squeal
         const ContactOperators contact = !all     ? contact_operators(*scene.model, closed) :
                                          is_after ? motion.operators_after :
                                                     motion.operators_before;
-        // Friction: −μ P_tᵀ r_n. The reactions of a mode do not change, because the normals do not
+        // Friction −μ P_tᵀ r_n: the reactions of a mode are constant, because the normals are constant
         const ComplexDenseMatrix slip = from_halves(replicate(*contact.tangential * apart.left));
         result -= sign / motion.step * friction_coefficient * (slip.transpose() * reactions);
         const ContactDamping damping = selected(state_of_contact(*scene.model, interface, state, operation).damping, sweep.regime.closed);
@@ -160,7 +160,7 @@ namespace Squeal
     const DenseMatrix rates = reaction_rates(*plan.sliding, operation, plan.sliding_parameters, state,
                                              force_rates(*plan.sliding, state, friction_coefficient, parameters, body_rates()), gaps);
 
-    // Evaluate both types of damping for r = −1: they are proportional to |r|, and r ≤ 0
+    // Evaluate both types of damping for r = −1 N, because they are proportional to |r| and r ≤ 0
     const std::vector<double> units(interface.size(), -1.);
     const ContactDamping      per_newton{radial_dissipation(interface, units, operation), sliding_dissipation(interface, units, operation)};
     for (std::size_t p = 0; p < parameters.size(); ++p)

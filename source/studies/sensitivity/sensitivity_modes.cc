@@ -35,7 +35,7 @@ namespace Squeal
             result.modes.push_back(j);
             result.kind = Differentiated::cluster;
           }
-      // Vectors have unit M-norms
+      // κ = 2 |λ| / |D|, because vectors have unit M-norms
       if (result.kind == Differentiated::cluster || 2. * std::abs(point.lambda[mode]) <= coalescing_condition * std::abs(D))
         return result;
 
@@ -64,7 +64,7 @@ namespace Squeal
       return result;
     }
 
-    /// For each λ, the nearest mode of a point; each mode is used once.
+    /// Nearest mode of a point for each given mode, one to one.
     std::vector<int> nearest_modes(const ChartPoint &point, const std::vector<ModeSensitivity> &modes)
     {
       std::vector<int> result;
@@ -120,7 +120,7 @@ namespace Squeal
             mode.changes.push_back(mode.derivatives[p] - before[m].derivatives[p]);
           result =
             std::max(result, largest(parameters, mode.changes, imaginary_part) / largest(parameters, mode.derivatives, imaginary_part));
-          // Skip growth rates of neutral modes: they and their derivatives are rounding errors
+          // Skip growth rates of neutral modes, because they and their derivatives are rounding errors
           if (const double scale = largest(parameters, mode.derivatives, real_part); scale > negligible_divergence * std::abs(mode.lambda))
             result = std::max(result, largest(parameters, mode.changes, real_part) / scale);
         }
@@ -166,7 +166,8 @@ namespace Squeal
     run.progress.finish(text(result.size(), " modes, ", model.parameters.size(), " parameters; ", sweep.reduced->size(), " vectors after ",
                              n_growths, n_growths == 1 ? " extension" : " extensions"));
     if (!why_stopped.empty())
-      run.warn("derivatives of modes miss Sensitivity/Tolerance: " + why_stopped);
+      run.warn("derivatives of modes do not meet Sensitivity/Tolerance: " + why_stopped +
+               "; raise it, or Sweep/Maximum basis if it limits the basis");
     return result;
   }
 } // namespace Squeal

@@ -130,7 +130,7 @@ namespace Squeal
         add_rotation(result.bodies, model, parameters.operation.angular_velocity());
       for (std::size_t c = 0; c < result.interface.size(); ++c)
         if (result.interface.size() != scene.interface.size() || !couple_the_same_nodes(result.interface[c], scene.interface[c]))
-          throw MeshError("the numbers of contact nodes changed when the mesh was moved", "derivatives with respect to " + motion.parameter,
+          throw MeshError("moving nodes of the mesh changed the contact nodes", "derivatives with respect to " + motion.parameter,
                           "set Sensitivity/Geometry = none");
       return result;
     }
@@ -242,7 +242,7 @@ namespace Squeal
                 parameter.derivative.back().matrix = difference;
               }
           }
-        // Merge to one matrix per type, instead of one for each body
+        // Merge the terms of all bodies
         parameter.derivative = merged(parameter.derivative, bodies.values);
         for (Term &term : parameter.derivative)
           term.matrix = without_zeros(*term.matrix);

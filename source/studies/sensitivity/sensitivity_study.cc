@@ -50,7 +50,6 @@ namespace Squeal
       return rows;
     }
 
-    /// One row for each mode and parameter.
     Table mode_sensitivity_table(const std::vector<ModeSensitivity> &modes, const std::vector<SensitivityParameter> &parameters)
     {
       using Row = SensitivityRow;
@@ -140,8 +139,7 @@ namespace Squeal
                    rows);
     }
 
-    /// Parameters sorted by the effect of one per cent on the divergence rate of a mode, in at most @p most rows; 0: all. Individual pins
-    /// are optional.
+    /// Parameters sorted by the effect of 1 % on the divergence rate of a mode, at most @p most rows; 0: all rows.
     Table ranking_table(const ModeSensitivity                   &mode,
                         const std::vector<SensitivityParameter> &parameters,
                         const bool                               with_single_pins,
@@ -189,11 +187,11 @@ namespace Squeal
     {
       const ModalQuantities q = modal_quantities(mode.lambda);
       run.screen << '\n';
-      run.progress.note(text("  one per cent of each parameter changes ", to_string(mode.label), " at ", decimal_text(q.frequency), " Hz, ",
+      run.progress.note(text("  changes per 1 % of each parameter for ", to_string(mode.label), " at ", decimal_text(q.frequency), " Hz, ",
                              mode.is_unstable ?
                                text("which grows with a divergence rate of ", decimal_text(100. * q.divergence_rate), " %") :
-                               "the least damped mode, since none grows",
-                             ", by"));
+                               "the least damped mode, because none grows",
+                             ":"));
       run.screen << '\n';
       ranking_table(mode, parameters, false, n_shown_parameters).print(run.screen);
       run.screen << '\n';
@@ -227,8 +225,8 @@ namespace Squeal
     const auto      regime =
       std::find_if(plan.regimes.begin(), plan.regimes.end(), [&](const ContactRegime &other) { return other.closed == closed; });
     if (plan.regimes.size() > 1)
-      run.progress.note(text("  note: thresholds are those with the contact set at mu = ", exact_text(mu), "; there are ",
-                             plan.regimes.size(), " over the range"));
+      run.progress.note(text("  note: thresholds refer to the contact set at mu = ", exact_text(mu), ", one of ", plan.regimes.size(),
+                             " contact sets of the sweep"));
     SweepModel sweep(plan, *regime, run);
     evaluate_points(sweep);
     std::optional<SweepChart> chart;
@@ -251,8 +249,8 @@ namespace Squeal
         const std::vector<ThresholdSensitivity> thresholds = threshold_sensitivities(model, *chart, run);
         if (const auto n = std::count_if(thresholds.begin(), thresholds.end(), [](const auto &found) { return !found.obstacle.empty(); });
             n > 0)
-          run.progress.note(
-            text("  note: ", n, " of ", thresholds.size(), " thresholds have no derivatives, see sensitivities_thresholds.csv"));
+          run.progress.note(text("  note: ", n, " of ", thresholds.size(),
+                                 " thresholds have no derivatives (sensitivities_thresholds.csv, column `remark`)"));
         run.store_table("sensitivities_thresholds", threshold_sensitivity_table(thresholds, *chart, parameters));
       }
     run.finish();
@@ -266,8 +264,8 @@ namespace Squeal
                       "Sweep/Number of friction coefficients", "Sweep/Tolerance", "Sweep/Maximum basis", "Sweep/Threshold tolerance",
                       "Output/Write system"}};
     study.rules         = {{"Output/Write system", is_used},
-                           {"Output/", [](const Parameters &) { return "the study writes no mode shapes"; }},
-                           {"Complex modes/", [](const Parameters &) { return "the study solves reduced models"; }},
+                           {"Output/", [](const Parameters &) { return "not written by Study = sensitivity"; }},
+                           {"Complex modes/", [](const Parameters &) { return "modes are solved with a reduced model"; }},
                            {"Sweep/First friction coefficient", no_thresholds},
                            {"Sweep/Last friction coefficient", no_thresholds},
                            {"Sweep/Number of friction coefficients", no_thresholds},

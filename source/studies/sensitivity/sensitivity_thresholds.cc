@@ -9,14 +9,14 @@ namespace Squeal
   {
     using Complex = std::complex<double>;
 
-    /// Largest distance from a coalescence, relative to the distance from the next event of either branch. Within this distance, δ² is
-    /// nearly linear [-].
+    /// First step of μ around a coalescence relative to the distance from the next event of either branch, small enough for δ² to be nearly
+    /// linear [-].
     constexpr double first_distance = 0.03;
 
-    /// Number of reductions of the distances by a factor of ten if modes cannot be followed.
+    /// Maximum number of attempts to follow the modes, each with a tenth of the previous step.
     constexpr int most_attempts = 3;
 
-    /// Modes of a point that continue the modes of another point; empty if this cannot be decided.
+    /// Modes of a point that continue given modes of another point; empty if they cannot be identified.
     std::optional<std::vector<int>> followed(const ChartPoint       &from,
                                              const std::vector<int> &modes,
                                              const ChartPoint       &to,
@@ -42,7 +42,7 @@ namespace Squeal
       return result;
     }
 
-    /// Point of a chart closest to a friction coefficient at which all these branches have modes; −1: none.
+    /// Index of the point closest to a friction coefficient, among points at which all given branches have modes; −1: none.
     int nearest_point(const StabilityChart &chart, const double friction_coefficient, const std::vector<int> &branches)
     {
       int result = -1;
@@ -54,7 +54,7 @@ namespace Squeal
       return result;
     }
 
-    /// Friction coefficients at which a threshold is evaluated, with the modes there.
+    /// A friction coefficient at which a threshold is evaluated, with the modes there.
     struct ThresholdSample
     {
       double           friction_coefficient;
@@ -77,7 +77,7 @@ namespace Squeal
       {
         result = {&threshold, "", {}, {}};
         if (threshold.friction_coefficient <= chart.points.front().friction_coefficient)
-          result.obstacle = "grows from the first friction coefficient: friction splits a multiple eigenvalue";
+          result.obstacle = "the threshold is at the first friction coefficient of the sweep";
         else if (threshold.mechanism == ThresholdMechanism::zero_growth)
           at_zero_growth();
         else
@@ -119,7 +119,7 @@ namespace Squeal
         const auto        to    = followed(chart.points[i], from, there, model.sweep.largest_circular_frequency);
         if (!to)
           {
-            result.obstacle = "its modes mix with others nearby";
+            result.obstacle = "its modes cannot be identified nearby";
             return nullptr;
           }
         samples.push_back({mu, *to});
@@ -157,7 +157,7 @@ namespace Squeal
         samples.clear();
         if (!(step > 3. * threshold.uncertainty))
           {
-            result.obstacle = "another event of its modes is too close";
+            result.obstacle = "another event of its modes, or an end of the sweep, is too close";
             return;
           }
         std::vector<std::array<Complex, 3>> means(model.parameters.size(), std::array<Complex, 3>{});
@@ -221,7 +221,8 @@ namespace Squeal
       {
         const std::string why_not = model.grow(groups, run.parameters.sweep.maximum_basis);
         if (!why_not.empty())
-          run.warn("derivatives of thresholds are those of the basis of the sweep: " + why_not);
+          run.warn("derivatives of thresholds are computed without extending the basis of the sweep: " + why_not +
+                   "; raise Sweep/Maximum basis if it limits the basis");
         else
           {
             std::vector<ThresholdSensitivity> now = find("again threshold ");

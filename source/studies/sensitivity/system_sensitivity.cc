@@ -13,7 +13,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Required relative error of λ for left and right vectors; the errors of the vectors are about its square root [-].
+    /// Tolerance for the relative error of λ; errors of left and right vectors are about its square root [-].
     constexpr double tolerance_of_vectors = 1e-12;
   } // namespace
 
@@ -26,7 +26,7 @@ namespace Squeal
     solvers.iteration_tolerance = tolerance_of_vectors;
     FrictionModes result        = named_modes(
              frictionless, modes_with_friction(coupled, frictionless, value, run.parameters.discretization.band(), solvers, run.progress));
-    run.progress.finish(text(result.modes.lambda.size(), " found"));
+    run.progress.finish(text(result.modes.lambda.size(), " modes"));
     return result;
   }
 
@@ -42,7 +42,7 @@ namespace Squeal
     const SystemFile    &file   = given.file;
     const CoupledSystem &system = given.coupled;
     if (file.parameters.empty())
-      throw ParameterError("the system has no parameters for derivatives", "file " + file.path,
+      throw ParameterError("derivatives require parameters, but the system file has none", "file " + file.path,
                            "add `parameters` and coefficients of terms, or set Study = stability");
     const double        value = given.value;
     const FrictionModes friction =

@@ -14,7 +14,6 @@ namespace Squeal
     /// Maximum number of unstable modes on the screen.
     constexpr std::size_t n_shown_modes = 20;
 
-    /// Real coupled modes: label, share, frequency, residual.
     Table real_table(const FrictionlessModes &modes)
     {
       return Table(Columns<int>{{"label", "", [&](const int j) { return modes.labels[j]; }},
@@ -24,7 +23,7 @@ namespace Squeal
                    boost::irange<int>(0, modes.labels.size()));
     }
 
-    /// A column of modes with friction, by mode index, of one of the modal_quantities().
+    /// A column with one of the modal_quantities() of modes with friction, by mode index.
     Column<int> column_of(const FrictionModes &friction,
                           const std::string   &name,
                           const std::string   &unit,
@@ -37,8 +36,7 @@ namespace Squeal
               digits};
     }
 
-    /// Complex modes: label, share, frequency, growth and divergence rate, effective damping ratio, residuals, verdict, location of the
-    /// energy, error estimates if available, and columns @p more by mode index.
+    /// Table of the complex modes, with columns @p energies and @p more by mode index.
     Table complex_table(const FrictionModes &friction, const Columns<int> &energies, const Columns<int> &more)
     {
       const ComplexModes &modes   = friction.modes;
@@ -55,13 +53,13 @@ namespace Squeal
       columns.insert(columns.end(), energies.begin(), energies.end());
       if (!modes.estimated_errors.empty())
         columns.push_back({"estimated error of lambda", "-", [&](const int j) { return modes.estimated_errors[j]; }, 1, true});
-      if (more.empty()) // With additional columns, the verdict among them includes the discretisation error
+      if (more.empty()) // additional columns contain a verdict that includes the discretisation error
         columns.push_back({"verdict", "", [&](const int j) { return to_string(friction.verdicts[j]); }});
       columns.insert(columns.end(), more.begin(), more.end());
       return Table(columns, boost::irange<int>(0, friction.labels.size()));
     }
 
-    /// Growing modes, largest divergence rate first: label, frequency, growth and divergence rate, share. At most @p n_largest rows.
+    /// Growing modes, largest divergence rate first; at most @p n_largest rows.
     Table unstable_table(const FrictionModes &friction, const std::size_t n_largest)
     {
       std::vector<int> growing;
@@ -79,7 +77,7 @@ namespace Squeal
                    growing);
     }
 
-    /// Real eigenvalues, fastest growth first: growth rate, kind.
+    /// Real eigenvalues, fastest growth first.
     Table real_eigenvalue_table(std::vector<double> values)
     {
       std::reverse(values.begin(), values.end());
@@ -104,7 +102,6 @@ namespace Squeal
       run.measure("largest growth rate of a real eigenvalue [1/s]", friction.modes.real_values.back());
   }
 
-  /// Prints the verdict and the unstable modes.
   void report_modes(const FrictionlessModes                &frictionless,
                     const FrictionModes                    &friction,
                     const std::vector<DiscretisationError> &mesh_errors,
@@ -121,7 +118,7 @@ namespace Squeal
         run.screen << '\n';
         unstable_table(friction, n_shown_modes).print(run.screen);
         if (friction.n_unstable() > n_shown_modes)
-          run.progress.note(text("    and ", friction.n_unstable() - n_shown_modes, " more, see complex_modes.csv"));
+          run.progress.note(text("    and ", friction.n_unstable() - n_shown_modes, " more (complex_modes.csv)"));
       }
     run.screen << '\n';
     if (const std::string note = note_on_count(friction, frictionless.real.eigenvalues.size(), parameters.discretization.maximum_rate);

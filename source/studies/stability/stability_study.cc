@@ -18,7 +18,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Component modes below ω² = @p largest_eigenvalue: component, contact, label, frequency, residual.
+    /// Component modes below ω² = @p largest_eigenvalue.
     Table component_table(const FrictionlessModes &modes, const double largest_eigenvalue)
     {
       using Row = ListedComponentMode;
@@ -149,8 +149,6 @@ namespace Squeal
       run.store_table("energy", Table(columns, rows));
     }
 
-    // ------------------------------------------------------------------ tables
-
     // ---------------------------------------------------------------- matrices
 
     void write_matrices(const Linearisation &linearisation, Run &run)
@@ -216,7 +214,7 @@ namespace Squeal
             stream << ',' << node.area << '\n';
           }
       });
-      run.progress.finish("M, C, K, C_b, P_n, P_t, P_b, K_n, T_c in Matrix Market form");
+      run.progress.finish("M, C, K, C_b, P_n, P_t, P_b, K_n, T_c in Matrix Market format");
     }
 
   } // namespace
@@ -230,7 +228,7 @@ namespace Squeal
     const OperationParameters &operation  = parameters.operation;
     const double               omega_max  = circular_frequency(parameters.discretization.maximum_frequency);
 
-    // Process 0 keeps the whole mesh to write it; other processes need only its names, because the model has their parts
+    // Keep the whole mesh only on process 0, which writes it; the model contains the parts of the other processes
     if (Mesh names; !run.is_root)
       {
         names.volume_names = scene.mesh.volume_names;

@@ -9,11 +9,11 @@ namespace Squeal
 {
   namespace
   {
-    /// Largest R/ω of a vibration: beyond it, modes grow by a factor of more than e^(2π) per period, which is divergence rather than
-    /// audible vibration [-].
+    /// Largest R/ω of a vibration [-]: modes above it grow by a factor of more than e^(2π) per period, which is divergence rather than
+    /// audible vibration.
     constexpr double fastest_oscillating_divergence = 1.;
 
-    /// Summary of the unstable modes; the first one named is the fastest growing oscillating mode.
+    /// Summary of the unstable modes; names the fastest growing oscillating mode.
     std::string squeal(const FrictionModes &friction)
     {
       const auto &lambda = friction.modes.lambda;
@@ -39,7 +39,7 @@ namespace Squeal
       if (n_weak > 0)
         result += text("; ", n_weak, " below ", 100. * weak_divergence, " %");
       if (n_monotonic > 0)
-        result += text("; ", n_monotonic, " grow faster than they oscillate, above ", 100. * fastest_oscillating_divergence, " %");
+        result += text("; ", n_monotonic, " above ", 100. * fastest_oscillating_divergence, " %, which diverge rather than oscillate");
       return result;
     }
   } // namespace
@@ -66,7 +66,7 @@ namespace Squeal
     if (const std::string &varied = frictionless.linearisation.coupled.varied; !varied.empty())
       result.at = text(" at ", varied, " = ", exact_text(mu));
     result.cost = run.progress.finish(text(found.lambda.size(), " found, ", result.n_unstable(), " unstable", result.at,
-                                           found.n_rigid_body > 0 ? text(", ", found.n_rigid_body, " of a rigid body") : "",
+                                           found.n_rigid_body > 0 ? text(", rigid-body modes: ", found.n_rigid_body) : "",
                                            found.real_values.empty() ? "" : text(", ", found.real_values.size(), " real eigenvalues"), "; ",
                                            found.summary));
     return result;
@@ -77,7 +77,7 @@ namespace Squeal
     std::vector<std::string> lines;
     if (const std::size_t n = friction.n_growing_real(); n > 0)
       lines.push_back(text("  static divergence: ", n, n == 1 ? " real eigenvalue" : " real eigenvalues", " above zero", friction.at,
-                           ", the largest growth rate ", decimal_text(friction.modes.real_values.back()), " 1/s"));
+                           ", largest growth rate ", decimal_text(friction.modes.real_values.back()), " 1/s"));
     if (friction.n_unstable() > 0)
       lines.push_back(squeal(friction));
     if (const std::size_t n = friction.n_of(Verdict::undecided); n > 0)
@@ -97,13 +97,14 @@ namespace Squeal
     const std::string counts = text("  note: ", n_real_modes, " real modes, but ", n_complex, " complex modes in the band: ");
     std::string       rest;
     if (n_values > 0)
-      rest = text(n_values, " real eigenvalues belong to modes that do not oscillate");
+      rest = text(n_values, " real eigenvalues replace modes that no longer oscillate");
     if (friction.n_slow > 0)
-      rest += text(rest.empty() ? "" : ", and ", "creep motions, |lambda| below ", zero_frequency, " of the band's end, are not listed");
+      rest +=
+        text(rest.empty() ? "" : ", and ", "eigenvalues with |lambda| below ", zero_frequency, " of the end of the band are not listed");
     if (maximum_rate > 0.)
       rest += text(rest.empty() ? "" : ", and ", "modes that decay faster than ", exact_text(maximum_rate), " 1/s are not listed");
     else if (friction.n_slow == 0 && 2 * n_complex + n_values != 2 * n_real_modes)
-      rest += text(rest.empty() ? "" : ", and ", "friction moved modes across its end");
+      rest += text(rest.empty() ? "" : ", and ", "modes have crossed the end of the band");
     return counts + rest;
   }
 
@@ -112,8 +113,8 @@ namespace Squeal
     const std::size_t n = system.has_damping() ? friction.n_of(Verdict::neutral) : 0;
     if (n == 0)
       return "";
-    return text("  note: ", n, " of ", friction.verdicts.size(), " modes grow or decay by less than ", 100. * negligible_divergence,
-                " % of omega, within rounding errors: the damping is too weak to decide, and they count as stable");
+    return text("  note: the growth rates of ", n, " of ", friction.verdicts.size(), " modes are below ", 100. * negligible_divergence,
+                " % of omega, within rounding errors; these modes count as stable");
   }
 
   void record_conditioning(const CoupledSystem &system,
@@ -136,8 +137,8 @@ namespace Squeal
     if (conditioning.largest_error() > tolerance)
       run.warn(text("the eigenvalues are accurate to about ", std::floor(conditioning.digits()), " of 16 digits: growth rates below ",
                     100. * largest_error(system, modes, conditioning), " % of omega cannot be distinguished from zero",
-                    slowest > 0 ? text(", for ", slowest, slowest == 1 ? " mode" : " modes", " below ",
-                                       decimal_text(hertz(std::sqrt(slow_square * system.hidden_square))), " Hz growth rates below ",
+                    slowest > 0 ? text("; for ", slowest, slowest == 1 ? " mode" : " modes", " below ",
+                                       decimal_text(hertz(std::sqrt(slow_square * system.hidden_square))), " Hz, the limit is ",
                                        100. * conditioning.largest_error(), " %") :
                                   "",
                     " (condition numbers: stiffness ", conditioning.stiffness, ", eigenvalues up to ", kappa,

@@ -31,22 +31,21 @@ namespace Squeal
         run.warn(text(n_held, " of the ", n, " modes of zero frequency ", n_held == 1 ? "is" : "are",
                       " held by mounts that are too soft: rounding errors of the stiffness hide frequencies below ",
                       decimal_text(hertz(std::sqrt(coupled.hidden_square))),
-                      " Hz. Raise Mounts/Elastic mounts, or remove these directions if the body is meant to be free"));
+                      " Hz. Increase Mounts/Elastic mounts, or remove these directions if the body is unconstrained"));
     }
 
-    /// Rejects speeds above the critical one: K − Ω² ρ N then has eigenvalues ≤ 0 and no Cholesky factor.
+    /// Rejects supercritical speeds, at which K − Ω² ρ N has eigenvalues ≤ 0 and no Cholesky factor.
     void check_speed(const CoupledSystem &coupled, const Parameters &parameters)
     {
       if (!parameters.operation.rotating_disc || !parameters.has_friction())
         return;
       int       n_null = 0;
-      const int n      = count_negative_eigenvalues(*coupled.stiffness, "stiffness of the turning disc", &n_null);
+      const int n      = count_negative_eigenvalues(*coupled.stiffness, "stiffness of the rotating disc", &n_null);
       if (n + n_null > 0)
         throw ParameterError(
-          text("at ", exact_text(parameters.operation.rotation_speed), " rad/s the disc turns beyond a critical speed: ",
-               "the stiffness K - Omega^2 rho N has ", n + n_null, " eigenvalue", n + n_null == 1 ? "" : "s",
-               " that are not positive. The critical speed is an estimate from the rotation terms alone: centrifugal prestress, "
-               "which is of the same order Omega^2 and stiffens the disc, is not in the model"),
+          text("the rotation speed of ", exact_text(parameters.operation.rotation_speed), " rad/s exceeds a critical speed: ",
+               "the stiffness K - Omega^2 rho N has ", n + n_null, " non-positive eigenvalue", n + n_null == 1 ? "" : "s",
+               ". The model does not contain centrifugal prestress, which is of the same order Omega^2 and stiffens the disc"),
           "parameter Operation/Rotation speed", "lower it, or set Operation/Gyroscopic forces = false");
     }
 
@@ -64,7 +63,7 @@ namespace Squeal
         const bool            is_disc = component == Component::disc;
         SymmetricModesOptions options =
           real_modes_options(run.parameters.solvers, name, is_disc ? stabilizing_shift(*scene.model, scene.system, omega_max) : pins_shift);
-        // Solve pins individually: equal pins would cause clusters, in which every mode occurs once per pin, bending modes twice
+        // Solve pins individually, because equal pins would cause clusters, in which every mode occurs once per pin and bending modes twice
         options.by_parts = !is_disc;
         run.progress.update(name);
         return component_modes(*scene.model, scene.interface, linearisation.interface, scene.system, component, boundary,

@@ -55,9 +55,9 @@ namespace Squeal
     const auto   shift     = system.stiffness ? definite_shift(system, omega_max) : std::nullopt;
     if (!shift)
       throw SolverError(
-        "the symmetric part of the stiffness has negative eigenvalues, or it and the mass are singular for the same motion",
+        "the symmetric part of the stiffness has negative eigenvalues, or stiffness and mass are both singular for the same motion",
         "file " + run.parameters.system.path(),
-        "mark terms that may destabilise by \"kind\": \"friction\", eliminate constraints, and check the signs of the terms");
+        "mark destabilising terms with \"kind\": \"friction\", eliminate constraints, or correct the signs of terms");
     const auto count = number_of_modes(system, (1. + margin) * omega_max, solvers, run.progress);
 
     FrictionlessModes result;
@@ -83,12 +83,12 @@ namespace Squeal
   FrictionModes direct_solution(const GivenSystem &given, Run &run)
   {
     run.progress.begin("Complex modes");
-    run.progress.note("  no definite part: Q itself is factorised, and modes are numbered");
+    run.progress.note("  no definite part: Q itself is factorised, and modes are labelled by number");
     FrictionModes result;
     static_cast<JudgedModes &>(result) = direct_modes(given.coupled, given.value, run.parameters.discretization.band(),
                                                       run.parameters.solvers, "file " + given.file.path, run.progress);
     if (result.modes.lambda.empty())
-      throw SolverError("no oscillating mode lies in the band", "complex modes", "raise Band/Maximum frequency");
+      throw SolverError("there are no oscillating modes in the band", "complex modes", "raise Band/Maximum frequency");
     for (std::size_t j = 0; j < result.modes.lambda.size(); ++j)
       result.labels.push_back(numbered_label(static_cast<int>(j) + 1));
     if (!given.coupled.varied.empty())
@@ -116,7 +116,7 @@ namespace Squeal
     run.progress.begin("Argument principle");
     if (!is_countable(given.coupled))
       {
-        run.progress.finish("modes are not counted on several processes");
+        run.progress.finish("modes are not counted, because this requires a single process");
         return;
       }
     const auto [contour, count] = counted_modes(given.coupled, given.value, frictionless, run);

@@ -27,9 +27,10 @@ namespace Squeal
                           "no counterpart",
                         ")");
       if (n > 0)
-        run.warn(text(n, n == 1 ? " unstable mode is" : " unstable modes are", " not converged on this mesh to ", 100. * limits.frequency,
-                      " % of the frequency and ", 100. * limits.divergence, " percentage points of the divergence rate: ", names,
-                      n > n_named ? ", ..." : "", "; refine the mesh to decide whether they grow"));
+        run.warn(text(n, n == 1 ? " unstable mode is" : " unstable modes are", " not converged on this mesh within ",
+                      100. * limits.frequency, " % of the frequency and ", 100. * limits.divergence,
+                      " percentage points of the divergence rate: ", names, n > n_named ? ", ..." : "",
+                      "; refine the mesh to decide whether they grow"));
     }
 
     /// File name of a mode: type, row in the table from 1, and label.
@@ -95,8 +96,8 @@ namespace Squeal
         writer.write_animation("unstable_modes", animated, animation_options(output));
       std::string growth; // the amplitude grows by e^{2π ξ n} in n periods
       if (const double exponent = 2. * M_PI * highest; output.animation_growth && highest > 0.)
-        growth = text("; the fastest grows by a factor of ", std::exp(exponent * output.animation_periods), ", and of e in ", 1. / exponent,
-                      " periods");
+        growth = text("; the fastest grows by a factor of ", std::exp(exponent * output.animation_periods), ", or by a factor of e in ",
+                      1. / exponent, " periods");
       run.progress.finish(text(list.size(), " modes, ", animated.size(), " animated", growth));
     }
 
@@ -118,8 +119,8 @@ namespace Squeal
       run.progress.finish(text(list.size(), " modes"));
     }
 
-    /// Points of this process. The component of a point is the index of the group that moves most at this point; points without a group
-    /// have the last index.
+    /// Points of this process. The component of a point is the group of the dof with the largest weight in its displacement; points without
+    /// a group have the last index.
     std::vector<Node> nodes_of(const ShapePoints &points, const std::vector<DofGroup> &groups)
     {
       const SparseMatrix       &displacements = *points.displacements;
@@ -157,7 +158,7 @@ namespace Squeal
     {
       const double omega_max = circular_frequency(run.parameters.discretization.maximum_frequency);
       const auto   listed    = listed_component_modes(modes, omega_max * omega_max);
-      // Disc and pins have different meshes, so that each set has its own list
+      // Write a list for each set, because disc and pins have different meshes
       std::map<std::string, std::vector<ListedMode>> lists;
       run.progress.begin("Component mode shapes");
       for (std::size_t row = 0; row < listed.size(); ++row)
@@ -239,7 +240,7 @@ namespace Squeal
     const bool has_goal = run.parameters.goal != AccuracyGoal::as_given;
     run.progress.note(
       text(has_goal ? text("  accuracy: ", to_string(run.parameters.goal), " requested; errors estimated from a coarser mesh") :
-                      "  discretisation error: difference from the coarser mesh, not extrapolated",
+                      "  discretisation error as difference from the coarser mesh, not extrapolated",
            ": frequencies within ", decimal_text(100. * frequency), " %, divergence rates within ", decimal_text(100. * divergence),
            " percentage points", n_lost > 0 ? text(", ", n_lost, n_lost == 1 ? " mode" : " modes", " without counterpart excluded") : ""));
     std::string converged;
@@ -296,7 +297,7 @@ namespace Squeal
     if (!file.points)
       {
         if (output.real_fields)
-          run.warn("no mode shape is written: " + file.path + " has no `positions`");
+          run.warn("no mode shape is written, because " + file.path + " has no `positions`: add `positions` and `displacements`");
         return;
       }
     const SparseMatrix &displacements = *file.points->displacements;

@@ -50,7 +50,7 @@ namespace Squeal
         {"Operation/Rotation", no_friction},
         {"Operation/Sliding direction", no_friction},
         {"Operation/Rotation speed",
-         // The sliding speed is used by tables of the steady sliding state
+         // Tables of the steady sliding state contain the sliding speed
          [](const Parameters &p) { return p.needs_steady_sliding() ? nullptr : no_sliding_speed(p); }},
         {"Operation/Gyroscopic forces",
          [](const Parameters &p) { return unless(p.has_friction(), "the frictionless problem does not include rotation"); }},
@@ -74,7 +74,7 @@ namespace Squeal
          [](const Parameters &p) -> Reason {
            const bool by_reduced_models =
              (p.study->has("Designs/") && !p.study->has("Search/")) || (p.study->has("Sensitivity/") && !p.system);
-           return by_reduced_models ? "the study solves reduced models" : no_damping(p);
+           return by_reduced_models ? "the study uses reduced models" : no_damping(p);
          }},
         {"Complex modes/Solver", [](const Parameters &p) { return unless(p.has_friction(), "the problem is frictionless"); }},
         {"Complex modes/Shift inverse", no_krylov},
@@ -123,7 +123,7 @@ namespace Squeal
             return "System is empty";
       for (const Study *other : studies())
         if (other->has(path) && !parameters.study->has(path))
-          return std::string("of Study = ") + other->name;
+          return std::string("a parameter of Study = ") + other->name;
       for (const auto *table : {&parameters.study->rules, &general_rules()})
         for (const UsageRule &rule : *table)
           if (concerns(rule.path, path))
@@ -174,7 +174,7 @@ namespace Squeal
             if (!used)
               used = parameters.geometry.used_variables();
             if (used->count(variable) == 0)
-              reason = "the geometry does not use it";
+              reason = "not used by the geometry";
           }
         if (!reason.empty())
           unused.push_back({path, reason});
@@ -191,9 +191,9 @@ namespace Squeal
   {
     std::string note;
     for (const UnusedParameter &parameter : unused_parameters(parameters))
-      note += (note.empty() ? "  note: not used here: " : ", ") + parameter.path + " (" + parameter.why + ")";
+      note += (note.empty() ? "  note: unused parameters: " : ", ") + parameter.path + " (" + parameter.why + ")";
     for (const std::string &path : parameters.replaced)
-      note += (note.empty() ? "  note: not used here: " : ", ") + path + " (Accuracy = " + to_string(parameters.goal) + " chooses it)";
+      note += (note.empty() ? "  note: unused parameters: " : ", ") + path + " (set by Accuracy = " + to_string(parameters.goal) + ")";
     return note;
   }
 } // namespace Squeal

@@ -51,12 +51,12 @@ namespace Squeal
       for (const std::string &name : names)
         if (find_recipe(name) == nullptr)
           throw ParameterError("there is no basis `" + name + "`", "parameter Reduction/Bases",
-                               "choose among " + boost::algorithm::join(known, ", "));
+                               "choose from " + boost::algorithm::join(known, ", "));
     }
 
     // ---------------------------------------------------------------- in use
 
-    /// True if a measured basis satisfies @p fits.
+    /// True if a basis of the study satisfies @p fits.
     template <typename Predicate>
     bool measures(const Parameters &p, const Predicate &fits)
     {
@@ -69,14 +69,13 @@ namespace Squeal
       return measures(p, [source](const BasisRecipe &recipe) { return recipe.rests_on(source); });
     }
 
-    const auto no_snapshots = [](const Parameters &p) {
-      return unless(measures(p, BasisSource::snapshots), "the basis POD is not measured");
-    };
+    const auto no_snapshots = [](const Parameters &p) { return unless(measures(p, BasisSource::snapshots), "only for the basis POD"); };
     const auto no_krylov_for_bases = [](const Parameters &p) {
-      return unless(measures(p, BasisSource::snapshots) || p.solves_by(ComplexSolver::krylov), "of the solver Krylov");
+      return unless(measures(p, BasisSource::snapshots) || p.solves_by(ComplexSolver::krylov),
+                    "only for the basis POD or the solver Krylov");
     };
 
-    /// Largest frequency, as a multiple of the end of the band, in the search for the requested number of component modes [-].
+    /// Largest frequency, as a multiple of the truncation frequency, in the search for the requested number of component modes [-].
     constexpr double furthest_band = 16.;
   } // namespace
 
@@ -98,9 +97,9 @@ namespace Squeal
     };
     for (const BasisRecipe *recipe : plan.recipes)
       if (!problem.has_contact_nodes && recipe->needs_contact_nodes())
-        refuse(*recipe, "needs bodies and their contact nodes, which a system file does not have", "remove the basis");
+        refuse(*recipe, "needs contact nodes, but a system file has none", "remove the basis");
       else if (!problem.has_friction && recipe->needs_friction)
-        refuse(*recipe, "requires friction", "set Reduction/Problem = friction, or remove it");
+        refuse(*recipe, "requires friction", "set Reduction/Problem = friction, or remove the basis");
       else if (!problem.has_damping && recipe->needs_damping)
         refuse(*recipe, "needs damping, but there is none", "add damping, or remove the basis");
       else if (!problem.has_definite_part && !recipe->is_pod)
@@ -132,35 +131,35 @@ namespace Squeal
     ReductionPlan plan        = plan_for(problem, parameters, value);
     plan.parameters           = fixed(file.parameters, system.at(value));
     if (!problem.has_snapshots && (plan.rests_on(BasisSource::snapshots) || !problem.has_definite_part))
-      throw ParameterError(varied == nullptr ? "the basis POD needs a parameter, and the system has none" :
+      throw ParameterError(varied == nullptr ? "the basis POD needs a parameter, but the system has none" :
                                                text("snapshots are outside the range of ", varied->name, " from ",
                                                     exact_text(varied->lower), " to ", exact_text(varied->upper)),
-                           "parameter Reduction/Snapshots", "give values in the range, or remove the basis POD");
+                           "parameter Reduction/Snapshots",
+                           "give values within the range of a parameter or, if the system has a definite part, remove the basis POD");
     return plan;
   }
 
   std::vector<UsageRule> reduction_usage()
   {
-    return {{"Operation/Rotation speed", no_sliding_speed},
-            {"Reduction/Component modes",
-             [](const Parameters &p) {
-               const auto is_connected = [](const BasisRecipe &recipe) { return recipe.is_connected(); };
-               return unless(measures(p, is_connected), "no basis of component modes is measured");
-             }},
-            {"Reduction/Coupled frequency",
-             [](const Parameters &p) {
-               return unless(measures(p, std::mem_fn(&BasisRecipe::has_real_modes)), "no basis of real modes is measured");
-             }},
-            {"Reduction/Grown tolerances",
-             [](const Parameters &p) { return unless(measures(p, BasisSource::residuals), "no residual-grown basis is measured"); }},
-            {"Reduction/Snapshots", no_snapshots},
-            {"Reduction/POD tolerance", no_snapshots},
-            {"Complex modes/Shift inverse", no_krylov_for_bases},
-            {"Complex modes/Tolerance", no_krylov_for_bases},
-            {"Complex modes/Maximum basis", [](const Parameters &p) {
-               return unless(measures(p, BasisSource::residuals) || p.solves_by(ComplexSolver::residual_iteration),
-                             "of the solver residual iteration");
-             }}};
+    return {
+      {"Operation/Rotation speed", no_sliding_speed},
+      {"Reduction/Component modes",
+       [](const Parameters &p) {
+         const auto is_connected = [](const BasisRecipe &recipe) { return recipe.is_connected(); };
+         return unless(measures(p, is_connected), "only for bases of component modes");
+       }},
+      {"Reduction/Coupled frequency",
+       [](const Parameters &p) { return unless(measures(p, std::mem_fn(&BasisRecipe::has_real_modes)), "only for bases of real modes"); }},
+      {"Reduction/Grown tolerances",
+       [](const Parameters &p) { return unless(measures(p, BasisSource::residuals), "only for residual-grown bases"); }},
+      {"Reduction/Snapshots", no_snapshots},
+      {"Reduction/POD tolerance", no_snapshots},
+      {"Complex modes/Shift inverse", no_krylov_for_bases},
+      {"Complex modes/Tolerance", no_krylov_for_bases},
+      {"Complex modes/Maximum basis", [](const Parameters &p) {
+         return unless(measures(p, BasisSource::residuals) || p.solves_by(ComplexSolver::residual_iteration),
+                       "only for residual-grown bases or the solver residual iteration");
+       }}};
   }
 
   ReductionSets::ReductionSets(const ReductionPlan &plan, const FrictionlessModes &frictionless, const CoupledSystem &system, Run &run)
@@ -218,7 +217,7 @@ namespace Squeal
 
   void ReductionSets::charge_coupled_factor()
   {
-    // The inverse computes the factor of K_c and K_c⁻¹ A together. Measure the factor separately, because not every basis needs K_c⁻¹ A
+    // Separate the times of the factor of K_c and of K_c⁻¹ A, because not every basis needs K_c⁻¹ A
     if (system.n_contact() == 0)
       {
         book({BasisSource::coupled_factor, "", {}, {}, {}, frictionless.factorisation.cpu_seconds});
@@ -251,8 +250,8 @@ namespace Squeal
     const SymmetricModes modes   = symmetric_modes(*coupled.stiffness, *coupled.mass, omega * omega, options);
     const double         seconds = watch.cost().cpu_seconds;
     if (modes.eigenvalues.empty())
-      throw SolverError("no mode of the coupled system lies below " + text(frequency) + " Hz", "parameter Reduction/Coupled frequency",
-                        "raise it, or give 0 for the modes of the band");
+      throw SolverError("there are no modes of the coupled system below " + text(frequency) + " Hz",
+                        "parameter Reduction/Coupled frequency", "raise it, or give 0 for the modes of the band");
     const int n =
       keep({BasisSource::real, exact_text(frequency) + " Hz", {}, frequency, modes.vectors->n_columns(), seconds}, *modes.vectors);
 
@@ -324,7 +323,7 @@ namespace Squeal
         n[source] = keep_lowest({source, truncation.text(), {}, {}, {}}, component, boundary, frequency, count);
     };
 
-    // The disc has as many sliding as free modes in a basis (Table 3)
+    // Use as many sliding as free modes of the disc in a basis (Table 3 of the paper)
     using Source      = BasisSource;
     const bool slides = plan.rests_on(Source::disc_sliding);
     compute_if(slides || plan.rests_on(Source::disc_free), Source::disc_free, Component::disc, ContactBoundary::free, truncation.disc);
@@ -375,7 +374,7 @@ namespace Squeal
     const SymmetricModes modes    = symmetric_modes(*K, *M, end, options);
     const int            n_solved = modes.eigenvalues.size();
     if (n_solved == 0)
-      throw SolverError(what + ": none lies below " + text(frequency) + " Hz", "parameter Reduction/Component modes",
+      throw SolverError("there are no " + what + " below " + text(frequency) + " Hz", "parameter Reduction/Component modes",
                         "raise the truncation frequency");
     MultiVector set    = *T * view(*modes.vectors, 0, count > 0 ? count : n_solved);
     charge.seconds     = watch.cost().cpu_seconds;

@@ -23,9 +23,9 @@ namespace Squeal
       for (const auto &[section, material] : run.parameters.materials.all())
         if (run.parameters.discretization.element == Element::trilinear && material.mean_poisson_ratio() >= locking_poisson_ratio)
           run.progress.note(text("  note: trilinear elements lock at ", section, material.orthotropy ? ", mean " : "/",
-                                 "Poisson ratio = ", material.mean_poisson_ratio(), ": from ", locking_poisson_ratio,
-                                 " upwards, bending frequencies are more than 1 % too high and growth rates even less accurate"
-                                 "; set Discretization/Element = incompatible modes"));
+                                 "Poisson ratio = ", material.mean_poisson_ratio(), ": for ratios of ", locking_poisson_ratio,
+                                 " and more, bending frequencies may be more than 1 % too high, and growth rates are even less accurate; "
+                                 "set Discretization/Element = incompatible modes"));
     }
 
     void warn_of_linear_cells(const Mesh &mesh, Run &run)
@@ -38,7 +38,7 @@ namespace Squeal
                                "more than 50 %; set Discretization/Element = quadratic"));
     }
 
-    /// Mounts with nonzero stiffness, scaled to entries of one.
+    /// Sum of the mounts with nonzero stiffness, each scaled to a largest entry of one.
     std::shared_ptr<const SparseMatrix> unit_mounts(const std::vector<Term> &bodies)
     {
       std::vector<std::pair<double, std::shared_ptr<const SparseMatrix>>> summands;
@@ -80,7 +80,7 @@ namespace Squeal
       run.progress.note("  note: " + note);
     warn_of_linear_cells(scene.mesh, run);
     summarise_scene(scene.mesh, run);
-    // Check after the summary: an unresolved mesh is often caused by lengths or moduli in other units
+    // Check after the summary, because an unresolved mesh is often due to lengths or moduli in wrong units
     check_wave_resolution(scene.mesh, parameters.materials, degree_of(parameters.discretization.element),
                           circular_frequency(parameters.discretization.maximum_frequency));
     if (!run.is_dry)
@@ -118,9 +118,10 @@ namespace Squeal
         const double omega_max = circular_frequency(parameters.discretization.maximum_frequency);
         if (stabilizing_shift(*scene.model, sparse_matrices(bodies.terms, bodies.values), omega_max) > 0.)
           throw ParameterError(
-            "the disc is free or softly held, and the convective stiffness -Omega^2 rho N destabilises its motions as a rigid body. "
-            "Centrifugal prestress, which is of the same order Omega^2 and cancels this effect, is not in the model",
-            "parameter Operation/Gyroscopic forces", "hold the disc by Mounts/Elastic mounts, or set Operation/Gyroscopic forces = false");
+            "the disc is unconstrained or softly mounted, and the convective stiffness -Omega^2 rho N destabilises its rigid-body motions, "
+            "because centrifugal prestress, which would cancel this effect, is not in the model",
+            "parameter Operation/Gyroscopic forces",
+            "hold the disc in all directions by stiff Mounts/Elastic mounts, or set Operation/Gyroscopic forces = false");
         add_rotation(bodies, *scene.model, parameters.operation.angular_velocity());
       }
     scene.mounts = unit_mounts(bodies.terms);

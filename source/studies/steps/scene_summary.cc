@@ -13,7 +13,7 @@ namespace Squeal
 {
   namespace
   {
-    // Plausible ranges, from a desk toy to a turbine and from rubber to beryllium
+    // Plausible ranges for model discs to large machines, and for rubber to beryllium
     constexpr Range disc_radii = {5e-3, 5.};    ///< [m]
     constexpr Range heights    = {1e-5, 1.};    ///< [m]
     constexpr Range densities  = {50., 25000.}; ///< [kg/m³]
@@ -21,7 +21,7 @@ namespace Squeal
 
     constexpr double alike = 1e-3; ///< relative difference below which pins count as equal
 
-    /// Number of modes assumed for the memory estimate, which depends little on it; modes are counted later.
+    /// Number of modes assumed for the memory estimate, which depends on it only slightly.
     constexpr double typical_modes = 70.;
 
     /// Summary of the disc, or of equal pins.
@@ -32,7 +32,7 @@ namespace Squeal
       double                   height = 0., contact_area = 0., volume = 0.; ///< extent along z [m]; [m²]; [m³]
       double                   mass           = 0.;                         ///< mass of each body [kg]
       double                   bar_speed      = 0.;                         ///< √(E/ρ), speed of longitudinal waves in a bar [m/s]
-      bool                     is_orthotropic = false;                      ///< orthotropic: the bar lies along material axis 1
+      bool                     is_orthotropic = false;                      ///< if true, the bar lies along material axis 1
 
       bool is_like(const Body &other) const
       {
@@ -92,18 +92,19 @@ namespace Squeal
     void warn_of_units(const std::vector<Body> &bodies, const MaterialParameters &materials, Run &run)
     {
       if (!disc_radii.contains(bodies[0].outer_radius))
-        run.warn(text("the disc has an outer radius of ", bodies[0].outer_radius, " m; lengths are in metres"));
+        run.warn(text("the disc has an outer radius of ", bodies[0].outer_radius, " m: check that lengths are in metres"));
       for (const Body &body : bodies)
         if (!heights.contains(body.height))
-          run.warn(text(body.names[0], " extends ", body.height, " m along z; lengths are in metres"));
+          run.warn(text(body.names[0], " extends ", body.height, " m along z: check that lengths are in metres"));
       const auto range_text = [](const Range &range, const char *unit) { return text(range.least, " to ", range.greatest, " ", unit); };
       for (const auto &[section, material] : materials.all())
         {
           if (!densities.contains(material.density))
-            run.warn(text(section, "/Density is ", material.density, " kg/m^3; solids have ", range_text(densities, "kg/m^3")));
+            run.warn(text(section, "/Density is ", material.density, " kg/m^3, outside the range of solids, ",
+                          range_text(densities, "kg/m^3"), ": check its unit"));
           if (const double speed = bar_speed(material); !bar_speeds.contains(speed))
-            run.warn(text(section, ": sqrt(E/rho) is ", speed, " m/s, in solids ", range_text(bar_speeds, "m/s"),
-                          "; moduli are in Pa, densities in kg/m^3"));
+            run.warn(text(section, ": sqrt(E/rho) is ", speed, " m/s, outside the range of solids, ", range_text(bar_speeds, "m/s"),
+                          ": check that moduli are in Pa and densities in kg/m^3"));
         }
     }
 
@@ -151,17 +152,17 @@ namespace Squeal
     // Warnings
     const bool turns = SlidingVelocity(parameters.operation).turns_about_z();
     if (turns && !is_round_about_z(mesh, parameters.geometry.path()))
-      run.warn("the disc turns about the z axis, but is not a body of revolution about it");
+      run.warn("the disc turns about the z axis, but is not a body of revolution about this axis: check the geometry and "
+               "Operation/Sliding direction");
     for (const MaterialAxes &axes : parameters.materials.axes)
       if (turns && is_of_disc(axes.volume))
         run.warn("the axes of " + axes.volume +
-                 " in Materials/Axes do not turn with the disc; without an entry they are radial, tangential "
-                 "and axial");
+                 " in Materials/Axes do not turn with the disc: remove this entry to use radial, tangential and axial directions");
     warn_of_units(bodies, parameters.materials, run);
     if (const UnnamedContact contact = find_unnamed_contact(mesh); contact.n_nodes > 0)
       run.warn(text(contact.n_nodes, " pairs of nodes of different bodies coincide outside disc_contact and pin_contact, the first one of ",
                     contact.body, " and ", contact.other, " at (", contact.place[0], ", ", contact.place[1], ", ", contact.place[2],
-                    ") m: the bodies touch there, but nothing couples them"));
+                    ") m: the bodies touch there, but are not coupled"));
     check_memory(size, typical_modes, parameters.geometry.path(), run.communicator);
   }
 } // namespace Squeal

@@ -7,7 +7,6 @@ namespace Squeal
 {
   namespace
   {
-    /// Contact state, one row for each pin.
     Table pin_table(const std::vector<PinContact> &pins)
     {
       return Table(Columns<PinContact>{{"pin", "", &PinContact::pin},
@@ -26,7 +25,7 @@ namespace Squeal
                    pins);
     }
 
-    /// Residuals of a steady sliding state, and whether it is unique.
+    /// Residuals and uniqueness of a steady sliding state.
     Table sliding_table(const SlidingState &state, const std::vector<PinContact> &pins)
     {
       std::vector<std::pair<std::string, Entry>> rows;
@@ -53,11 +52,11 @@ namespace Squeal
     std::string uniqueness_note(const ContactUniqueness &uniqueness)
     {
       if (uniqueness.is_certified)
-        return text("it is unique: mu < ", uniqueness.unique_below);
+        return text("the state is unique, because mu < ", uniqueness.unique_below);
       if (uniqueness.found_other)
-        return "it is NOT unique: another contact set also satisfies all conditions; the first one found is used";
-      return text("its uniqueness is not certified", uniqueness.unique_below > 0. ? text(" above mu = ", uniqueness.unique_below) : "",
-                  "; ", uniqueness.n_searches, " searches from other contact sets found no other state");
+        return "the state is NOT unique: another contact set also satisfies all conditions; the first set found is used";
+      return text("uniqueness is not certified", uniqueness.unique_below > 0. ? text(" above mu = ", uniqueness.unique_below) : "", "; ",
+                  uniqueness.n_searches, " searches from other contact sets found no other state");
     }
   } // namespace
 

@@ -10,7 +10,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Placeholder of a coefficient: one, or zero if that part of the model is missing.
+    /// Placeholder for a coefficient: one, or zero if that part of the model is missing.
     double presence(const double coefficient)
     {
       return coefficient == 0. ? 0. : 1.;
@@ -24,7 +24,7 @@ namespace Squeal
       {
         if (Orthotropy *o = material->orthotropy ? &*material->orthotropy : nullptr)
           for (double *modulus : {&o->E2, &o->E3, &o->G12, &o->G13, &o->G23})
-            *modulus = std::round(1e12 * *modulus / material->young_modulus); // rounded: removes rounding errors
+            *modulus = std::round(1e12 * *modulus / material->young_modulus); // removes rounding errors of the ratio
         material->young_modulus = material->density = 1.;
         for (double *damping : {&material->rayleigh_alpha, &material->rayleigh_beta})
           {

@@ -165,7 +165,7 @@ namespace Squeal
       {
         FileParameter speed = scaled_parameter(BodyParameter::angular_velocity, parameters.operation.angular_velocity(), "rad/s",
                                                "Operation/Rotation speed, positive about z");
-        if (parameters.has_contact_damping()) // depends on the speed as well
+        if (parameters.has_contact_damping()) // contact damping depends on the speed as well
           speed.lower = speed.upper = speed.value;
         result.name(BodyParameter::angular_velocity, speed);
       }
@@ -222,7 +222,7 @@ namespace Squeal
     FileParameter result{SystemParameter::friction, mu};
     result.lower       = depends ? mu : 0.;
     result.upper       = depends ? mu : largest_friction_coefficient;
-    result.description = depends ? "friction coefficient; the contact state holds at this value only" : "friction coefficient";
+    result.description = depends ? "friction coefficient; the contact state is valid at this value only" : "friction coefficient";
     return result;
   }
 
@@ -253,7 +253,8 @@ namespace Squeal
     ShapePoints         points = displacements_of_nodes(model);
     points.displacements       = multiply(*points.displacements, kernel);
     write_system(system.terms, system.values,
-                 {named.parameters, "coupled system, displacements in m, forces in N; groups exclude the dofs eliminated by the contact",
+                 {named.parameters,
+                  "coupled system, displacements in m, forces in N; groups exclude dofs eliminated by contact constraints",
                   groups_of_bodies(model, kernel), points},
                  folder, run);
   }
@@ -285,7 +286,7 @@ namespace Squeal
   {
     if (run.parameters.output.write_system != SystemOutput::full)
       return;
-    // Modal damping needs modes
+    // Modal damping requires modes
     const bool is_modal = !run.parameters.damping.modal_ratios.empty();
     write_scene_system(is_modal ? damped_modes(scene, run).linearisation : linearised_scene(scene, run), friction_parameter(run.parameters),
                        "system/", run);

@@ -8,8 +8,7 @@ namespace Squeal
 {
   namespace
   {
-    /// One row for every mode of the band at every point of a chart, including refinement points: branch, λ, residuals, error, verdict and
-    /// growth.
+    /// One row for every mode of the band at every point of a chart, including refinement points.
     Table branch_table(const SweepChart &line, const double largest_circular_frequency, const SweepAxis &axis)
     {
       struct Row : ModalQuantities
@@ -47,7 +46,6 @@ namespace Squeal
         rows);
     }
 
-    /// Thresholds of the branches.
     Table threshold_table(const SweepChart &line, const SweepAxis &axis)
     {
       using Row                = Threshold;
@@ -65,7 +63,6 @@ namespace Squeal
                    line.chart.thresholds);
     }
 
-    /// Crossings of the end of the band by branches.
     Table crossing_table(const SweepChart &line, const SweepAxis &axis)
     {
       using Row = BandCrossing;

@@ -42,11 +42,11 @@ namespace Squeal
       return result;
     }
 
-    /// Differences between the modes of a reduced model and those at full order.
+    /// Differences between reduced and full-order modes.
     struct Differences
     {
       double largest_error = 0.; ///< |λ̂ − λ| / |λ|
-      int    n_other       = 0;  ///< modes of the reduced model in the band without counterpart at full order
+      int    n_other       = 0;  ///< number of reduced modes in the band without a full-order counterpart
     };
 
     /// Errors of the reduced modes: each full-order mode is paired with the nearest reduced mode that is not yet paired.
@@ -91,13 +91,14 @@ namespace Squeal
     const Band           band((1. + band_margin) * model.largest_circular_frequency, run.parameters.discretization.maximum_rate);
 
     run.progress.begin("Reduced model");
-    // Train the basis at values of the sweep; points from the search for thresholds only verify it
+    // Train the basis at values of the sweep and verify it at points from the search for thresholds
     std::vector<SweepModel::Place> places;
     for (const OperatingPoint &point : model.regime.points)
       places.emplace_back(point.line, point.friction_coefficient);
     auto worst = std::find_if(places.begin(), places.end(), [&](const auto &place) { return !model.known.at(place).lambda.empty(); });
     if (worst == places.end())
-      throw SolverError("no mode of the sweep lies in the band", "parameter Output/Write system", "raise Band/Maximum frequency");
+      throw SolverError("a reduced system requires modes, but the sweep has no modes in the band", "parameter Output/Write system",
+                        "raise Band/Maximum frequency, or set it to full");
     std::set<SweepModel::Place> chosen  = {*worst};
     MultiVector                 set     = snapshot(model.known.at(*worst), full.map());
     const auto                  inertia = inertia_square(full, worst->second, model.largest_circular_frequency);
@@ -128,8 +129,8 @@ namespace Squeal
             else if (cut > last_cut)
               cut /= 10.;
             else
-              throw SolverError("modes of a projection on the modes of the sweep differ from these modes", "parameter Output/Write system",
-                                "narrow the range of the sweep, or set it to full");
+              throw SolverError("the reduced model does not reproduce the modes of the sweep within Sweep/Tolerance",
+                                "parameter Output/Write system", "narrow the range of the sweep, raise Sweep/Tolerance, or set it to full");
           }
         else if (places.size() < model.known.size())
           {
@@ -179,7 +180,7 @@ namespace Squeal
       result.uncertainties.push_back(result.errors[j] * std::abs(result.lambda[j]));
     result.right = gathered(*modes.real_part, *modes.imaginary_part, listed);
     result.left  = gathered(*modes.left_real_part, *modes.left_imaginary_part, listed);
-    // Correct λ to first order with the residuals; valid because ψ is the left vector that belongs to φ
+    // Correct λ to first order with the residuals, because ψ is the left vector of the mode φ
     const int         n         = static_cast<int>(modes.lambda.size());
     const MultiVector residuals = force_residuals(system, values, modes.lambda, *modes.real_part, *modes.imaginary_part);
     result.corrections          = -result.left.transpose() * gathered(view(residuals, 0, n), view(residuals, n, n), listed);

@@ -24,11 +24,11 @@ namespace Squeal
       return result;
     }
 
-    /// Extends the basis by the missing components of the modes on both sides of all thresholds of an unrefined chart, and discards the
-    /// results at these points, which were computed with the smaller basis.
+    /// Extends the basis by the missing components of the modes on both sides of all thresholds of an unrefined chart. Discards the results
+    /// at these points, which were computed with the smaller basis.
     void sharpen(SweepModel &model, const int line, const StabilityChart &chart, const std::vector<double> &grid)
     {
-      // Use grid values next to the thresholds: closer to a coalescence the vectors of both modes are nearly parallel
+      // Use grid values next to the thresholds, because closer to a coalescence the vectors of both modes are nearly parallel
       std::map<int, std::set<int>> modes_at; // by index of the point in the chart
       for (const Threshold &threshold : chart.thresholds)
         {
@@ -126,14 +126,14 @@ namespace Squeal
       const int             n_real   = static_cast<int>(n_in_band(real.eigenvalues, limit)) - real.n_rigid_body;
       const ChartCount     &first    = chart.counts.front();
       if (first.friction_coefficient != 0.)
-        progress.note("  note: the sweep does not begin at mu = 0: numbers of modes are compared only among its values");
+        progress.note("  note: the sweep does not begin at mu = 0, so the number of modes is not compared with a count by inertia");
       else if (first.n_modes + first.n_overdamped != n_real)
         progress.note(text("  note: ", first.n_modes, " modes are in the band at mu = 0, but ", n_real,
-                           " real modes were counted: damping moved some across its end"));
+                           " real modes; damping may have moved modes across the end of the band"));
       const auto n =
         std::count_if(chart.counts.begin(), chart.counts.end(), [](const ChartCount &count) { return count.n_modes != count.n_expected; });
       if (n > 0)
-        progress.note(text("  note: at ", n, " points the number of modes differs from the expected one, see counts.csv"));
+        progress.note(text("  note: at ", n, " points the number of modes differs from the expected number (counts.csv)"));
     }
   } // namespace
 
@@ -148,8 +148,8 @@ namespace Squeal
     };
     run.progress.begin("Branches");
     const ChartOptions options = options_of(model);
-    // Thresholds need more accuracy than λ: for weakly interacting modes, μ_c is sensitive to small errors. Extend the basis for all
-    // thresholds found on the grid: a selection by uncertainty would depend on rounding
+    // Extend the basis for thresholds, because μ_c of weakly interacting modes is sensitive to small errors. All thresholds on the grid are
+    // included, because a selection by uncertainty would depend on rounding errors
     ChartOptions coarse        = options;
     coarse.maximum_refinements = 0;
     if (model.reduced && model.sharpens_thresholds)
@@ -161,7 +161,7 @@ namespace Squeal
     result.onset                 = first_onset(chart, options.largest_circular_frequency, before);
     result.weak_onset            = onset_beyond(weak_divergence, chart, evaluate, options, before);
     run.progress.finish(text(chart.branches.size(), " branches, ", chart.thresholds.size(), " thresholds, ", chart.crossings.size(),
-                             " crossings of the band's edge, ", chart.points.size() - grid.size(), " refinements"));
+                             " crossings of the end of the band, ", chart.points.size() - grid.size(), " refinements"));
     if (chart.n_doubtful_steps > 0)
       run.progress.note(text("  note: in ", chart.n_doubtful_steps, " steps modes could be distinguished only by their frequencies"));
     return result;
@@ -247,9 +247,9 @@ namespace Squeal
       }
     const std::vector<SquealOnset> onsets = squeal_onsets(charts);
     if (onsets.empty())
-      return n_known == n_asked ?
-               "  stable: no mode of the band grows at any value of the sweep" :
-               text("  no mode of the band grows at ", n_known, " of ", n_asked, " values; other values miss the tolerance");
+      return n_known == n_asked ? "  stable: no mode of the band grows at any value of the sweep" :
+                                  text("  no mode of the band grows at ", n_known, " of ", n_asked,
+                                       " values; the other values have no results within the tolerance");
     std::string result = "  squeal";
     for (const auto &[rate, onset, of_onset] : onsets)
       {

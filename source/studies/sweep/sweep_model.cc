@@ -21,7 +21,7 @@ namespace Squeal
       return sum;
     }
 
-    /// Training points: ends, middle and quarters of the first and last lines; other points are evaluated later.
+    /// Training points: ends, middle and quarters of the first and last lines.
     std::vector<int> training(const ContactRegime &regime)
     {
       const auto [first, last] = std::minmax_element(regime.points.begin(), regime.points.end(),
@@ -37,11 +37,11 @@ namespace Squeal
       return result;
     }
 
-    /// Checks before the computation that modes can be counted.
+    /// Throws ParameterError if modes are to be counted, but cannot be.
     void check_countable(const CoupledSystem &system, const Run &run)
     {
       if (run.parameters.study->has("Sweep/Count modes at") && !run.parameters.sweep.counts.empty() && !is_countable(system))
-        throw ParameterError("modes of this system can only be counted on one process", "parameter Sweep/Count modes at",
+        throw ParameterError("modes of this system can be counted on a single process only", "parameter Sweep/Count modes at",
                              "run on one process, or leave it empty");
     }
 
@@ -111,7 +111,7 @@ namespace Squeal
     const Linearisation       damped    = linearise(*plan.scene, plan.sliding_state(operation), operation);
 
     check_countable(damped.coupled, run);
-    // Real modes and factor are computed without damping
+    // Compute real modes and factor without damping
     Linearisation bare         = damped;
     bare.coupled               = undamped(damped.coupled);
     frictionless               = frictionless_modes(bare, run, band_margin);
@@ -124,7 +124,7 @@ namespace Squeal
   {
     if (!frictionless.linearisation.coupled.stiffness)
       {
-        run.progress.note("  no definite part: every value is solved at full order, and modes are numbered at the first one");
+        run.progress.note("  no definite part: every value is solved at full order, and modes are numbered as at the first value");
         return;
       }
     run.progress.begin("Reduced model");
@@ -171,7 +171,7 @@ namespace Squeal
   std::vector<ShapeShares> SweepModel::shape_shares(const ChartPoint &point, const std::vector<int> &modes) const
   {
     const ReducedModel &model = reduced->reduced();
-    // Once modes have been named, the basis only grows: compute products for the new vectors
+    // Compute products for new vectors only, because the basis only grows after modes have been labelled
     const int n_known = reference_products.empty() ? 0 : static_cast<int>(reference_products.front().cols());
     if (n_known < model.size())
       {
@@ -277,8 +277,8 @@ namespace Squeal
                              " vectors, estimated error ", sweep.worst_error));
     run.count("basis vectors", model.reduced->size());
     run.measure("largest estimated error of lambda [-]", sweep.worst_error);
-    // Report conditioning at the last value, where friction makes eigenvalues most ill-conditioned. The basis causes errors up to the
-    // tolerance; rounding errors may add to them
+    // Report conditioning at the last value, where friction makes eigenvalues most ill-conditioned. Twice the tolerance allows for rounding
+    // errors in addition to errors of the basis
     if (last >= 0)
       {
         const auto [modes, products] = modes_in_band(model, model.known.at({points[last].line, points[last].friction_coefficient}));
@@ -288,8 +288,8 @@ namespace Squeal
                             2. * options.tolerance, run);
       }
     if (!sweep.why_stopped.empty())
-      run.progress.note(text("  note: ", points.size() - model.known.size(), " operating points miss the tolerance of ", options.tolerance,
-                             ": ", sweep.why_stopped,
-                             "; written results meet it. Raise Sweep/Tolerance, or Sweep/Maximum basis if it limits the basis"));
+      run.progress.note(text("  note: ", points.size() - model.known.size(),
+                             " operating points are omitted, because their estimated errors exceed the tolerance of ", options.tolerance,
+                             ": ", sweep.why_stopped, ". Raise Sweep/Tolerance, or Sweep/Maximum basis if it limits the basis"));
   }
 } // namespace Squeal

@@ -100,7 +100,7 @@ namespace Squeal
       }
     if (lines.empty())
       return plan;
-    run.progress.begin("States of contact");
+    run.progress.begin("Contact states");
     for (std::size_t l = 0; l < plan.lines.size(); ++l)
       for (const double mu : plan.lines[l].friction_coefficients)
         {
@@ -117,8 +117,8 @@ namespace Squeal
     const SweepParameters &sweep  = run.parameters.sweep;
     NamedRange             result = sweep.varied_parameter();
     if (sweep.parameter.empty() && file.find(result.name) == nullptr)
-      throw ParameterError("the sweep has no parameter: the system has no parameter mu", "parameter Sweep/Parameter",
-                           "give the varied parameter: omega, 6.28, 25.1, 31");
+      throw ParameterError("no parameter is given for the sweep, and the system has no parameter mu", "parameter Sweep/Parameter",
+                           "give the varied parameter, its first and last value and the number of values: omega, 6.28, 25.1, 31");
     std::map<std::string, double> given = run.parameters.system.values;
     for (const double value : {result.values.first, result.values.last})
       {
@@ -133,7 +133,7 @@ namespace Squeal
     const auto       second = run.parameters.sweep.second_varied_parameter();
     SystemFile       file   = read_system(run);
     const NamedRange varied = swept_parameter(file, run);
-    // Check the ends of the second range as well, before the computation
+    // Check the ends of the second range before the computation
     std::map<std::string, double> given = run.parameters.system.values;
     if (second)
       for (const double value : {second->values.last, second->values.first})

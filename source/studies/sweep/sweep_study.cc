@@ -37,11 +37,11 @@ namespace Squeal
       Verdict              verdict;
     };
 
-    /// Number of modes at one friction coefficient by the sweep and by the argument principle.
+    /// Numbers of modes at one friction coefficient from the sweep and from the argument principle.
     struct CountAt
     {
       double       friction_coefficient;
-      int          n_found; ///< number of modes in the rectangle, found by the sweep
+      int          n_found; ///< number of modes of the sweep in the rectangle
       ContourCount count;
       bool         has_real_modes; ///< the system has a definite part
     };
@@ -57,7 +57,7 @@ namespace Squeal
       return branch >= 0 ? main.labels[branch] : ModeLabel();
     }
 
-    /// Modes of a line at a requested friction coefficient; prints a note if they miss the tolerance.
+    /// Modes of a line at a requested friction coefficient; prints a note if their estimated error exceeds the tolerance.
     ChartPoint modes_at(SweepModel &model, const double mu, const int line = 0)
     {
       const bool       is_new    = model.known.count({line, mu}) == 0;
@@ -65,7 +65,7 @@ namespace Squeal
       const double     tolerance = model.run.parameters.sweep.tolerance, error = model.largest_error(point);
       if (is_new && !(error <= tolerance))
         model.run.progress.note(text("  note: at ", model.plan.axis.name, " = ", mu, line > 0 ? " without radial dissipation" : "",
-                                     " the modes miss the tolerance of ", tolerance, ": the estimated error is ", error));
+                                     ", the estimated error ", error, " of the modes exceeds the tolerance of ", tolerance));
       return point;
     }
 
@@ -137,7 +137,7 @@ namespace Squeal
           run.progress.finish(text(count.n_modes, " modes counted, ", n_found, " found at ", model.plan.axis.name, " = ", mu, ", ",
                                    count.n_points, " points"));
           if (count.n_modes != n_found)
-            run.progress.note(text("  note: at ", model.plan.axis.name, " = ", mu, " the sweep has ", n_found, " modes, but ",
+            run.progress.note(text("  note: at ", model.plan.axis.name, " = ", mu, ", the sweep found ", n_found, " modes, but ",
                                    count.n_modes, " were counted"));
         }
     }
@@ -161,7 +161,7 @@ namespace Squeal
           const int        mode  = leading_mode(point, model.largest_circular_frequency);
           if (mode < 0 || verdict_of(point.lambda[mode]) != Verdict::unstable)
             {
-              run.progress.note(text("  no mode grows at mu = ", mu, ": no mode shape is written"));
+              run.progress.note(text("  no mode grows at mu = ", mu, ", so no mode shape is written"));
               continue;
             }
           const auto [re, im] = model.shapes(point, {mode});
@@ -186,14 +186,14 @@ namespace Squeal
       const OperationParameters &operation = parameters.operation;
       const bool                 is_steady = parameters.needs_steady_sliding();
       if (!operation.has_contact_damping() && !(is_steady && varied == MapParameter::load))
-        throw ParameterError("without contact damping nothing depends on the " + to_string(varied), "parameter Sweep/Map parameter",
+        throw ParameterError("a map over the " + to_string(varied) + " requires contact damping", "parameter Sweep/Map parameter",
                              "set Operation/Radial dissipation or Operation/Friction slope, or Sweep/Map parameter = none");
       if (is_steady && varied == MapParameter::load && !parameters.uses_load_per_side())
-        throw ParameterError("a map over the load needs backplates or faces with this load", "parameter Steady sliding/Control",
+        throw ParameterError("the steady sliding state does not depend on the load of the map", "parameter Steady sliding/Control",
                              "set it to load per side or pressure, or Sweep/Map parameter = none");
     }
 
-    /// Reports requested friction coefficients at which the contact set differs from those at all values of the sweep.
+    /// Reports requested friction coefficients at which the contact set is none of the contact sets of the sweep.
     void note_unknown_contact(const SweepPlan &plan, Run &run)
     {
       const SweepParameters                                                  &sweep  = run.parameters.sweep;
@@ -205,13 +205,14 @@ namespace Squeal
         for (const double mu : *values)
           if (const auto closed = plan.closed_at(mu);
               std::none_of(plan.regimes.begin(), plan.regimes.end(), [&](const ContactRegime &regime) { return regime.closed == closed; }))
-            run.progress.note(text("  note: at mu = ", mu, " the contact set differs from that at all values of the sweep: ",
-                                   what_is_missing, ". Raise Sweep/Number of friction coefficients"));
+            run.progress.note(text("  note: at mu = ", mu, ", ", what_is_missing,
+                                   ", because the contact set is none of the contact sets of the sweep. Raise Sweep/Number of friction "
+                                   "coefficients"));
     }
 
     // ------------------------------------------------------------------ tables
 
-    /// Onset of squeal, and onset of more than weak growth.
+    /// Onsets of growth and of divergence rates above weak_divergence.
     Table onset_table(const std::vector<SquealOnset> &onsets, const SweepAxis &axis)
     {
       using Row     = SquealOnset;
@@ -224,7 +225,6 @@ namespace Squeal
                    onsets);
     }
 
-    /// Stability map over the friction coefficient and the load or speed.
     Table map_table(std::vector<MapCell> cells, const SweepPlan &plan)
     {
       using Row        = MapCell;
@@ -250,7 +250,6 @@ namespace Squeal
                    cells);
     }
 
-    /// Modes at the friction coefficients of the complex plane, sorted by the parameter; lines without dissipation come last.
     Table plane_table(const std::vector<PlaneMode> &modes, const SweepAxis &axis)
     {
       using Row           = PlaneMode;
@@ -268,7 +267,6 @@ namespace Squeal
                    modes);
     }
 
-    /// Numbers of modes in the sweep and by the argument principle.
     Table argument_table(const std::vector<CountAt> &counts, const SweepAxis &axis)
     {
       using Row = CountAt;
@@ -301,7 +299,7 @@ namespace Squeal
         follow_branches(model, charts);
         if (model.reduced && run.parameters.output.write_system == SystemOutput::reduced)
           {
-            // Searches for thresholds have extended the basis: with the same one, tables agree with the written model
+            // Evaluate all points with the final basis, so that tables agree with the written model
             evaluate_again(model);
             charts = of_other_sets;
             follow_branches(model, charts);
@@ -328,15 +326,16 @@ namespace Squeal
     if (plan.regimes.size() > 1)
       {
         run.store_table("contact_sets", contact_table(plan, plan.scene->interface.size()));
-        run.progress.note(text("  note: ", plan.regimes.size(), " contact sets, see contact_sets.csv; branches end where the set changes"));
+        run.progress.note(text("  note: branches end where the contact set changes; ", plan.regimes.size(),
+                               " contact sets are listed in contact_sets.csv"));
       }
     if (!map.empty())
       run.store_table("map", map_table(map, plan));
     run.finish();
   }
 
-  /// `Study = sweep`: complex modes over a range of the friction coefficient, with and without radial dissipation, with their thresholds,
-  /// and maps over load or speed.
+  /// `Study = sweep`: complex modes and thresholds over a range of the friction coefficient, with and without radial dissipation, and maps
+  /// over load or speed.
   static void run_sweep_study(Scene &scene, Run &run)
   {
     assemble_scene(scene, run);
@@ -359,12 +358,12 @@ namespace Squeal
       {"Output/",
        [](const Parameters &p) {
          return p.sweep.mode_shapes.empty() && p.output.fields != FieldSelection::none ?
-                  "a sweep writes mode shapes for Sweep/Mode shapes at" :
+                  "fields are written only for the values of Sweep/Mode shapes at" :
                   as_in_general;
        }},
-      {"Operation/Friction coefficient", [](const Parameters &) { return "a sweep uses Sweep/First to Sweep/Last friction coefficient"; }},
+      {"Operation/Friction coefficient", [](const Parameters &) { return "a sweep uses the friction coefficients of section Sweep"; }},
       {"Operation/Rotation speed", no_sliding_speed},
-      {"Complex modes/", [](const Parameters &) { return "a sweep solves reduced models"; }},
+      {"Complex modes/", [](const Parameters &) { return "a sweep uses reduced models"; }},
       {"Sweep/First map value", map_axis},
       {"Sweep/Last map value", map_axis},
       {"Sweep/Number of map values", map_axis},

@@ -7,7 +7,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Range of each parameter covered by the plan.
+    /// Parameters of the system with the ranges that the plan covers.
     std::vector<FileParameter> covered_parameters(const SweepModel &model)
     {
       const SweepPlan &plan  = model.plan;

@@ -22,10 +22,10 @@ namespace Squeal
     /// A parameter within this distance of an end of the unit interval is at its limit.
     constexpr double at_limit = 1e-6;
 
-    /// Largest Gauss-Newton step at a minimum [-]: rounding errors and the curvature of the residuals cause smaller steps.
+    /// Largest Gauss-Newton step that rounding errors and curvature of the residuals may cause at a minimum [-].
     constexpr double step_at_minimum = 1e-3;
 
-    /// Parameters at a limit that would decrease |r| if they could go beyond it.
+    /// Parameters at a limit beyond which |r| would decrease.
     std::vector<int> held_by_limits(const std::vector<double> &x, const Residuals &residuals)
     {
       const Eigen::VectorXd gradient = residuals.J.transpose() * residuals.r;
@@ -130,7 +130,7 @@ namespace Squeal
     options.gradient_tolerance                = 1e-16;
     options.min_trust_region_radius           = tolerance * tolerance;
     options.max_num_consecutive_invalid_steps = maximum_iterations;
-    // Steps truncated at a limit end the search too early: fix the parameters at limits and continue with the free ones
+    // Fix the parameters at limits and continue with the others, because steps truncated at a limit end the search too early
     std::vector<int>  held;
     const std::size_t most_changes = 4 * start.size();
     for (std::size_t change = 0;; ++change)

@@ -71,14 +71,14 @@ namespace Squeal
       const std::string known = boost::algorithm::join(known_columns, ", ");
       for (const std::string &name : file.names)
         if (std::find(known_columns.begin(), known_columns.end(), name) == known_columns.end())
-          throw ParameterError("unknown column " + in_quotes(name), file.where_names, "the columns are " + known);
+          throw ParameterError("unknown column " + in_quotes(name), file.where_names, "remove or rename it; the columns are " + known);
       file.check_repeated_columns();
       for (std::size_t i = 0; i < n_required; ++i)
         if (file.column(known_columns[i]) == file.names.size())
-          throw ParameterError("missing column " + in_quotes(known_columns[i]), file.where_names, "the columns are " + known);
+          throw ParameterError("missing column " + in_quotes(known_columns[i]), file.where_names, "add it; the columns are " + known);
     }
 
-    /// Smallest accepted deviation, relative to the frequency; smaller ones are rounding errors of the frequency.
+    /// Smallest accepted deviation relative to the frequency, close to the rounding errors of the frequency [-].
     constexpr double smallest_deviation = 1e-12;
 
     MeasuredMode mode_of(const Row &row)
@@ -89,10 +89,10 @@ namespace Squeal
         row.refuse(in_quotes(state) + " is not a state", "write one of " + boost::algorithm::join(names, ", "));
       const std::string label = single_spaced(row.text("label")), member = row.text("member");
       if (label.empty())
-        row.refuse("the row has no label", "write the label of the mode as in the tables of a stability run");
+        row.refuse("the row has no label", "give the label of the mode, as listed by a stability run");
       const auto number = parse_number(member);
       if (!member.empty() && member != "lowest" && member != "highest" && !(number && *number >= 1. && *number == std::floor(*number)))
-        row.refuse(in_quotes(member) + " is not a member of the modes with a label",
+        row.refuse(in_quotes(member) + " is not a valid entry in the column `member`",
                    "write lowest, highest or an integer >= 1, or leave the cell empty for the mean");
       const auto frequency = row.positive_number("frequency [Hz]");
       if (!frequency)
@@ -100,14 +100,15 @@ namespace Squeal
 
       const auto deviation = row.positive_number("deviation [Hz]");
       if (deviation && !(*deviation > smallest_deviation * *frequency))
-        row.refuse("the deviation of " + exact_text(*deviation) + " Hz is less than the rounding error of the frequency",
+        row.refuse("the deviation of " + exact_text(*deviation) + " Hz is within the rounding error of the frequency",
                    "give the standard deviation of the measurement");
       MeasuredMode result{enum_value<MeasuredState>(state), label, member, {*frequency, deviation ? *deviation : 0.}, {}, row.where};
       const auto   ratio = row.number("damping ratio [%]"), ratio_deviation = row.positive_number("damping deviation [%]");
       if (ratio.has_value() != ratio_deviation.has_value())
         row.refuse("only one of damping ratio and damping deviation is given", "give both or neither");
       if (ratio && result.state != MeasuredState::complex)
-        row.refuse(state + " modes are computed without damping", "set the state to complex, or leave damping ratio and deviation empty");
+        row.refuse(state + " modes are computed without damping and cannot have a damping ratio",
+                   "set the state to complex, or leave damping ratio and damping deviation empty");
       if (ratio)
         result.damping_ratio = Measured{0.01 * *ratio, 0.01 * *ratio_deviation};
       return result;
@@ -173,8 +174,8 @@ namespace Squeal
         if (result.are_relative)
           mode.frequency.deviation = default_deviation * mode.frequency.value;
         if (!has_deviation(mode))
-          throw ParameterError("this frequency has no deviation, but others have one", mode.where,
-                               "give `deviation [Hz]` for all or for none");
+          throw ParameterError("this frequency has no deviation, but other frequencies have one", mode.where,
+                               "give `deviation [Hz]` for all modes or for none");
         if (result.are_relative && mode.damping_ratio)
           throw ParameterError("the damping ratio has a deviation, but the frequencies have none", mode.where,
                                "give `deviation [Hz]` for all frequencies");
@@ -192,11 +193,11 @@ namespace Squeal
       double                            mac;     ///< MAC of the measured shape and its projection on the span of the shapes [-]
     };
 
-    /// Relative difference of frequencies up to which two modes, such as a doublet, may mix their shapes.
+    /// Relative frequency difference up to which the shapes of two modes, such as a doublet, may mix [-].
     constexpr double mixing_difference = 0.02;
 
-    /// The mode of the state whose shape is most similar to a measured shape, and a second mode with which it may mix: x ≈ c_1 y_1 + c_2
-    /// y_2 by least squares, weights |c_j|² ‖y_j‖². If the measured shape equals that of one mode, its weight is 1.
+    /// The mode whose shape y_1 is most similar to a measured shape x, and a second mode with which it may mix: x ≈ c_1 y_1 + c_2 y_2 by
+    /// least squares, with weights proportional to |c_j|² ‖y_j‖². If x is a multiple of y_1, the first weight is 1.
     WeightedModes most_similar(const MeasuredMode &mode, const MeasuredModes &measured, const std::vector<ComputedMode> &modes)
     {
       const Eigen::VectorXcd &shape = measured.sensors.shapes.at(mode.label);
@@ -225,8 +226,8 @@ namespace Squeal
           result.mac = modal_assurance_criterion(shape, Y * c);
         }
       if (!(result.mac >= measured.least_mac))
-        throw SolverError(text("no computed mode is similar to the shape ", in_quotes(mode.label), ": the largest MAC is ", result.mac,
-                               result.modes.empty() ? "" : " (" + result.modes.front()->label + ")"),
+        throw SolverError(text("no computed mode is similar to the measured shape ", in_quotes(mode.label), ": the largest MAC is ",
+                               result.mac, result.modes.empty() ? "" : " (" + result.modes.front()->label + ")"),
                           mode.where, "check positions and directions of the sensors, remove the mode, or lower Updating/Least MAC");
       return result;
     }
@@ -248,7 +249,7 @@ namespace Squeal
       found = modes_of_label(measured, modes);
     const auto refuse = [&](const std::string &what) {
       throw SolverError(text(what, " among the ", to_string(measured.state), " modes in the band"), measured.where,
-                        "write one of the labels " + labels_of(measured.state, modes) + ", or raise Band/Maximum frequency");
+                        "use an existing label (" + labels_of(measured.state, modes) + ") and member, or raise Band/Maximum frequency");
     };
     if (found.empty())
       refuse("there is no mode " + in_quotes(measured.label));
@@ -257,7 +258,7 @@ namespace Squeal
         const auto        number = parse_number(measured.member);
         const std::size_t place  = number ? static_cast<std::size_t>(*number) - 1 : measured.member == "highest" ? found.size() - 1 : 0;
         if (place >= found.size())
-          refuse(text("member ", place + 1, " of ", in_quotes(measured.label), " does not exist: there are ", found.size()));
+          refuse(text("there is no member ", place + 1, " of ", in_quotes(measured.label), ", only ", found.size()));
         found = {found[place]};
       }
     if (weights.empty())

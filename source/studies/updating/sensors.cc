@@ -27,7 +27,7 @@ namespace Squeal
       const std::size_t place = file.column(name);
       if (place == file.names.size())
         throw ParameterError("missing column " + in_quotes(name), file.where_names,
-                             "the first columns are " + boost::algorithm::join(place_columns, ", "));
+                             "add it; the required columns are " + boost::algorithm::join(place_columns, ", "));
       Eigen::VectorXd result(static_cast<Eigen::Index>(file.rows.size()));
       for (std::size_t i = 0; i < file.rows.size(); ++i)
         result[static_cast<Eigen::Index>(i)] = file.number(i, place);
@@ -48,7 +48,7 @@ namespace Squeal
       }
     for (Eigen::Index i = 0; i < n; ++i)
       if (!(result.directions.row(i).norm() > 0.))
-        throw ParameterError("the direction of the sensor is zero", file.where[i], "give the direction in which the sensor measures");
+        throw ParameterError("the direction of the sensor is zero", file.where[i], "give a nonzero vector in the measuring direction");
     result.directions.rowwise().normalize();
     for (const std::string &name : file.names)
       {
@@ -57,14 +57,16 @@ namespace Squeal
         const bool        is_imaginary = boost::ends_with(name, imaginary);
         const std::string label        = is_imaginary ? name.substr(0, name.size() - std::string(imaginary).size()) : name;
         if (is_imaginary && file.column(label) == file.names.size())
-          throw ParameterError("column " + in_quotes(name) + " has no real part", file.where_names, "add the column " + in_quotes(label));
+          throw ParameterError("the imaginary part " + in_quotes(name) + " has no column with the real part", file.where_names,
+                               "add the column " + in_quotes(label));
         const std::complex<double> unit = is_imaginary ? std::complex<double>(0., 1.) : 1.;
         Eigen::VectorXcd          &sum  = result.shapes.try_emplace(label, Eigen::VectorXcd::Zero(n)).first->second;
         sum += unit * column(file, name);
       }
     for (const auto &[label, shape] : result.shapes)
       if (!(shape.norm() > 0.))
-        throw ParameterError("the shape " + in_quotes(label) + " is zero at all sensors", file.where_names, "remove its column");
+        throw ParameterError("the shape " + in_quotes(label) + " is zero at all sensors", file.where_names,
+                             "remove the columns of this shape");
     return result;
   }
 

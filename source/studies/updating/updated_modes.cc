@@ -91,14 +91,14 @@ namespace Squeal
                               Run                                &run)
   {
     if (measured.has(MeasuredState::component))
-      throw ParameterError("a system file has no component modes", "parameter Updating/Measured modes",
-                           "use the states coupled and complex only");
+      throw ParameterError("component modes are measured, but a system file has none", "column `state` of the measured modes",
+                           "give coupled and complex modes only");
     std::shared_ptr<const SparseMatrix> sensors; // matrix from dofs to responses of the sensors
     if (!measured.sensors.shapes.empty())
       {
         if (!file.points)
-          throw ParameterError("the system has no points for the sensors", "file " + file.path,
-                               "add `positions` and `displacements`, or pair all modes by labels");
+          throw ParameterError("the system file has no points to which sensors can be assigned", "file " + file.path,
+                               "add `positions` and `displacements` to the file, or clear Updating/Sensors");
         sensors = measured.sensors.rows(*file.points);
       }
     return [&, sensors](const std::vector<double> &values) {

@@ -21,8 +21,7 @@ namespace Squeal
 
   namespace
   {
-    /// Half step of the difference quotients, as a fraction of the range. For factors of terms, the most common case, the quotients are
-    /// exact.
+    /// Half step of the difference quotients, as a fraction of the range; the quotients are exact for factors of terms.
     constexpr double step_of_rates = 1e-4;
 
     constexpr const char *where_fitted = "parameter Designs/Variables";
@@ -95,7 +94,7 @@ namespace Squeal
       return result;
     }
 
-    /// A meshed model at changing values of the fitted parameters.
+    /// A meshed model with variable values of the fitted parameters.
     class ChangingScene
     {
     public:
@@ -109,10 +108,10 @@ namespace Squeal
       {
         const bool is_complex = measured.has(MeasuredState::complex);
         if (is_complex && !base.damping.modal_ratios.empty())
-          refuse_fit("complex modes with modal damping have no derivatives",
+          refuse_fit("derivatives of complex modes are not available with modal damping",
                      "clear Damping/Modal damping ratio, or fit to component and coupled modes only");
         if (is_complex && base.needs_steady_sliding() && base.has_contact_damping())
-          refuse_fit("complex modes with contact damping about steady sliding have no derivatives",
+          refuse_fit("derivatives of complex modes are not available with contact damping about steady sliding",
                      "set Steady sliding/Contact state = equal load, or fit to component and coupled modes only");
         for (std::size_t p = 0; p < parameters.size(); ++p)
           {
@@ -120,8 +119,8 @@ namespace Squeal
             if (actions.back() == Action::mesh)
               for (const MeshMotion &motion : motions_of(p, base.geometry))
                 if (is_complex && motion.moves_contact)
-                  refuse_fit(in_quotes(parameters[p].name) +
-                               " moves contact nodes, so complex modes have no derivatives with respect to it",
+                  refuse_fit("derivatives of complex modes with respect to " + in_quotes(parameters[p].name) +
+                               " are not available, because it moves contact nodes",
                              "fit it to component and coupled modes only");
           }
       }
@@ -163,14 +162,14 @@ namespace Squeal
         const FittedParameter &parameter = parameters[p];
         const std::string      lower     = text_without_coefficients(with_value(base, p, parameter.lower)),
                           upper          = text_without_coefficients(with_value(base, p, parameter.upper));
-        // Compare with the start value: parameters joined by + may have different values in the parameter file
+        // Compare with the start value, because parameters joined by + may have different values in the parameter file
         if (lower == upper && lower == text_without_coefficients(with_value(base, p, parameter.start)))
           return Action::factor;
         for (const char *section : {"Disc material/", "Pin material/", "Materials/", "Mounts/"})
           if (boost::starts_with(parameter.name, section))
             return Action::matrices;
         if (motions_of(p, base.geometry).empty())
-          refuse_fit(in_quotes(parameter.name) + " cannot be fitted: modes have no derivatives with respect to it",
+          refuse_fit(in_quotes(parameter.name) + " cannot be fitted, because derivatives of modes with respect to it are not available",
                      "fit material constants, mounts, lengths and angles of disc_pins.geo, the friction coefficient, or load, speed and "
                      "friction slope in ranges that exclude zero");
         return Action::mesh;
@@ -197,7 +196,7 @@ namespace Squeal
         return result;
       }
 
-      /// Assembles the bodies of a design. Remeshes only if more than coefficients of terms changes.
+      /// Assembles the bodies of a design; remeshes if anything other than coefficients of terms has changed.
       void assemble(const Parameters &design, Run &quiet)
       {
         const std::string matrices = text_without_coefficients(design);
@@ -267,7 +266,7 @@ namespace Squeal
         return result;
       }
 
-      /// Model on the mesh with displaced nodes for a change of a parameter.
+      /// Model on the mesh with nodes displaced by a change of a parameter.
       Model moved_model(const std::size_t p, const double change, const Parameters &design) const
       {
         Mesh mesh = scene.mesh;
@@ -354,7 +353,7 @@ namespace Squeal
       const MeasuredModes                &measured;
       Run                                &run;
       const Parameters                    base;
-      std::string                         meshed; ///< text_without_coefficients() of the parameters that were meshed
+      std::string                         meshed; ///< text_without_coefficients() of the parameters of the mesh
       BodyTerms                           bodies;
       std::vector<Action>                 actions;
       std::shared_ptr<const SparseMatrix> sensors; ///< matrix from dofs to responses of the sensors; null without sensors

@@ -131,7 +131,7 @@ namespace Squeal
       Run                                                    &run;
       int                                                     n_evaluations = 0;
       std::map<std::vector<double>, std::vector<Counterpart>> computed_at; ///< computed counterparts at each point
-      std::string                                             why_failed;  ///< reason why the last point has no residuals; empty if it has
+      std::string why_failed; ///< reason of the last failed evaluation; empty if none has failed
     };
 
     // --------------------------------------------------------------------- results
@@ -265,18 +265,17 @@ namespace Squeal
     {
       for (const UpdatedParameter &row : updated)
         if (row.status.rfind("at ", 0) == 0)
-          run.warn(text(row.parameter->name, " ends ", row.status, " ", exact_text(row.value),
-                        ": widen its range, or look for other differences between the model and the measured brake"));
+          run.warn(text("the fitted ", row.parameter->name, " is ", row.status, " ", exact_text(row.value),
+                        ": widen its range, or correct other properties of the model"));
       for (const std::vector<std::size_t> &group : statistics.undetermined)
         {
           std::vector<std::string> names;
           for (const std::size_t p : group)
             names.push_back(problem.parameters[p].name);
-          run.warn(names.size() == 1 ?
-                     "the measured modes do not determine " + names.front() +
-                       ": remove it from Designs/Variables, or add measured modes that depend on it" :
-                     "the measured modes do not determine " + boost::algorithm::join(names, ", ") +
-                       " individually, only combinations of them: fix one of them, or add measured modes that they affect differently");
+          run.warn(names.size() == 1 ? "the measured modes do not determine " + names.front() +
+                                         ": remove it from Designs/Variables, or add measured modes that depend on it" :
+                                       "the measured modes do not determine " + boost::algorithm::join(names, ", ") +
+                                         " individually: fix one of these parameters, or add measured modes that they affect differently");
         }
     }
 
@@ -292,7 +291,7 @@ namespace Squeal
       run.progress.note(text("  ", problem.parameters.size(), problem.parameters.size() == 1 ? " parameter" : " parameters", " fitted to ",
                              problem.numbers.size(), " measured numbers: frequency differences ", updated.rms, " % rms (", start.rms,
                              " % before), largest ", updated.largest, " % (", to_string(updated.worst->state), " ", updated.worst->label,
-                             "); agreement with fitted numbers does not validate the model"));
+                             ")"));
     }
 
     // --------------------------------------------------------------------- study
@@ -322,8 +321,7 @@ namespace Squeal
       if (!fit.has_converged)
         throw SolverError(text("the fit has not converged after ", fit.n_iterations, " iterations: residual ",
                                UpdatingProblem::root_mean_square(fit.residuals.r), " rms (", UpdatingProblem::root_mean_square(before.r),
-                               " at the start)",
-                               problem.why_failed.empty() ? "" : "; at some points modes could not be compared: " + problem.why_failed),
+                               " at the start)", problem.why_failed.empty() ? "" : "; an evaluation failed: " + problem.why_failed),
                           "Study = updating", "raise Updating/Iterations or Updating/Tolerance, or narrow the ranges of Designs/Variables");
       for (std::size_t i = 0; i < problem.numbers.size(); ++i)
         {
@@ -347,7 +345,7 @@ namespace Squeal
       run.finish();
     }
 
-    /// The modes of Updating/Measured modes or, if there is no such file, of the file named by a system.
+    /// Modes of the file Updating/Measured modes or, if it is empty, of the file named by a system.
     MeasuredModes given_modes(const Parameters &parameters, const std::string &of_system = "")
     {
       const std::string &name      = parameters.updating.measured_modes;
@@ -359,7 +357,7 @@ namespace Squeal
       const double end = parameters.discretization.maximum_frequency;
       for (const MeasuredMode &mode : result.modes)
         if (result.sensors.has(mode.label) && !mode.member.empty())
-          throw ParameterError("the mode is paired by its shape, but it has a member", mode.where, "leave the column `member` empty");
+          throw ParameterError("a mode with a measured shape cannot have a member", mode.where, "leave the column `member` empty");
         else if (mode.frequency.value > end)
           throw ParameterError(
             text("the frequency of ", exact_text(mode.frequency.value), " Hz is above Band/Maximum frequency, ", exact_text(end), " Hz"),
@@ -367,7 +365,6 @@ namespace Squeal
       return result;
     }
 
-    /// Fitted parameters of a meshed model.
     std::vector<FittedParameter> parameters_of_scene(const Parameters &parameters)
     {
       return fitted_parameters(parameters.designs,
@@ -389,11 +386,11 @@ namespace Squeal
     for (const DesignVariable &variable : design_variables(designs))
       {
         if (!variable.is_range || variable.by_ratio || !variable.levels.empty())
-          throw ParameterError("a fit needs a range, but " + in_quotes(variable.name) + " has levels", where_variables_are,
-                               "write Section/Name = a to b");
+          throw ParameterError("a fit requires a range of the form a to b, but " + in_quotes(variable.name) + " has another form",
+                               where_variables_are, "write Section/Name = a to b");
         const double start = current(variable.name);
         if (start < variable.first || start > variable.last)
-          throw ParameterError("the fit starts at " + variable.name + " = " + exact_text(start) + ", outside its range " +
+          throw ParameterError("the start value " + variable.name + " = " + exact_text(start) + " is outside the range " +
                                  exact_text(variable.first) + " to " + exact_text(variable.last),
                                where_variables_are, "set the parameter to a value in the range, or widen the range");
         result.push_back({variable.name, start, variable.first, variable.last});
@@ -430,7 +427,7 @@ namespace Squeal
         {
           auto values            = run.parameters.system.values;
           values[parameter.name] = end;
-          file.values(values); // throws ParameterError if the range exceeds that of the file
+          file.values(values); // throws ParameterError if the range exceeds the range in the file
         }
     const auto write = [&](const std::vector<double> &values) {
       Parameters updated = without_fit(run.parameters);
@@ -445,13 +442,13 @@ namespace Squeal
   extern const Study updating_study = [] {
     Study study{"updating", run_updating_study, {"Updating/", "Designs/Variables"}};
     study.rules = {
-      {"Output/", [](const Parameters &) { return "the study writes no mode shapes"; }},
-      {"Updating/Least MAC", [](const Parameters &p) { return unless(!p.updating.sensors.empty(), "there are no Updating/Sensors"); }},
-      {"Complex modes/Solver", [](const Parameters &) { return "left and right modes come from the residual iteration"; }},
-      {"Complex modes/Iteration tolerance", [](const Parameters &) { return "derivatives always use the smallest tolerance"; }},
+      {"Output/", [](const Parameters &) { return "not written by Study = updating"; }},
+      {"Updating/Least MAC", [](const Parameters &p) { return unless(!p.updating.sensors.empty(), "Updating/Sensors is empty"); }},
+      {"Complex modes/Solver", [](const Parameters &) { return "complex modes are computed by residual iteration"; }},
+      {"Complex modes/Iteration tolerance", [](const Parameters &) { return "derivatives require the smallest tolerance"; }},
       {"Complex modes/Maximum basis", is_used},
-      {"Complex modes/Shift inverse", [](const Parameters &) { return "of the solver Krylov"; }},
-      {"Complex modes/Tolerance", [](const Parameters &) { return "of the solver Krylov"; }}};
+      {"Complex modes/Shift inverse", [](const Parameters &) { return "only for the solver Krylov"; }},
+      {"Complex modes/Tolerance", [](const Parameters &) { return "only for the solver Krylov"; }}};
     study.check = [](const Parameters &p) {
       given_modes(p);
       const std::vector<FittedParameter> parameters = parameters_of_scene(p);

@@ -26,7 +26,7 @@ namespace Squeal
   struct ModesByMethod
   {
     std::string                       method; ///< "full order", or the name of a basis
-    int                               size;   ///< unknowns of the eigenproblem
+    int                               size;   ///< number of unknowns of the eigenproblem
     Cost                              cost;   ///< from meshing to modes; memory of all processes
     std::vector<std::complex<double>> lambda; ///< [rad/s]
 
@@ -74,7 +74,7 @@ namespace Squeal
   struct ConvergedMode
   {
     ModeLabel        label;      ///< label on the finest mesh
-    bool             in_cluster; ///< mixes with other modes on any pair of meshes, see pair_modes()
+    bool             in_cluster; ///< true if the mode mixes with other modes on any mesh, see pair_modes()
     std::vector<int> numbers;    ///< index of the mode on every mesh; -1: no counterpart
     Limit            frequency;  ///< [Hz]
     Limit            divergence; ///< [-]
@@ -91,8 +91,8 @@ namespace Squeal
 
   /**
    * Extrapolates the frequencies and divergence rates of every family of two or more meshes to zero mesh width; modes are paired by shape
-   * with those of the finest mesh. If no order of convergence is observed, two meshes are extrapolated with twice the degree of the element
-   * as order, and more meshes have the value of the finest mesh as limit. In clusters, the limit is always the value of the finest mesh.
+   * with modes of the finest mesh. Two meshes are extrapolated with twice the degree of the element as order. In clusters, and for three or
+   * more meshes without a reliable order of convergence, the limit is the value of the finest mesh.
    */
   std::vector<ConvergedFamily> converged_families(const std::vector<SolvedMesh> &meshes, double maximum_frequency);
 
@@ -114,7 +114,7 @@ namespace Squeal
     const ConvergedMode *reference;
     int                  number;           ///< index of the mode on the mesh; -1: no counterpart
     double               overlap;          ///< overlap of both shapes [-]
-    bool                 in_cluster;       ///< true for one of several modes that mix from mesh to mesh
+    bool                 in_cluster;       ///< true for one of several modes that mix differently on each mesh
     double               frequency;        ///< [Hz]
     double               divergence;       ///< [-]
     ErrorKinds           frequency_error;  ///< relative error [-]

@@ -40,7 +40,7 @@ namespace Squeal
     double                  last_growth_rate = 0., last_divergence_rate = 0., last_error = 0.;         ///< [1/s], [-], [-]
     std::string             verdict;                                                                   ///< for the last coefficient
     double                  largest_divergence_rate = 0.;                                              ///< maximum over the sweep [-]
-    boost::optional<double> onset; ///< smallest friction coefficient at which it grows
+    boost::optional<double> onset; ///< first friction coefficient at which it begins to grow
 
     template <class Archive>
     void serialize(Archive &archive, const unsigned int /*version*/)
@@ -54,8 +54,8 @@ namespace Squeal
   enum class DesignOutcome
   {
     solved,
-    refused, ///< parameters or geometry were rejected
-    failed   ///< meshing or solution failed
+    refused, ///< parameters, geometry or mesh were rejected
+    failed   ///< the solution failed, or its process ended early
   };
 
   template <>
@@ -63,7 +63,7 @@ namespace Squeal
                                                                           {DesignOutcome::refused, "refused"},
                                                                           {DesignOutcome::failed, "failed"}};
 
-  /// A friction coefficient and the growing mode there.
+  /// A friction coefficient and a mode that grows there.
   struct DesignGrowth
   {
     double      friction_coefficient = 0.;
@@ -84,12 +84,12 @@ namespace Squeal
   struct DesignResult
   {
     int                      number = 0; ///< counted from one
-    std::vector<std::string> values;     ///< values of the variables; those of the given model if the design does not set them
+    std::vector<std::string> values;     ///< values of the variables, from the given model if the design does not set them
     DesignOutcome            outcome = DesignOutcome::failed;
     std::string              reason; ///< reason for rejection or failure
 
-    int    n_dofs = 0, n_modes = 0, n_counted = 0; ///< modes in the band at the smallest friction coefficient, and real modes by inertia
-    bool   is_complete = false;                    ///< both numbers agree, and the count is as expected at every friction coefficient
+    int    n_dofs = 0, n_modes = 0, n_counted = 0; ///< modes in the band at the smallest friction coefficient; real modes by inertia
+    bool   is_complete = false;                    ///< the numbers of modes agree with all counts
     int    n_unstable = 0, n_undecided = 0;        ///< numbers of modes at the largest friction coefficient
     int    n_growing     = 0;                      ///< number of modes that grow at any friction coefficient
     double largest_error = 0., largest_residual = 0.;
@@ -116,15 +116,13 @@ namespace Squeal
   /// One row for each design; @p names: names of the variables.
   Table design_table(const std::vector<std::string> &names, const std::vector<DesignResult> &designs);
 
-  /// Thresholds of all designs.
   Table design_threshold_table(const std::vector<DesignResult> &designs);
 
-  /// Modes of all designs.
   Table design_mode_table(const std::vector<DesignResult> &designs);
 
-  /// Designs without growth up to the largest friction coefficient, then designs with the largest onsets; as many as fit on the screen.
+  /// Solved designs without weak_onset, then other designs by descending weak_onset; as many as fit on the screen.
   Table quietest_designs(const std::vector<std::string> &names, const std::vector<DesignResult> &designs);
 
-  /// Quietest and loudest designs, and numbers of rejected and failed designs, one line each.
+  /// Lines with the quietest design, the loudest design and the numbers of solved, rejected, failed and incomplete designs.
   std::vector<std::string> verdict(const std::vector<std::string> &names, const std::vector<DesignResult> &designs);
 } // namespace Squeal

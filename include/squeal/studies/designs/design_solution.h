@@ -27,7 +27,7 @@ namespace Squeal
     }
   };
 
-  /// Shapes are on process 0 only.
+  /// Creates the reference modes; the shapes are on process 0 only.
   ReferenceModes reference_modes(const FrictionlessModes &modes, const MaterialParameters &materials);
 
   /// Label of a mode of a design, from the reference mode that it resembles.
@@ -38,22 +38,23 @@ namespace Squeal
     bool        in_cluster = false; ///< true for one of several modes that mix between designs
   };
 
-  /// Labels modes of a design: shapes are compared at the points of the reference, mapped to the bodies that both models have.
+  /// Labels the modes of a design by comparing shapes at the reference points, mapped to the bodies that both models contain.
   std::vector<ReferenceName> names_by(const ReferenceModes &reference,
                                       const Model          &model,
                                       const SparseMatrix   &kernel,
                                       const ComplexModes   &modes);
 
-  /// Key of the parameters that designs must share to use the same mesh and matrices: all parameters except coefficients of terms. Empty if
-  /// a design cannot share them.
+  /// Key of a family of designs with the same mesh and matrices: all parameters except coefficients of terms. Empty if a design cannot
+  /// belong to a family.
   std::string family_key(const Parameters &design);
 
   /**
    * One reduced model for several designs on one mesh, which differ in moduli, densities, Rayleigh coefficients, stiffnesses of mounts, load
    * and speed: coefficients θ of the terms of one system Q(λ; p) = Σ θ_k(p) λ^p A_k. Each design is a line of a sweep plan.
    *
-   * The basis starts from the real modes of the averaged design, is compressed at the last friction coefficients of all designs, and grows
-   * where a point misses Sweep/Tolerance. Within this tolerance, the results of a design depend on the designs solved before it.
+   * The basis starts from the real modes of the averaged design, is trained at the largest friction coefficient of each design, and is
+   * extended where estimated errors exceed Sweep/Tolerance. Within this tolerance, the results of a design depend on the designs solved
+   * before it.
    */
   class DesignFamily
   {
@@ -70,8 +71,8 @@ namespace Squeal
       int         n_counted; ///< number of real modes in the band by inertia
     };
 
-    /// Follows the modes of a design over the friction coefficients of its sweep. Throws SolverError if one basis is not sufficient for
-    /// this design and the previous ones.
+    /// Follows the modes of a design over the friction coefficients of its sweep. Throws SolverError if the basis cannot be extended to the
+    /// accuracy of Sweep/Tolerance.
     Member solve(std::size_t design);
 
     Scene scene;
@@ -79,7 +80,7 @@ namespace Squeal
   private:
     std::vector<OperatingPoint> points_of(std::size_t design) const;
 
-    /// Evaluates points to the tolerance; @p training as in error_controlled_sweep().
+    /// Evaluates points within Sweep/Tolerance; @p training: see error_controlled_sweep().
     void solve(const std::vector<OperatingPoint> &points, const std::vector<int> &training);
 
     Run                        &run;
@@ -87,11 +88,11 @@ namespace Squeal
     std::unique_ptr<SweepModel> model;
   };
 
-  /// Parameters of the sweep of a design, without optional output of a single run.
+  /// Parameters of the sweep of a design, without maps and other optional output.
   Parameters sweep_of(const Parameters &design);
 
-  /// Follows the modes over the friction coefficients of the sweep and extracts the results of a design; modes are labelled by @p
-  /// reference. Throws Error if this fails.
+  /// Follows the modes of a design over the friction coefficients of its sweep; modes are labelled by @p reference. Throws Error if this
+  /// fails.
   DesignResult solve_design(const Parameters &parameters, const ReferenceModes &reference, Run &run);
 
   /// solve_design() for a member of a family.

@@ -9,7 +9,7 @@
 
 namespace Squeal
 {
-  /// Folder next to the results @p output for an unfinished study; not touched by ResultFolder.
+  /// Folder for the results of an unfinished study, next to the folder @p output of its final results.
   std::string checkpoint_folder(const std::string &output);
 
   /// Stored results of an unfinished study.
@@ -29,7 +29,7 @@ namespace Squeal
     Checkpoint(const Checkpoint &)            = delete;
     Checkpoint &operator=(const Checkpoint &) = delete;
 
-    /// Stores an object that Boost serialises. If the run is killed, the file is complete or absent.
+    /// Stores a Boost-serialisable object; its file is complete or absent even if the run is killed.
     template <typename Object>
     void keep(const std::string &name, const Object &object) const
     {
@@ -68,7 +68,6 @@ namespace Squeal
     /// Number of @p designs that are finished.
     std::size_t n_known(const std::vector<int> &designs) const;
 
-    /// Stores the result of a design.
     void keep(const DesignResult &result) const;
 
     /// File with the reference modes, in the folder of the study.
@@ -79,9 +78,9 @@ namespace Squeal
    * Solves designs in separate, concurrent processes (base/worker_process.h). A failure is recorded in the result of its design and does
    * not affect other designs.
    *
-   * @param batches    designs that one process solves in turn; finished designs of a family are solved again to rebuild its basis
+   * @param batches    lists of designs, each for one process; finished designs of a family are solved again to rebuild its basis
    * @param unfinished initial result of a design, before it is solved
-   * @param arguments  of the command line, from which worker processes read the designs
+   * @param arguments  command-line arguments, passed to worker processes so that they read the same designs
    */
   void solve_side_by_side(const std::vector<std::vector<int>>             &batches,
                           unsigned int                                     n_side_by_side,
@@ -90,20 +89,20 @@ namespace Squeal
                           const std::function<void(const DesignResult &)> &report,
                           const std::vector<std::string>                  &arguments);
 
-  /// Designs, and the numbers of the designs that a run solves.
+  /// All designs of a study, and the numbers of the designs that a run solves.
   struct DesignWork
   {
     DesignPlan       plan;
     std::vector<int> designs; ///< numbers of the designs, from 1
   };
 
-  /// Everything that affects the results of a study of a @p model: version, parameters and model.
+  /// Text with everything that affects the results of a study: program version, parameters and @p model.
   std::string study_key(const Run &run, const std::string &model);
 
-  /// The mesh of a model, for study_key().
+  /// Cell counts and checksum of the mesh, for study_key().
   std::string model_key(const Scene &scene);
 
-  /// Key of everything that affects the results of a study; @p plan: designs known in advance.
+  /// study_key() with the designs of the @p plan.
   std::string design_key(const Run &run, const Scene &scene, const DesignPlan &plan);
 
   /// Parameters of the sweep of a design; empty if it is rejected. @p reason receives the reason unless it is null.
@@ -112,37 +111,35 @@ namespace Squeal
   /// Initial result of a design, before it is solved.
   DesignResult unfinished(const Run &run, const DesignPlan &plan, int design);
 
-  /// Message of an error, in one line.
   std::string in_one_line(const Error &error);
 
-  /// Reference modes for the labels of designs: read from the file if another process has written it, else computed from the given model.
+  /// Reference modes for the labels of designs, read from the file if it exists, otherwise computed from the given model.
   ReferenceModes design_reference(Scene &scene, Run &run, const std::filesystem::path &file);
 
-  /// Solves all designs that are not in the store, in separate processes. Worker processes receive the command-line @p arguments, so that
-  /// they read the same plan. Collective.
+  /// Solves all designs that are not in the store, in separate processes with the same command-line @p arguments. Collective.
   std::vector<DesignResult> solve_all(Scene                          &scene,
                                       Run                            &run,
                                       const DesignWork               &work,
                                       const DesignStore              &store,
                                       const std::vector<std::string> &arguments);
 
-  /// Writes the tables of designs and reports the quietest design.
+  /// Writes the tables of designs and prints the quietest designs.
   void write_designs(const std::vector<std::string> &names, const std::vector<DesignResult> &results, Run &run);
 
   /// Creates a study of designs with the common parameters and usage rules; @p own_rules take precedence.
   Study study_of_designs(const char *name, void (*run)(Scene &, Run &), std::vector<UsageRule> own_rules);
 
-  /// Writes the parameter file NAME of a design, as a sweep.
+  /// Writes the parameter file @p name of a design.
   void write_parameter_file(Parameters design, const std::string &name, const Run &run);
 
-  /// Variables of a plan that have no effect on the designs, with the reason. Throws ParameterError as with_design() does.
+  /// Variables of a plan that have no effect on any design, with reasons.
   std::vector<UnusedParameter> unused_variables(const Parameters &parameters, const DesignPlan &plan);
 
-  /// Throws ParameterError if a variable is not a parameter; if it has no effect, so that designs that differ only in it are equal; or if a
-  /// value is rejected both with all other variables unchanged and in every design that contains it. Invalid combinations are reported in
-  /// the rows of their designs.
+  /// Throws ParameterError if a variable is not a parameter; if a variable without effect is the only difference of two designs; or if a
+  /// value is rejected both individually and in every design that contains it. Other invalid combinations are reported in the rows of their
+  /// designs.
   void check_designs(const Parameters &parameters, const DesignPlan &plan);
 
-  /// check_designs() for a search within ranges: checks the ends of each range individually.
+  /// Throws ParameterError if a variable of a search is not a parameter or has no effect, or if an end of its range cannot be set.
   void check_ranges(const Parameters &parameters, const std::vector<DesignVariable> &variables);
 } // namespace Squeal

@@ -78,7 +78,7 @@ namespace Squeal
     removes, ///< simplifies the model: a candidate for the cheapest model
     adds,    ///< adds a feature that the model lacks
     speeds,  ///< another method for the same modes: a candidate for the cheapest model if it is faster
-    shows    ///< for information only: no parameter file can describe this model
+    shows    ///< for information only: not a candidate for the cheapest model
   };
 
   /// A model feature that can be varied individually: removed, added or replaced.
@@ -98,27 +98,27 @@ namespace Squeal
     ChangeKind kind;
     Departure  departure;
 
-    /// Reason why the model cannot have the change; returns null if it can. Null: always possible.
+    /// Returns the reason why the change is impossible, or null if it is possible. Null: always possible.
     Reason (*obstacle)(const Parameters &, const std::optional<SlidingState> &) = nullptr;
   };
 
   /// All ingredients; the simplest variant of an ingredient comes first.
   const std::vector<Ingredient> &ingredients();
 
-  /// Ingredients that are not present in the model yet, in the order of the list.
+  /// Ingredients that are not present in the model, in the order of the list.
   std::vector<const Ingredient *> ingredients_to_try(const Parameters &parameters);
 
-  /// Variation with several ingredients changed; it departs from the reference at the earliest step that one of them affects.
+  /// Variation with several changed ingredients; it departs from the reference at the earliest step that any of them affects.
   Variation combined(const Parameters &parameters, const std::vector<const Ingredient *> &changed);
 
-  /// A mode of the reference and its counterpart in a variant; one of them may be missing.
+  /// A mode of the reference and its counterpart in a variant; either may be missing.
   struct ModeChange
   {
     ModeLabel                           label;              ///< label in the reference; in the variant if there is no counterpart
     std::optional<std::complex<double>> reference, variant; ///< λ [rad/s]
     bool                                unstable_reference = false, unstable_variant = false;
     double                              overlap    = 0.;    ///< overlap of both shapes, see PairedMode [-]
-    bool                                in_cluster = false; ///< no individual counterpart by shape: paired by λ within the cluster
+    bool                                in_cluster = false; ///< the mode has no individual counterpart by shape
 
     /// Change of the frequency [%]; for a mode without counterpart, the distance from @p band_end, the end of the band [rad/s].
     double frequency(double band_end) const;
@@ -126,7 +126,8 @@ namespace Squeal
     /// Change of the divergence rate [percentage points]; empty without counterpart.
     std::optional<double> divergence() const;
 
-    /// True if one of the two modes has a divergence rate above weak_divergence, and the other mode does not grow or is missing.
+    /// True if one of the two modes is unstable with a divergence rate of at least weak_divergence, and the other does not grow or is
+    /// missing.
     bool changes_verdict() const;
   };
 
@@ -144,8 +145,8 @@ namespace Squeal
     double                  band_end; ///< end of the band of the variant [rad/s]
     int                     n_growing_real_reference, n_growing_real_variant;
 
-    LargestChange frequency() const;  ///< largest change over the modes in the bands of both models [%]
-    LargestChange divergence() const; ///< largest change over the same modes [percentage points]
+    LargestChange frequency() const;  ///< largest change over reference modes in the band of the variant [%]
+    LargestChange divergence() const; ///< largest change over modes with a counterpart [percentage points]
 
     std::size_t n_unstable(bool in_variant) const;
     std::size_t n_lost() const; ///< number of reference modes without counterpart
@@ -156,7 +157,7 @@ namespace Squeal
     double severity(const IngredientsParameters &accuracy) const;
   };
 
-  /// Pairs the modes of a variant with those of the reference by pair_modes() and compares them. Collective.
+  /// Pairs the modes of a variant with modes of the reference by shape or label, and compares them. Collective.
   Effect effect_of(const SolvedModel &reference, const SolvedModel &variant);
 
   /// A change that makes a model cheaper.

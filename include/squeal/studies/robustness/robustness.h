@@ -24,10 +24,10 @@ namespace Squeal
   struct SamplePlan
   {
     std::vector<UncertainNumber> numbers;
-    DenseMatrix                  values;        ///< one row for each sample
-    int                          n_independent; ///< the first samples, which are independent and used for probabilities
-    bool                         has_indices;   ///< the samples are those of saltelli_samples(), for Sobol' indices
-    int n_followed = 0; ///< number of samples followed over the friction coefficient: the first of the independent samples
+    DenseMatrix                  values;         ///< one row for each sample
+    int                          n_independent;  ///< the first samples, which are independent and used for probabilities
+    bool                         has_indices;    ///< the samples come from saltelli_samples(), for Sobol' indices
+    int                          n_followed = 0; ///< number of leading independent samples that are followed over the friction coefficient
 
     int n() const
     {
@@ -35,13 +35,15 @@ namespace Squeal
     }
   };
 
+  /// Draws samples of the uncertain parameters. Throws ParameterError for invalid distributions.
+  ///
   /// @param current nominal value of a parameter, by its name
   /// @param pins    volumes of pins, which may have individual values
   SamplePlan sample_plan(const RobustnessParameters                       &parameters,
                          const std::function<double(const std::string &)> &current,
                          const std::vector<std::string>                   &pins);
 
-  /// Designs used as samples: values of the parameters of a system file; values that a design omits are those of the file.
+  /// Designs used as samples of the parameters of a system file, with @p current values where a design has none.
   SamplePlan listed_samples(const DesignPlan &plan, const std::function<double(const std::string &)> &current);
 
   /// Nominal value of a parameter of a system file. Throws ParameterError if there is no such parameter.
@@ -105,7 +107,7 @@ namespace Squeal
   struct FollowedSample
   {
     std::vector<SquealOnset> onsets;       ///< one onset for each label and divergence rate in a contact set
-    std::size_t              n_missed = 0; ///< number of friction coefficients that miss the tolerance
+    std::size_t              n_missed = 0; ///< number of friction coefficients without results within the tolerance
 
     /// First onset of modes with this label, or of any mode if the label is empty, at this divergence rate; null: none.
     const SquealOnset *first(double divergence_rate, const std::string &label = "") const;
@@ -114,7 +116,7 @@ namespace Squeal
   /// Results of the samples.
   struct SolvedSamples
   {
-    std::vector<std::optional<Sample>> samples;  ///< empty for samples that miss the tolerance
+    std::vector<std::optional<Sample>> samples;  ///< empty for samples without results within the tolerance
     std::vector<FollowedSample>        followed; ///< onsets of the first samples
   };
 
@@ -124,9 +126,8 @@ namespace Squeal
   /// Solves operating points of a system without a definite part, each at full order; failed points are omitted.
   ErrorControlledSweep solve_directly(const SweepModel &model, const std::vector<OperatingPoint> &points, const KeepPoint &keep);
 
-  /// Solves operating points to the tolerance with the basis of their contact set, or at full order if there is no basis, as a step of the
-  /// run with this name. Points are processed in batches of increasing size, so that few points are evaluated with a basis that is still
-  /// too small.
+  /// Solves operating points within the tolerance, with the basis of their contact set or, without a basis, at full order. A step of the run
+  /// with this name. Batches grow in size, so that few points are evaluated with a basis that is still too small.
   ///
   /// @param n_training number of leading points at which the basis is extended and compressed
   ErrorControlledSweep solve_points(SweepModel                        &model,
@@ -136,7 +137,7 @@ namespace Squeal
                                     const KeepPoint                   &keep,
                                     const std::string                 &name);
 
-  /// Called when the samples of a contact set are solved, with its model and the samples solved so far.
+  /// Function that receives the model of a contact set and all samples solved so far, after its samples are solved.
   using KeepModel = std::function<void(std::size_t contact_set, const SweepModel &, const std::vector<std::optional<Sample>> &)>;
 
   /// Solves all samples with one reduced model for each contact set, as steps of the run. If @p checkpoint is not null, it supplies the
@@ -164,7 +165,7 @@ namespace Squeal
   /// @param n_samples number of leading points of the contact set that do not belong to a line
   void follow_samples(SweepModel &model, std::size_t n_samples, std::vector<FollowedSample> &followed);
 
-  /// Writes the tables of onsets and reports them.
+  /// Writes the tables of onsets and prints their distributions.
   void write_onsets(const std::vector<FollowedSample> &followed, const std::string &parameter, Run &run);
 
   /// Columns with the number of a sample and its uncertain numbers; rows are indices of samples. @p plan must outlive them.
@@ -174,7 +175,7 @@ namespace Squeal
   Table sample_table(const SamplePlan &plan, const std::vector<std::optional<Sample>> &samples);
   Table cloud_table(const SamplePlan &plan, const std::vector<std::optional<Sample>> &samples);
 
-  /// Writes and reports the results of the samples.
+  /// Writes the tables of the samples and prints a summary.
   void write_samples(const SamplePlan &plan, const std::vector<std::optional<Sample>> &samples, Run &run);
 
   /// Mode with the largest divergence rate among the unstable modes of a sample; −1: none.

@@ -9,7 +9,7 @@
 
 namespace Squeal
 {
-  /// Independent samples of uncertain numbers, n × d, reproducible by the seed. Correlated numbers have a normal copula.
+  /// Independent samples of uncertain numbers, n × d, reproducible with the seed. Correlated numbers have a normal copula.
   ///
   /// @param correlations d × d, correlations of the normal scores. Throws ParameterError if they are not positive definite.
   DenseMatrix independent_samples(const std::vector<Distribution> &distributions,

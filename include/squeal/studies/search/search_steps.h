@@ -20,13 +20,13 @@ namespace Squeal
   /// Variables of Designs/Variables. Throws ParameterError unless all have ranges.
   std::vector<DesignVariable> search_variables(const DesignParameters &designs);
 
-  /// Penalty for a design without a result, larger than any divergence rate [-].
+  /// Divergence rate assumed for a design without a result, larger than usual divergence rates [-].
   inline constexpr double penalty_rate = 1.;
 
   /// Indices of the starting points of a search, smallest values first.
   std::vector<std::size_t> starts_of_search(const std::vector<double> &values);
 
-  /// Minimises by a method of NLopt from a starting point. Returns the reason for termination; empty if @p value returned nothing.
+  /// Minimises @p value with a method of NLopt. Returns the reason for termination; empty if @p value returned nothing.
   std::string minimise(const SearchParameters                                          &parameters,
                        const SearchPoint                                               &start,
                        const std::function<std::optional<double>(const SearchPoint &)> &value);
@@ -36,7 +36,7 @@ namespace Squeal
   {
     std::optional<double> friction_coefficient; ///< empty for a system file without a friction coefficient
     std::size_t           n_modes, n_unstable;
-    ModalQuantities       leading; ///< fastest growing, or least damped, mode
+    ModalQuantities       leading; ///< mode with the largest divergence rate
     std::string           label;
     double                residual; ///< largest residual
   };

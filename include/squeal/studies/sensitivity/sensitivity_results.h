@@ -75,7 +75,7 @@ namespace Squeal
     /// Rates of the friction coefficient and contact damping with respect to a parameter of the operation, by central differences.
     ParameterValues contact_rates(const SensitivityParameter &parameter, double friction_coefficient) const;
 
-    /// dK/dp and dM/dp of the bodies for each parameter; they change the modes in the modal damping and the reactions of steady sliding.
+    /// dK/dp and dM/dp of the bodies for each parameter, which affect modal damping and the reactions of steady sliding.
     std::vector<BodyRates> body_rates() const;
 
     /// Rates of the contact damping for each parameter through the reactions of steady sliding; empty if reactions are equal shares of the
@@ -111,7 +111,7 @@ namespace Squeal
     bool                              is_unstable;
     Differentiated                    kind;
     std::vector<std::complex<double>> derivatives; ///< dλ/dp for each parameter; λ is the mean for several modes
-    std::vector<std::complex<double>> changes;     ///< by the last extension of the basis; real and imaginary parts are error estimates
+    std::vector<std::complex<double>> changes;     ///< changes of the derivatives by the last extension of the basis, as error estimates
   };
 
   /// Derivatives of the growing modes at Operation/Friction coefficient or, if there are none, of the least damped modes. Extends the basis
@@ -122,26 +122,26 @@ namespace Squeal
   struct ThresholdSensitivity
   {
     const Threshold    *threshold;
-    std::string         obstacle;    ///< reason if there are no derivatives; else empty
+    std::string         obstacle;    ///< reason why there are no derivatives; empty if there are
     std::vector<double> derivatives; ///< dμ_c/dp for each parameter; empty with an obstacle
     std::vector<double> errors;      ///< estimated errors
   };
 
   /**
-   * Derivatives of the thresholds of a chart of the main line. The basis is extended once by the residuals of their modes. A step of the
-   * run.
+   * Derivatives of the thresholds of a chart of the main line, as a step of the run. The basis is extended once by the residuals of their
+   * modes.
    *
-   * At a coalescence δ² = (λ_1 − λ_2)² is analytic and zero:
+   * At a coalescence μ_c, δ² = (λ_1 − λ_2)² is analytic and zero:
    *
    *   dμ_c/dp = −(∂δ²/∂p) / (∂δ²/∂μ)
    *
-   * with values at μ_c from three distances on either side (value_at_centre()); where Re λ of one mode is zero,
+   * Both derivatives are extrapolated from three distances on either side of μ_c (value_at_centre()). At a zero of Re λ of one mode,
    *
    *   dμ_c/dp = −Re(∂λ/∂p) / Re(∂λ/∂μ).
    */
   std::vector<ThresholdSensitivity> threshold_sensitivities(SensitivityModel &model, const SweepChart &chart, Run &run);
 
-  /// Modes of the linearised system with left vectors, by the residual iteration with an accuracy sufficient for derivatives, as a step of
+  /// Modes of the linearised system with left vectors that are sufficiently accurate for derivatives, by residual iteration, as a step of
   /// the run.
   FrictionModes left_and_right_modes(const FrictionlessModes &frictionless, double value, Run &run);
 

@@ -97,7 +97,7 @@ namespace Squeal
                        const MultiVector          &real_part,
                        const MultiVector          &imaginary_part);
 
-  /// Verdict of the run: stable, squeal or static divergence, one line each.
+  /// Verdict of the run: static divergence, squeal and undecided modes, one line each, or stable.
   std::vector<std::string> verdict(const FrictionModes &modes, double maximum_frequency);
 
   /// Explains a difference between the numbers of real modes and of modes with friction; empty if they agree. A mode that has stopped

@@ -36,11 +36,11 @@ namespace Squeal
   /// the result contains only the linearisation.
   FrictionlessModes starting_modes(const CoupledSystem &whole, Run &run);
 
-  /// `mode 3`.
+  /// Label with a number, for example `mode 3`.
   ModeLabel numbered_label(int number);
 
-  /// Solves for the modes of a system without a definite part, using LU factors of Q(s), and counts them, as steps of the run; modes are
-  /// numbered.
+  /// Solves a system without a definite part for its modes, using LU factors of Q(s), and counts them, as steps of the run. Labels are
+  /// numbers.
   FrictionModes direct_solution(const GivenSystem &given, Run &run);
 
   /// Number of modes in the rectangle of the band by the argument principle.
@@ -50,6 +50,8 @@ namespace Squeal
     ContourCount   count;
   };
 
+  /// Counts the modes of a system at a value of its varied parameter.
+  ///
   /// @param frictionless not used for a system without a definite part
   CountedModes counted_modes(const CoupledSystem &system, double value, const FrictionlessModes &frictionless, Run &run);
 

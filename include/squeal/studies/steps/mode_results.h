@@ -19,8 +19,7 @@ namespace Squeal
     ModesAtPoints modes;
   };
 
-  /// Solves the model on the coarser mesh of the accuracy goal, or on the one given in the parameters, as a step of the run; empty without
-  /// either.
+  /// Solves the model on the coarser mesh of the accuracy goal or of the parameters, as a step of the run; empty if there is none.
   std::optional<CoarserSolution> solve_on_coarser_mesh(Run &run);
 
   /// Discretisation errors of all modes, see discretisation_errors().
@@ -39,12 +38,11 @@ namespace Squeal
   /// Title of a complex mode in its file: "A0-4 +, 2353 Hz, divergence rate 0.6798 %, unstable".
   std::string mode_title(const ModeLabel &label, const std::complex<double> &lambda);
 
-  /// Options of animations from the parameters.
   AnimationOptions animation_options(const OutputParameters &output);
 
-  /// Writes the requested fields, as steps of the run: complex modes with animations of unstable ones, real coupled modes, component modes;
-  /// the energy input of growing modes; and a list of each type for ParaView. Numbers in file names are the row numbers in
-  /// `complex_modes.csv`, `real_modes.csv` and `component_modes.csv`.
+  /// Writes the requested fields, as steps of the run: complex modes, with the energy input and animations of unstable modes; real coupled
+  /// modes; component modes; and a list of each type for ParaView. Numbers in file names are row numbers in `complex_modes.csv`,
+  /// `real_modes.csv` and `component_modes.csv`.
   void write_mode_shapes(const FrictionlessModes &frictionless, const FrictionModes &friction, const PowerBalances &balances, Run &run);
 
   /// Writes mode shapes of a system file at its points, with the same names of files and fields as for a mesh: one vertex for each point;

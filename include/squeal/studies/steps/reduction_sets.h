@@ -15,7 +15,7 @@ namespace Squeal
     bool                             has_friction;               ///< true: complex modes; false: real modes
     double                           friction_coefficient;       ///< 0 without friction
     double                           largest_circular_frequency; ///< end of the band [rad/s]
-    std::vector<FileParameter>       parameters;                 ///< of the system, at their given values
+    std::vector<FileParameter>       parameters;                 ///< parameters of the system, fixed at their values
 
     /// True if one of the bases needs this source.
     bool rests_on(BasisSource source) const;
@@ -42,7 +42,7 @@ namespace Squeal
   };
 
   /**
-   * Sets of vectors for the bases of a plan, computed as steps of the run, with their CPU times: a basis is charged only for the sources
+   * Sets of vectors for the bases of a plan, computed as steps of the run, with their CPU times. A basis is charged only for the sources
    * that it needs.
    *
    * Modes are charged as a stand-alone solve for the lowest k modes, or for the modes below a frequency: one solution including its
@@ -52,17 +52,17 @@ namespace Squeal
   class ReductionSets
   {
   public:
-    /// Computes the sets that do not depend on the basis: static modes, and complex modes of the coupled @p system, which has the damping
-    /// of the eigenproblem. All arguments must outlive the object. Throws ParameterError or SolverError if required modes do not exist.
+    /// Computes the sets that bases share: real modes, static modes and snapshots. @p system: coupled system of the eigenproblem. All
+    /// arguments must outlive the object. Throws SolverError if required modes do not exist.
     ReductionSets(const ReductionPlan &plan, const FrictionlessModes &frictionless, const CoupledSystem &system, Run &run);
 
-    /// Replaces the component modes by those of another truncation and returns their numbers. Throws SolverError if there are too few.
+    /// Replaces the component modes by modes of another truncation and returns their numbers. Throws SolverError if there are too few.
     std::map<BasisSource, int> truncate(const ModeTruncation &truncation);
 
     /// Selects the real coupled modes below a frequency [Hz]; 0: the end of the band. Throws SolverError if there are none.
     void take_real_modes(double frequency);
 
-    /// Replaces the residual-grown basis by one with estimated errors of λ below a relative tolerance.
+    /// Replaces the residual-grown basis by a basis with estimated relative errors of λ below a tolerance.
     void grow(double tolerance);
 
     /// CPU time of all sources of a basis, each set counted once [s].
@@ -81,10 +81,10 @@ namespace Squeal
     BasisIngredients         ingredients; ///< vectors computed so far
 
   private:
-    /// Records the cost of a source; from now on, bases that use this source are charged for it.
+    /// Records the cost of a source, which is charged to later bases that use this source.
     void book(const Charge &charge);
 
-    /// Stores vectors, which replace an earlier set, with their cost; returns their number.
+    /// Stores a set of vectors with its cost, replacing an earlier set; returns the number of vectors.
     int keep(Charge charge, MultiVector set);
 
     void charge_coupled_factor();

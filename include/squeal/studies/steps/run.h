@@ -13,7 +13,7 @@
 
 namespace Squeal
 {
-  /// MPI processes on this machine.
+  /// Number of MPI processes on this machine.
   unsigned int n_processes_here(MPI_Comm communicator);
 
   /// Command-line settings in addition to the parameters.
@@ -34,7 +34,7 @@ namespace Squeal
     const Parameters &parameters;
     const MPI_Comm    communicator;
     Progress         &progress;
-    std::ostream     &screen; ///< stream for tables; its buffer is null on all processes but one
+    std::ostream     &screen; ///< stream for tables; its buffer is null on all processes except one
     const bool        is_dry, is_root;
     const RunOptions  options;
   };
@@ -86,8 +86,7 @@ namespace Squeal
     /// Writes NAME.csv and prints the table.
     void write_table(const std::string &name, const Table &table);
 
-    /// Writes the parameters as used and the run record, and completes the result folder. @p afterwards may remove data that are needed
-    /// only until then.
+    /// Writes the parameters and the run record, and completes the result folder. @p afterwards may then remove temporary data.
     void finish(const std::function<void()> &afterwards = {});
   };
 

@@ -60,7 +60,7 @@ namespace Squeal
   /// MeshError if the model exceeds the memory, or if the disc is a body of revolution about an axis other than z.
   void summarise_scene(const Mesh &mesh, Run &run);
 
-  /// Meshes, checks and pairs; rejects parameters that do not fit the pins. The system is not assembled.
+  /// Meshes the model, checks the mesh and pairs the contact nodes, without assembly. Throws Error if parameters do not fit the mesh.
   Scene mesh_scene(Run &run);
 
   /// Assembles the system of the uncoupled bodies; returns the individual terms with their coefficients, before merging.
@@ -69,13 +69,13 @@ namespace Squeal
   /// Data common to all steady sliding states of an assembled model.
   SlidingModel sliding_model(const Scene &scene, const Parameters &parameters);
 
-  /// Solves for the quasi-static state, as a step of the run.
+  /// Solves for the steady sliding state, as a step of the run.
   SlidingState solve_sliding(const Scene &scene, const OperationParameters &operation, const SlidingParameters &sliding, Run &run);
 
   /// Assembles the model and linearises it about the requested contact state, as steps of the run.
   Linearisation linearised_scene(Scene &scene, Run &run);
 
-  /// Couples the closed nodes of a state; without one, all nodes with equal shares of the load. @p operation determines the contact
+  /// Couples the closed nodes of a state or, without a state, all nodes with equal shares of the load. @p operation determines the contact
   /// damping.
   Linearisation linearise(const Scene &scene, const std::optional<SlidingState> &sliding, const OperationParameters &operation);
 } // namespace Squeal

@@ -10,10 +10,10 @@ namespace Squeal
   /// share a mesh and its matrices.
   std::string text_without_coefficients(Parameters parameters);
 
-  /// For each scale of a family, the factor and the coefficient of a term whose product is the scale.
+  /// Factor and coefficient of a term, whose product is a scale, for each scale of a family.
   using FamilyScales = std::map<std::string, std::pair<double, Coefficient>>;
 
-  /// Systems on one mesh that differ in the coefficients of their terms, with the modes of the one in the middle.
+  /// Systems on one mesh that differ in the coefficients of their terms, with the modes of the averaged system.
   struct SystemFamily
   {
     TermFamily        terms;
@@ -21,7 +21,7 @@ namespace Squeal
     FamilyScales      scales;
 
     /// Scales of a member at other parameter values of the bodies. Valid only if the members that define the family vary all these
-    /// parameters independently: terms with coefficients in a fixed ratio must keep it.
+    /// parameters independently, because terms with proportional coefficients share a scale.
     ParameterValues member(const ParameterValues &values) const;
   };
 
@@ -30,7 +30,7 @@ namespace Squeal
    *
    * @param bodies        terms of the assembled model
    * @param linearisation contact and its damping
-   * @param margin        relative width by which the real modes extend beyond the band
+   * @param margin        relative margin of the real modes above the band [-]
    */
   SystemFamily system_family(const BodyTerms                    &bodies,
                              const std::vector<ParameterValues> &members,

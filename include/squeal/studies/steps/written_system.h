@@ -9,7 +9,7 @@
 
 namespace Squeal
 {
-  /// μ of a meshed model as a parameter of a system file, with the range of the sweep; μ is fixed if contact nodes or damping depend on it.
+  /// μ of a meshed model as a parameter of a system file, with a range from 0 to 10; fixed if contact nodes or damping depend on μ.
   FileParameter friction_parameter(const Parameters &parameters);
 
   /// Parameters of the system file of a meshed model; `names` maps parameters of the terms to them.
@@ -26,7 +26,7 @@ namespace Squeal
   /// rotation that are factors of terms, with a range of 0.01 to 100 times their values.
   NamedParameters named_parameters(const Linearisation &linearisation, const FileParameter &friction, const Parameters &parameters);
 
-  /// Parameters at these values, with ranges that contain only the values.
+  /// Parameters fixed at these values.
   std::vector<FileParameter> fixed(std::vector<FileParameter> parameters, const ParameterValues &values);
 
   /// A monomial with renamed parameters; parameters with an empty new name are replaced by one.
@@ -48,9 +48,9 @@ namespace Squeal
   /// Data of a reduced model in a system file.
   struct ReductionNotes
   {
-    std::vector<FileParameter> parameters; ///< with the range of the model
+    std::vector<FileParameter> parameters; ///< parameters with the ranges in which the model is valid
     std::string                description;
-    double                     tolerance; ///< of the errors of λ
+    double                     tolerance; ///< tolerance for relative errors of λ [-]
     Table                      points;    ///< points at which the model was evaluated, with the largest errors of λ
   };
 

@@ -41,7 +41,7 @@ namespace Squeal
   /// Regime of a contact set; added if it does not exist.
   ContactRegime &regime_of(const std::vector<unsigned int> &closed, std::vector<ContactRegime> &regimes);
 
-  /// Quantity along a line of a sweep, or from line to line of a map.
+  /// Quantity that varies along a line of a sweep, or between the lines of a map.
   struct SweepAxis
   {
     std::string name, unit;
@@ -77,11 +77,10 @@ namespace Squeal
   /// Computes the contact states at all requested operating points, as steps of the run. @p scene must outlive the plan.
   SweepPlan sweep_plan(const Scene &scene, Run &run);
 
-  /// Reads a system file and the ranges of its varied parameters, as a step of the run. On the main line, other parameters have their given
-  /// values.
+  /// Reads a system file and the ranges of its varied parameters, as a step of the run. Other parameters have their given values.
   SweepPlan sweep_plan_of_system(Run &run);
 
-  /// Swept parameter of a system file. Throws ParameterError unless the file contains it and its range includes that of the sweep.
+  /// Swept parameter of a system file. Throws ParameterError unless the file contains it and its range includes the range of the sweep.
   NamedRange swept_parameter(const SystemFile &file, const Run &run);
 
   /// sweep_plan() for given lines of operating points.
@@ -101,7 +100,7 @@ namespace Squeal
     /// Creates a reduced model from the undamped modes without friction.
     SweepModel(const SweepPlan &plan, const ContactRegime &regime, Run &run, FrictionlessModes frictionless);
 
-    /// Modes on a line, computed unless known. Collective.
+    /// Modes on a line; only new points are computed. Collective.
     std::vector<ChartPoint> evaluate(int line, const std::vector<double> &friction_coefficients);
 
     /// Modes of a point at full order by direct_modes(); its residuals are backward errors. Collective.
@@ -143,10 +142,9 @@ namespace Squeal
     std::map<Place, ChartPoint> known;
 
   private:
-    /// Creates the reduced model.
     void start();
 
-    /// Shares of component modes, from which the modes of a point are named, computed from products with the basis.
+    /// Shares of component modes in the modes of a point, for labels.
     std::vector<ShapeShares> shape_shares(const ChartPoint &point, const std::vector<int> &modes) const;
 
     /// Labels without a basis: indices of the most similar modes at the first labelled point.
@@ -156,26 +154,25 @@ namespace Squeal
     mutable std::vector<DenseMatrix>  reference_products; ///< products of the component modes with the basis vectors labelled so far
   };
 
-  /// Indices among n friction coefficients for training a basis: the last value, then the first, the middle and the quarters.
+  /// Indices among n friction coefficients for training a basis: the last, the middle, the quarters and the first.
   std::vector<int> ends_and_quarters(int n);
 
-  /// Point with the largest contact damping.
   const OperatingPoint &most_damped(const ContactRegime &regime);
 
-  /// Evaluates all points of the contact set to the requested tolerance, as a step of the run.
+  /// Evaluates all points of the contact set within Sweep/Tolerance, as a step of the run.
   void evaluate_points(SweepModel &model);
 
-  /// Evaluates all known points again with the current basis, which is not extended for thresholds any more. Collective.
+  /// Evaluates all known points again with the current basis, which is no longer extended for thresholds. Collective.
   void evaluate_again(SweepModel &model);
 
   /**
-   * Reduced model for a sweep that was solved at full order: a Galerkin projection on principal axes of the right and left modes at some of
-   * its points. Points with the largest error are added, or fewer axes are truncated, until all points meet the tolerance of the sweep and
-   * the reduced model has no spurious modes in the band.
+   * Reduced model for a sweep that was solved at full order: a Galerkin projection onto principal axes of the right and left modes at some
+   * of its points. The point with the largest error is added, or fewer axes are truncated, until the errors at all points are within the
+   * tolerance of the sweep and the reduced model has no spurious modes in the band.
    *
    * @param errors receives the largest |λ̂ − λ| / |λ| of the band for every known point
    *
-   * Throws SolverError if no truncation meets the tolerance.
+   * Throws SolverError if the errors exceed the tolerance with every truncation.
    */
   ReducedModel snapshot_model(SweepModel &model, std::map<SweepModel::Place, double> &errors);
 
@@ -222,7 +219,6 @@ namespace Squeal
                       double                         largest_circular_frequency,
                       const std::string             &parameter);
 
-  /// Table of the contact sets along the lines.
   Table contact_table(const SweepPlan &plan, std::size_t n_pairs);
 
   /// Writes tables of the @p charts of each line: branches, counts, thresholds, crossings of the band's end.

@@ -34,8 +34,8 @@ namespace Squeal
    * Finds a local minimum of ½ |r(x)|² in the unit cube with the Levenberg–Marquardt trust-region method of Ceres. If the residuals at a
    * point cannot be computed, the step counts as failed and is shortened.
    *
-   * @param start     residuals must exist here
-   * @param tolerance the fit ends when |Δx| falls below it, or the relative change of |r|² below its square
+   * @param start     starting point, at which residuals must exist
+   * @param tolerance limit of |Δx|; its square is the limit of the relative change of |r|²
    */
   Fit least_squares(const ResidualsAt &residuals_at, const std::vector<double> &start, double tolerance, int maximum_iterations);
 
@@ -55,8 +55,8 @@ namespace Squeal
    * S_k <= 1e-7 S_1. A parameter is undetermined if its component in these directions exceeds 1 %.
    *
    * @param residuals   at the minimum x
-   * @param is_relative true: weights are known up to a common factor, s² = |r|² / (m − n) with n free parameters, and there are no
-   *                    deviations unless m > n; false: s = 1
+   * @param is_relative true: weights are known up to a common factor, s² = |r|² / (m − n) with n free parameters, and deviations exist
+   *                    only if m > n; false: s = 1
    */
   FitStatistics fit_statistics(const Residuals &residuals, const std::vector<double> &x, bool is_relative);
 } // namespace Squeal

@@ -37,8 +37,8 @@ namespace Squeal
   {
     MeasuredState           state;
     std::string             label;         ///< label with or without the sign of a doublet
-    std::string             member;        ///< "lowest", "highest", or a number >= 1; empty: the mean of all
-    Measured                frequency;     ///< "lowest", "highest", or a number >= 1; empty: the mean of all modes with the label
+    std::string             member;        ///< "lowest", "highest", or a number >= 1; empty: the mean of all modes with the label
+    Measured                frequency;     ///< [Hz]
     std::optional<Measured> damping_ratio; ///< ζ = −Re λ / |λ| [-]
     std::string             where;         ///< file and line, for messages
   };
@@ -49,7 +49,7 @@ namespace Squeal
     Sensors                   sensors;         ///< empty: all modes are paired by label
     double                    least_mac = 0.5; ///< MAC below which shapes are not similar [-]
 
-    /// True if no deviations are given: all numbers then have the same relative deviation.
+    /// True if no deviations are given; all frequencies then have the same relative deviation.
     bool are_relative = true;
 
     /// Number of frequencies and damping ratios.
@@ -64,8 +64,8 @@ namespace Squeal
   /// Reads the file of measured modes; see doc/updating.md. Throws FileError, or ParameterError with the line number.
   MeasuredModes read_measured_modes(const std::string &path);
 
-  /// A computed mode and its derivatives with respect to the fitted parameters. Individual modes of a cluster of equal eigenvalues are not
-  /// differentiable: each has the derivatives of the mean.
+  /// A computed mode and its derivatives with respect to the fitted parameters. Because individual modes of a cluster of equal eigenvalues
+  /// are not differentiable, each has the mean derivatives of the cluster.
   struct ComputedMode
   {
     MeasuredState                     state;

@@ -22,8 +22,7 @@ namespace Squeal
       return shapes.count(label) > 0;
     }
 
-    /// The matrix from dofs to responses of the sensors: displacements of the nearest points in the directions of the sensors. All rows are
-    /// on process 0.
+    /// Matrix from dofs to sensor responses, the displacements of the nearest points in the sensor directions. All rows are on process 0.
     std::shared_ptr<const SparseMatrix> rows(const ShapePoints &points) const;
   };
 

@@ -24,7 +24,7 @@ namespace Squeal
     }
   };
 
-  /// Fitted parameters, from Designs/Variables. Throws ParameterError if one has no range or starts outside its range.
+  /// Fitted parameters, from Designs/Variables. Throws ParameterError if a parameter has no range or starts outside its range.
   ///
   /// @param current value of a parameter in the model, by its name
   std::vector<FittedParameter> fitted_parameters(const DesignParameters                           &designs,
@@ -38,8 +38,8 @@ namespace Squeal
     ParameterValues   contact; ///< rates of the friction coefficient and contact damping
   };
 
-  /// dλ/dp = i dω/dp of each mode without friction and damping with respect to each parameter, ω' = φᵀ (K' − ω² M') φ / 2ω. Zero for ω = 0;
-  /// in a cluster of equal ω, every mode has the mean. Collective.
+  /// dλ/dp = i dω/dp of each mode without friction and damping with respect to each parameter, ω' = φᵀ (K' − ω² M') φ / 2ω; zero for ω = 0.
+  /// In a cluster of equal ω, every mode has the mean derivative. Collective.
   ///
   /// @param squares ω² [rad²/s²]
   /// @param shapes  φ, mass-normalised
@@ -47,7 +47,8 @@ namespace Squeal
                                                                        const MultiVector            &shapes,
                                                                        const std::vector<BodyRates> &rates);
 
-  /// dλ/dp of complex modes from D and the N of each parameter, see eigenvalue_derivative(); in a cluster, every mode has the mean.
+  /// dλ/dp of complex modes from D and the N of each parameter, see eigenvalue_derivative(). In a cluster, every mode has the mean
+  /// derivative.
   std::vector<std::vector<std::complex<double>>> complex_mode_derivatives(const std::vector<std::complex<double>> &lambda,
                                                                           const std::vector<ComplexDenseMatrix>   &N,
                                                                           const ComplexDenseMatrix                &D);
@@ -60,7 +61,7 @@ namespace Squeal
   /// Modes of all measured states and their derivatives, at given values of the fitted parameters. Collective.
   using ModesAtValues = std::function<std::vector<ComputedMode>(const std::vector<double> &values)>;
 
-  /// Modes of a meshed model, remeshed and reassembled when its matrices change. All arguments must outlive the function. Throws
+  /// Modes of a meshed model, which is remeshed and reassembled when its matrices change. All arguments must outlive the function. Throws
   /// ParameterError if a parameter cannot be fitted.
   ModesAtValues modes_of_scene(Scene &scene, const std::vector<FittedParameter> &parameters, const MeasuredModes &measured, Run &run);
 
