@@ -151,7 +151,7 @@ class Flutter(SystemTest):
                                           ("sweep", "Sweep/Parameter=mu, 0, 2, 5", ["range"]), ("stability", "System=nothing", ["nothing"]),
                                           ("reduction", "Reduction/Bases=real, free", ["`free`", "contact nodes"]),
                                           ("reduction", "Reduction/Bases=real + 1st-ord. two-sided + damping", ["needs damping"]),
-                                          ("ingredients", "System=system", ["needs a mesh"]), ("sweep", "Sweep/Parameter=mu", ["range of a parameter"])):
+                                          ("ingredients", "System=system", ["requires a mesh"]), ("sweep", "Sweep/Parameter=mu", ["range of a parameter"])):
             self.write("study.prm", STUDY.format(study=study, band=BAND))
             self.assert_message(self.call("study.prm", "--output", "refused", "--set", override), mentions)
 

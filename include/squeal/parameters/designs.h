@@ -72,16 +72,16 @@ namespace Squeal
                                                                         {SearchMethod::cobyla, "COBYLA"},
                                                                         {SearchMethod::bobyqa, "BOBYQA"}};
 
-  /// A search for a quiet design (section `Search`), in the ranges of Designs/Variables.
+  /// Search for a quiet design within the ranges of Designs/Variables (section `Search`).
   struct SearchParameters
   {
     SearchGoal   goal          = SearchGoal::divergence_rate;
     SearchMethod method        = SearchMethod::subplex;
-    unsigned int n_samples     = 10;    ///< samples of the Sobol sequence; the methods start from the best one
+    unsigned int n_samples     = 10;    ///< samples of the Sobol sequence; the method starts from the best of them
     unsigned int n_evaluations = 40;    ///< maximum number of evaluations, including these samples
     double       quantile      = 0.95;  ///< level of the quantile for the goal quantile [-]
-    double       first_step    = 0.15;  ///< initial step of the methods, as a fraction of each range [-]
-    double       smallest_step = 0.002; ///< step at which the methods stop, as a fraction of each range [-]
+    double       first_step    = 0.15;  ///< initial step of the method, as a fraction of each range [-]
+    double       smallest_step = 0.002; ///< step at which the method stops, as a fraction of each range [-]
 
     void declare(Declarations &declarations);
 

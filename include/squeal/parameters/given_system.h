@@ -10,7 +10,7 @@
 
 namespace Squeal
 {
-  /// A system of matrices instead of a mesh (parameters `System` and `System values`).
+  /// System of matrices from a file, which replaces the mesh (parameters `System` and `System values`).
   struct GivenSystemParameters
   {
     std::string                   file;      ///< path of system.json or of its folder; empty: the system comes from a mesh
@@ -28,6 +28,6 @@ namespace Squeal
     void declare(Declarations &declarations);
   };
 
-  /// "name, first, last, number": a range of a parameter. Throws ParameterError naming @p where.
+  /// Range of a parameter, parsed from "name, first, last, number". Throws ParameterError naming @p where.
   NamedRange parsed_range(const std::string &text, const std::string &where);
 } // namespace Squeal

@@ -49,17 +49,17 @@ namespace Squeal
     double      value;         ///< correlation of the normal copula [-]
   };
 
-  /// Scatter of modes with uncertain parameters (section `Robustness`).
+  /// Scatter of modes due to uncertain parameters (section `Robustness`).
   struct RobustnessParameters
   {
-    std::string         distributions, correlations; ///< texts that are not yet parsed
+    std::string         distributions, correlations; ///< not yet parsed
     unsigned int        n_samples   = 2000;          ///< independent samples
     unsigned int        seed        = 1;
     double              tolerance   = 1e-4; ///< limit of the estimated |δλ| / |λ| at every sample [-]
     bool                has_indices = true; ///< compute Sobol' indices, which need additional samples
     std::vector<double> frequency_bands;    ///< limits of bands with separate probabilities [Hz]
     unsigned int        n_worst  = 5;       ///< number of worst samples written as parameter files
-    unsigned int        n_onsets = 0;       ///< number of samples followed over the friction coefficient
+    unsigned int        n_onsets = 0;       ///< number of samples whose modes are tracked over the friction coefficient
 
     void declare(Declarations &declarations);
 
