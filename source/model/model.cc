@@ -65,7 +65,8 @@ namespace Squeal
     {
       const std::vector<char> buffer = Utilities::pack(part, false);
       const unsigned long     size   = buffer.size();
-      AssertThrow(size <= static_cast<unsigned long>(std::numeric_limits<int>::max()), ExcMessage("a part is too large for a message"));
+      AssertThrow(size <= static_cast<unsigned long>(std::numeric_limits<int>::max()), ExcMessage("a part of the model is too large for "
+                                                                                                  "one MPI message"));
       MPI_Send(&size, 1, MPI_UNSIGNED_LONG, process, 0, communicator);
       MPI_Send(buffer.data(), static_cast<int>(size), MPI_CHAR, process, 0, communicator);
     }
@@ -172,7 +173,7 @@ namespace Squeal
         });
       }
 
-      /// Partitions the cells by METIS, with cells that share a face as neighbours.
+      /// Partitions the cells with METIS; cells that share a face are neighbours.
       void distribute_cells(const unsigned int n_processes)
       {
         DynamicSparsityPattern      neighbours(mesh.cells.size());
@@ -188,7 +189,7 @@ namespace Squeal
         SparsityTools::partition(pattern, n_processes, process_of_cell);
       }
 
-      /// Numbers nodes in the order of the cells; a node belongs to the first process that has a cell with this node.
+      /// Numbers nodes in the order of the cells; a node belongs to the lowest process that has a cell with this node.
       void number_nodes()
       {
         constexpr unsigned int nobody = -1;
@@ -220,8 +221,8 @@ namespace Squeal
           {
             Node &node = nodes_of_mesh[slave];
             if (node.dofs[0] < 0)
-              throw MeshError(text("a tied node is clamped by pin_clamp, at (", mesh.points[slave], ") m"), "parameter Contact/Tied",
-                              "exchange the surfaces of the tie, or keep tied and clamped faces apart");
+              throw MeshError(text("the tied node at (", mesh.points[slave], ") m is clamped by pin_clamp"), "parameter Contact/Tied",
+                              "exchange the two surfaces of the tie, or separate the tied faces from pin_clamp");
             node.dofs = {{-1, -1, -1}};
           }
 
@@ -256,8 +257,8 @@ namespace Squeal
     , n_all_dofs(0)
   {
     if (mesh.degree > degree())
-      throw MeshError("the mesh is of second order", "parameter Discretization/Element",
-                      "set Discretization/Element = quadratic, or mesh with elements of first order");
+      throw MeshError("the mesh is of second order, but the elements are of first order", "parameter Discretization/Element",
+                      "set Discretization/Element = quadratic, or generate a mesh of first order");
     Part own;
     if (this_process(communicator) == 0)
       {

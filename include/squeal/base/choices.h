@@ -6,7 +6,7 @@
 
 namespace Squeal
 {
-  /// Solvers of symmetric modes.
+  /// Eigensolvers for symmetric matrices.
   enum class RealSolver
   {
     lanczos, ///< block Lanczos

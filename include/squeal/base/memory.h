@@ -20,7 +20,7 @@ namespace Squeal
   /// Available memory of all machines of the communicator [byte]. Collective.
   double available_memory(MPI_Comm communicator);
 
-  /// Largest fraction of the available memory for attachment modes, one vector per contact node, which can be recomputed [-].
+  /// Largest fraction of the available memory for stored attachment modes, which are one vector per contact node and can be recomputed [-].
   constexpr double largest_part_of_attachment_modes = 0.125;
 
   /// Resident memory of this process [byte]; 0 if the system does not report it.
@@ -37,6 +37,6 @@ namespace Squeal
   /// Returns all freed memory to the system.
   void return_freed_memory();
 
-  /// Returns freed memory and resets the peak; false if the system does not allow it.
+  /// Returns freed memory to the system and resets the peak; returns false if the system does not allow the reset.
   bool reset_peak_memory();
 } // namespace Squeal

@@ -36,7 +36,7 @@ namespace Squeal
     WorkerProcess(const WorkerProcess &)            = delete;
     WorkerProcess &operator=(const WorkerProcess &) = delete;
 
-    /// How the process ended: "" for success, "exit status 1", "killed by SIGSEGV"; nothing while it runs.
+    /// Result of the process: "" for success, "exit status 1", "killed by SIGSEGV"; no value while it runs.
     std::optional<std::string> end();
 
   private:

@@ -23,13 +23,13 @@ namespace Squeal
     /// @param columns F, n × m
     explicit LowRankFactor(MultiVector columns);
 
-    /// m
+    /// Number of columns m.
     int rank() const;
 
     /// Fᵀ X, m × k, the same on every process.
     DenseMatrix transpose_times(const MultiVector &X) const;
 
-    /// F Y for Y, m × k, the same on every process.
+    /// F Y for an m × k matrix Y that is the same on every process.
     MultiVector operator*(const DenseMatrix &Y) const;
 
     /// Columns [first, first + n) of F.
@@ -73,7 +73,7 @@ namespace Squeal
     virtual std::string text() const = 0;
   };
 
-  /// θ(p) of a term: a monomial of named parameters such as −μ ρ, another function of them, or a product of both.
+  /// θ(p) of a term: a monomial of named parameters such as −μ ρ, another function of the parameters, or a product of such functions.
   class Coefficient
   {
   public:
@@ -202,8 +202,8 @@ namespace Squeal
   /// Nonzero terms with this power of λ.
   std::vector<const Term *> terms_of(const std::vector<Term> &terms, const ParameterValues &values, int power);
 
-  /// M, C and K of Q(λ) = λ² M + λ C + K as sparse matrices, null if there is no term. Throws SolverError naming a term without sparse
-  /// form.
+  /// M, C and K of Q(λ) = λ² M + λ C + K as sparse matrices; a matrix without terms is null. Throws SolverError naming a term without
+  /// sparse form.
   SecondOrderSystem sparse_matrices(const std::vector<Term> &terms, const ParameterValues &values);
 
   /// Σ ‖θ A‖_∞ ≥ ‖Σ θ A‖_∞ over the terms with a power of λ; all these terms must have a sparse form.
