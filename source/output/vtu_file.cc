@@ -193,7 +193,7 @@ namespace Squeal
       std::vector<Part> middle;
       if (shape == Shape::triangle)
         middle = {{shape, {3, 4, 5}}};
-      if (shape == Shape::tetrahedron) // the remainder is an octahedron, which is divided about one diagonal
+      if (shape == Shape::tetrahedron) // the remainder is an octahedron, which is divided along one diagonal
         middle = {{shape, {4, 5, 6, 8}}, {shape, {4, 6, 7, 8}}, {shape, {4, 7, 9, 8}}, {shape, {4, 9, 5, 8}}};
       if (shape == Shape::wedge)
         middle = {{shape, {6, 9, 7, 15, 17, 16}}, {shape, {15, 17, 16, 12, 14, 13}}};
@@ -250,7 +250,7 @@ namespace Squeal
       return result;
     }
 
-    /// Mesh of those @p elements that this process owns; vertices are numbered in the order of the elements.
+    /// Mesh of the @p elements that this process owns; vertices are numbered in the order of the elements.
     template <typename Element>
     FieldMesh mesh_of(const Model &model, const std::vector<const Element *> &elements)
     {

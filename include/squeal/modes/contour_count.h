@@ -85,11 +85,11 @@ namespace Squeal
    * Sparse LU: the winding number of det Q is computed directly. A step is reduced until |Δ ln det Q| of both halves (modulus and phase) is
    * below the largest phase step, so that close zeros cannot be missed.
    *
-   * Without damping det Q(−λ̄) is the conjugate of det Q(λ), and only half of the contour is followed.
+   * Without damping, det Q(−λ̄) is the conjugate of det Q(λ), and only half of the contour is followed.
    *
-   * Throws a SolverError with the point if a zero or a real mode lies on the contour to working precision, or if more points would be
-   * needed than allowed. Also throws SolverError if the bodies are damped (condensed), if there is modal damping (sparse LU), and with
-   * several processes (sparse LU).
+   * Throws a SolverError with the point if a zero or a real mode lies on the contour to working precision, or if more points are needed
+   * than allowed. Also throws SolverError if the bodies are damped (condensed), if there is modal damping (sparse LU), and with several
+   * processes (sparse LU).
    */
   std::vector<ContourCount> count_by_contour(const CoupledSystem       &system,
                                              const std::vector<double> &mu,

@@ -49,7 +49,7 @@ namespace Squeal
                                          double                 largest_circular_frequency,
                                          BandEnd                end = BandEnd::cut);
 
-  /// Modes of the band, with vectors and matrices in the coordinates of ReducedModel::modal(); nothing if the band cannot be separated.
+  /// Modes of the band, with vectors and matrices in the coordinates of ReducedModel::modal(); no value if the band cannot be separated.
   std::optional<ReducedModes> modal_modes_of_band(const ReducedModel    &model,
                                                   const ParameterValues &values,
                                                   double                 largest_circular_frequency);

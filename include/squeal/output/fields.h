@@ -38,7 +38,7 @@ namespace Squeal
     std::string              name;         ///< name of its file, without extension
     std::string              title;        ///< text that describes the mode in its file
     std::vector<double>      displacement; ///< u on the free dofs, rows of this process
-    std::optional<Component> component;    ///< bodies that are written; nothing: all
+    std::optional<Component> component;    ///< bodies that are written; no value: all bodies
   };
 
   /// An entry of a list of mode files for ParaView.
@@ -115,7 +115,7 @@ namespace Squeal
     void write_contact_state(const ContactField &state);
 
   private:
-    /// A mesh with the part that all its files have in common.
+    /// A mesh with the part of a VTK file that is common to all its files.
     struct Stage
     {
       explicit Stage(FieldMesh given);

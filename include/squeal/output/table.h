@@ -49,7 +49,7 @@ namespace Squeal
     std::string                       name;
     std::string                       unit; ///< unit; "-" for a number without unit, "" for text
     std::function<Entry(const Row &)> value;
-    int                               digits     = 3; ///< on the screen: after the point, or significant digits in scientific notation
+    int                               digits     = 3; ///< digits after the point on the screen
     bool                              scientific = false;
   };
 

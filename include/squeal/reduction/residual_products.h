@@ -33,9 +33,9 @@ namespace Squeal
    *
    *   Lᵀ S⁻¹ R = zᵀ (Wᵀ S⁻¹ W − Wᵀ T (TᵀST)⁻¹ TᵀW) y.
    *
-   * Terms with the same power of λ have the same rows up to their coefficients: at an operating point y = C c and z = D d, where C and D
+   * Terms with the same power of λ have the same rows up to their coefficients. At an operating point, y = C c and z = D d, where C and D
    * combine blocks in the same way for all modes. The bracket B is therefore reduced to Dᵀ B C first, which costs no more than reading B.
-   * The remaining cancellation error, in the bracket, is about 10⁻¹⁵ of φᴴKφ, so that estimates |δλ|/|λ| well below 10⁻¹² are reliable.
+   * The cancellation error of the bracket is about 10⁻¹⁵ of φᴴKφ, so that estimates |δλ|/|λ| well below 10⁻¹² are reliable.
    */
   class ProjectedResiduals
   {
@@ -65,7 +65,7 @@ namespace Squeal
     /// Adds the vectors that were appended to the basis of @p model.
     void extend(const ReducedModel &model);
 
-    /// Clears the basis; the next extend() starts a new one.
+    /// Clears the basis; the next extend() starts a new basis.
     void clear();
 
     /// Assembles the bracket or Z from its parts. products() does so on demand; call before sharing the object between threads.
@@ -87,9 +87,9 @@ namespace Squeal
 
     /**
      * S⁻¹ W C, n × p: components of right and left displacement residuals outside the basis, as principal axes in the norm of S; axes below
-     * @p tolerance times the largest are dropped. Each mode, scaled to unit strain energy, is weighted by the error of its λ. The axes are
-     * computed from the small matrices, so that the number of solves equals the number of axes, not of residuals. The result may contain
-     * components in the span of the basis; it is empty if all residuals vanish. Not available for a member of a family. Collective.
+     * @p tolerance times the largest axis are dropped. Each mode, scaled to unit strain energy, is weighted by the error of its λ. The axes
+     * are computed from the small matrices, so that the number of solves equals the number of axes, not of residuals. The result may
+     * contain components in the span of the basis; it is empty if all residuals vanish. Not available for a member of a family. Collective.
      */
     std::optional<MultiVector> principal_responses(const ReducedModel &model, const std::vector<ModesAt> &modes, double tolerance) const;
 
