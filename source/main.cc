@@ -67,8 +67,7 @@ Predicts whether a disc with friction pins squeals.
       }
     if (line.parameter_file.empty())
       throw ParameterError("no parameter file is given", "command line",
-                           "name one, for example squeal prm/disc_pins.prm; squeal --help "
-                           "lists the options");
+                           "name one, for example squeal prm/disc_pins.prm; squeal --help lists the options");
 
     const Parameters parameters = Parameters::read(line.parameter_file, line.overrides);
     RunOptions       options;
@@ -88,7 +87,7 @@ Predicts whether a disc with friction pins squeals.
     run_study(run);
   }
 
-  /// Redirects closed standard streams to /dev/null, so that files and pipes opened later do not reuse their descriptors and receive the
+  /// Redirects closed standard streams to /dev/null. Otherwise, files and pipes opened later would reuse their descriptors and receive the
   /// printed output.
   void open_closed_streams()
   {
@@ -189,8 +188,7 @@ int main(int argc, char **argv)
       run(Squeal::parse_command_line({argv + 1, argv + argc}), command, screen, progress);
       if (is_root && !screen.flush())
         throw Squeal::FileError("the output could not be printed completely", "standard output",
-                                "check the target of the redirection and "
-                                "its free space");
+                                "check the target of the redirection and its free space");
       return 0;
     }
   catch (...)

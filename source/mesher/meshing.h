@@ -29,8 +29,8 @@ namespace Squeal
   GmshMesh mesh_geometry(const std::string &script, const std::string &file);
 
   /**
-   * Confines this process: it can no longer start programs, write, create, rename or remove files, or open connections. Files that are
-   * already open remain usable. A forbidden call ends the process by SIGSYS (libseccomp).
+   * Confines this process, which can then no longer start programs, write, create, rename or remove files, or open connections. Files that
+   * are already open remain usable. A forbidden call ends the process by SIGSYS (libseccomp).
    *
    * Gmsh scripts could perform these actions by SystemCall, NonBlockingSystemCall, OnelabRun, CreateDir, Save, Print, Printf > "file", and
    * some plugins and options.

@@ -168,7 +168,7 @@ namespace Squeal
     for (unsigned int volume = 0; volume < model.volume_names().size(); ++volume)
       for (Term &term : volume_terms(model, volume, materials.of(model.volume_names()[volume])))
         bodies.terms.push_back(std::move(term));
-    std::map<std::pair<std::string, int>, Matrix> matrices; // by surface and direction: springs and dashpots use the same matrix
+    std::map<std::pair<std::string, int>, Matrix> matrices; // by surface and direction, for springs and dashpots
     for (const MountParameter &mount : mount_parameters(materials))
       {
         auto &matrix = matrices[{mount.surface, mount.direction}];

@@ -262,7 +262,7 @@ namespace Squeal
     Part own;
     if (this_process(communicator) == 0)
       {
-        // Only process 0 has all cells; it creates the parts of other processes one at a time
+        // Create the parts of other processes one at a time on process 0, which has all cells
         const unsigned int n        = n_processes(communicator);
         const Mesh         with_all = degree() == 2 ? second_order(mesh) : mesh;
         const TiedNodes    tied     = tied_nodes(with_all);

@@ -149,8 +149,7 @@ namespace Squeal
       if (n_moments == most_terms)
         throw SolverError("a series of " + std::to_string(most_terms) + " terms does not reach the tolerance",
                           "determinant condensed to the contact nodes",
-                          "change Band/Maximum frequency or Band/Maximum rate, or remove "
-                          "Sweep/Count modes at");
+                          "change Band/Maximum frequency or Band/Maximum rate, or remove Sweep/Count modes at");
 
     // Moments: T_{k+1} = 2 (2 w H − I) T_k − T_{k−1}. Project in every step, because H amplifies rounding errors in the modes
     for (Block &block : blocks)

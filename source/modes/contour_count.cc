@@ -24,7 +24,7 @@ namespace Squeal
     /// Largest ‖ΔN N⁻¹‖ at the points of the contour; between the points, N⁻¹ may be twice as large [-].
     constexpr double largest_truncation = 0.25;
 
-    /// First and smallest bound of the truncation error of N; the latter is limited by rounding [-].
+    /// Initial and smallest tolerance for the truncation error of N; rounding limits the smallest tolerance [-].
     constexpr double first_tolerance = 1e-7, least_tolerance = 1e-13;
 
     /// Shorter steps, relative to ω_high, indicate that a zero lies on the contour. Also the smallest distance of a real mode from ω_low

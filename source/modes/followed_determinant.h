@@ -87,7 +87,7 @@ namespace Squeal
       F                         = current.factors->solve(F);
       F.diagonal().array() -= 1.;
       const std::complex<double> trace = F.trace();
-      // Balance finite matrices only: a NaN must not reach LAPACK
+      // Balance only finite matrices, because LAPACK does not accept NaN
       const double norm         = F.norm();
       const auto [size, phase]  = agreed_pair(std::isfinite(norm) ? std::min(norm, balanced(F).norm()) : norm, trace.imag());
       constexpr double infinity = std::numeric_limits<double>::infinity();

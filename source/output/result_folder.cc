@@ -119,13 +119,12 @@ namespace Squeal
   void ResultFolder::take_lock()
   {
     lock = ::open(place.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (::flock(lock, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) // other errors: some file systems have no locks
+    if (::flock(lock, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) // ignore other errors, because some file systems have no locks
       return;
     ::close(lock);
     lock = -1; // keeps remove_traces() from removing the files of the other run
     throw FileError("another run is writing to `" + shown + "`", "--output " + shown,
-                    "wait until the other run has ended, or choose "
-                    "another folder");
+                    "wait until the other run has ended, or choose another folder");
   }
 
   ResultFolder::~ResultFolder()

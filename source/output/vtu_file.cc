@@ -17,7 +17,7 @@ namespace Squeal
 {
   namespace
   {
-    /// zlib levels from 1 (fast) to 9: fields are compressed for every file, a mesh only once.
+    /// zlib levels from 1 (fast) to 9; fields are compressed for every file, a mesh only once.
     constexpr int level_of_fields = 1, level_of_meshes = 9;
 
     template <typename Number>
@@ -227,8 +227,8 @@ namespace Squeal
     /// VTK cell types, in the order of the shapes.
     constexpr std::array<std::uint8_t, 6> vtk_types = {{5, 9, 10, 14, 13, 12}};
 
-    /// Elements owned by this process, sorted by angle about z, radius and height of the mean of their corners: consecutive cells share
-    /// nodes, which improves the compression.
+    /// Elements owned by this process, sorted by angle about z, radius and height of the mean of their corners, because cells with common
+    /// nodes in succession improve the compression.
     template <typename Element>
     std::multimap<std::tuple<long, long, double>, const Element *> in_columns(const Model                        &model,
                                                                               const std::vector<const Element *> &elements)

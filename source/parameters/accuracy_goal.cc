@@ -37,7 +37,7 @@ namespace Squeal
       double         tolerance; ///< tolerance of reduced models and solvers: estimated |δλ| / |λ| [-]
     };
 
-    /// Settings of a goal other than as_given, from measurements on the default model (doc/accuracy.md).
+    /// Settings of a goal other than as_given, based on errors of the default model (doc/accuracy.md).
     const Level &level(const AccuracyGoal goal)
     {
       static const MeshDensity                   fine   = {Element::quadratic, 2, 3, 1.5, 5, 3, 10.};

@@ -21,7 +21,7 @@ namespace Squeal
       throw ParameterError(what, "Geometry/" + name, change);
     }
 
-    /// Minimum memory limit: more than twice the memory that Gmsh needs before it meshes [GB].
+    /// Minimum memory limit, more than twice the memory that Gmsh needs before meshing [GB].
     constexpr double least_memory_limit = 1.;
 
     void check_format(const std::string &file)
@@ -102,7 +102,7 @@ namespace Squeal
         });
     }
 
-    /// True if a Gmsh mesh has physical volumes. Their names are stored as text in binary files as well.
+    /// True if a Gmsh mesh has physical volumes, whose names are stored as text even in binary files.
     bool has_volumes(const std::string &mesh)
     {
       std::ifstream stream(mesh, std::ios::binary);

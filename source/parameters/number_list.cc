@@ -47,8 +47,8 @@ namespace Squeal
       return std::distance(std::sregex_iterator(text.begin(), text.end(), spaced), std::sregex_iterator());
     }
 
-    /// True if commas look like decimal commas: digits after a comma begin with zero; semicolons separate the numbers; or commas with and
-    /// without blanks are mixed, and commas without blanks occur more than once or after a zero.
+    /// True if commas look like decimal commas. This applies if digits after a comma begin with zero, if semicolons separate the numbers,
+    /// or if commas with and without blanks are mixed and commas without blanks occur more than once or after a zero.
     bool has_decimal_commas(const std::string &list, const std::vector<JoinedDigits> &joined)
     {
       if (joined.empty())

@@ -24,7 +24,7 @@ namespace Squeal
 
     constexpr const char *blanks = " \t\r\n\v\f";
 
-    // Limits far above the needs of a run, which end the reading of endless device files and of includes that multiply
+    // Limits far above the needs of a run, which stop endless device files and multiplying includes
     constexpr std::streamsize largest_file       = 1 << 24; // [byte]
     constexpr unsigned int    most_files         = 1000;
     constexpr std::size_t     most_open_sections = 100;

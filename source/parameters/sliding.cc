@@ -86,7 +86,6 @@ namespace Squeal
     if (control != BackplateControl::displacement && displacement != 0.)
       throw ParameterError("a displacement is given, but `" + to_string(control) + "` is prescribed",
                            "parameter Steady sliding/Displacement",
-                           "set Steady sliding/Control = displacement, or remove the "
-                           "displacement");
+                           "set Steady sliding/Control = displacement, or remove the displacement");
   }
 } // namespace Squeal

@@ -145,8 +145,7 @@ namespace Squeal
     static const std::regex assignment(R"((^|[^<>=!])=([^=]|$))");
     if (std::regex_search(expression, assignment))
       throw ParameterError(text("the expression ", in_quotes(expression), " assigns a value"), "",
-                           "write == for a comparison, or an "
-                           "expression without an assignment");
+                           "write == for a comparison, or an expression without an assignment");
     try
       {
         const auto parsed = std::make_shared<Expression>(expression, parameters);

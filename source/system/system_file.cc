@@ -501,9 +501,7 @@ namespace Squeal
     std::ifstream stream(file);
     if (!stream)
       throw FileError("the system file " + in_quotes(file.string()) + " cannot be opened", "parameter System",
-                      "name a folder that "
-                      "contains system.json, or "
-                      "the path of this file");
+                      "name a folder that contains system.json, or the path of this file");
     Json json;
     try
       {

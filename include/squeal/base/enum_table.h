@@ -17,7 +17,7 @@ namespace Squeal
     std::string_view name;
   };
 
-  /// Names of an enumeration for parsing, printing and documentation: specialised next to each enum as an array of EnumName.
+  /// Names of an enumeration for parsing, printing and documentation; specialised next to each enum as an array of EnumName.
   template <typename Enum>
   inline constexpr std::nullptr_t enum_table = nullptr;
 

@@ -29,7 +29,7 @@ namespace Squeal
   /// A number without an exponent: all digits before the point, and at least @p n_digits significant digits.
   std::string decimal_text(double value, int n_digits = 4);
 
-  /// A finite number with optional surrounding blanks; nothing for any other text. Zero has no sign.
+  /// A finite number with optional surrounding blanks; no value for any other text. Zero has no sign.
   std::optional<double> parse_number(const std::string &text);
 
   /// Words of a text, separated by single blanks.

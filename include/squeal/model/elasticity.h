@@ -31,7 +31,7 @@ namespace Squeal
   {
     std::string name;  ///< name in ParameterValues
     std::string path;  ///< name in parameter files: "Mounts/Elastic mounts: disc_bore radial"
-    const char *unit;  ///< unit, per unit area
+    const char *unit;  ///< SI unit of the coefficient, per area
     double      value; ///< k [N/m³] of springs, c [N s/m³] of dashpots, m [kg/m²] of masses
     int         power; ///< power of λ in the term
     std::string surface;

@@ -23,10 +23,10 @@ namespace Squeal
   inline constexpr EnumName<ContourMethod> enum_table<ContourMethod>[] = {{ContourMethod::condensed, "condensed"},
                                                                           {ContourMethod::sparse_lu, "sparse LU"}};
 
-  /// Method for a system: condensed if all terms except K_c and M_c have low rank.
+  /// Method for a system; condensed if all terms except K_c and M_c have low rank.
   ContourMethod contour_method(const CoupledSystem &system);
 
-  /// True if the modes of the system can be counted with the current number of processes: sparse LU requires a single process.
+  /// True if the modes of the system can be counted with the current number of processes; sparse LU requires a single process.
   bool is_countable(const CoupledSystem &system);
 
   /// The rectangle −a ≤ Re λ ≤ a, ω_low ≤ Im λ ≤ ω_high, and options for its boundary.
@@ -69,9 +69,9 @@ namespace Squeal
   };
 
   /**
-   * Counts the complex modes of the system inside the rectangle at each of the friction coefficients @p mu, without computing them: by the
-   * argument principle, the number is the winding number of the entire function det Q(λ) about zero along the boundary. Modes with |Re λ| >
-   * a are not counted.
+   * Counts the complex modes of the system inside the rectangle at each friction coefficient in @p mu without computing the modes. By the
+   * argument principle, their number is the winding number of the entire function det Q(λ) about zero along the boundary. Modes with |Re λ|
+   * > a are not counted.
    *
    * Condensed: det Q = det S det N_⊥ det W. The zeros of det S are the real modes, counted by inertia; the winding numbers of det N_⊥ and
    * det W are added. Between points, each matrix changes to A' = A (I + F) with

@@ -37,7 +37,7 @@ namespace Squeal
   /// by thresholds relative to @p largest_circular_frequency [rad/s], the end of the band.
   ReducedModes reduced_modes(const ReducedModel &model, double mu, double largest_circular_frequency, BandEnd end = BandEnd::cut);
 
-  /// Modes at any parameter values, on this process only: vectors of a multiple eigenvalue may differ between processes.
+  /// Modes at any parameter values, on this process only; vectors of a multiple eigenvalue may differ between processes.
   ReducedModes local_reduced_modes(const ReducedModel    &model,
                                    const ParameterValues &values,
                                    double                 largest_circular_frequency,

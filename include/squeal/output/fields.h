@@ -115,7 +115,7 @@ namespace Squeal
     void write_contact_state(const ContactField &state);
 
   private:
-    /// A mesh with the part of a VTK file that is common to all its files.
+    /// A mesh, and the part of the VTK files that is common to all files of this mesh.
     struct Stage
     {
       explicit Stage(FieldMesh given);
@@ -142,6 +142,6 @@ namespace Squeal
     std::map<std::optional<Component>, Stage>                  stages;
     std::optional<Stage>                                       surface; ///< surface for animations
     const Stage                                                contact_faces;
-    std::vector<int>                                           pairs; ///< pair of each vertex; -1: no pair, the face overhangs the disc
+    std::vector<int> pairs; ///< pair of each vertex; -1: no pair, because the face overhangs the disc
   };
 } // namespace Squeal

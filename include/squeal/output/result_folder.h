@@ -39,7 +39,7 @@ namespace Squeal
   /// Writes versions, revision, machine, counts, time and peak memory of each step, and files, as JSON.
   void write_run_record(std::ostream &stream, const RunRecord &record, const Progress &progress);
 
-  /// Files listed in a record; nothing if the record lists no files or cannot be read.
+  /// Files listed in a record; no value if the record lists no files or cannot be read.
   std::optional<FileSizes> read_file_list(const std::filesystem::path &record);
 
   /**

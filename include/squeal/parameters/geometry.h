@@ -71,9 +71,8 @@ namespace Squeal
     /// Script variables for these parameters, with their values as text.
     std::map<std::string, std::string> script_variables() const;
 
-    /// Names of the script_variables() that affect the geometry: the names that occur in a Gmsh script; thickness, height, layers, rings
-    /// and grading of an extruded plan; and the pairing tolerance for every mesh. Reads the file without running it. Throws MeshError if it
-    /// does not exist.
+    /// Names of the script_variables() that affect the geometry: names that occur in a Gmsh script, the dimensions, layers, rings and
+    /// grading of an extruded plan, and the pairing tolerance. Reads the file without running it. Throws MeshError if it does not exist.
     std::set<std::string> used_variables() const;
 
     /// True if the file is a plan to be extruded, not a solid. Reads the file. Throws MeshError if it does not exist.

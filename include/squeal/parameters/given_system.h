@@ -14,7 +14,7 @@ namespace Squeal
   struct GivenSystemParameters
   {
     std::string                   file;      ///< path of system.json or of its folder; empty: the system comes from a mesh
-    std::map<std::string, double> values;    ///< parameter values that replace those in the file
+    std::map<std::string, double> values;    ///< parameter values that replace the values in the file
     std::string                   directory; ///< folder of the parameter file
 
     explicit operator bool() const
@@ -22,7 +22,7 @@ namespace Squeal
       return !file.empty();
     }
 
-    /// Path of the file: relative to the directory of the parameter file if it exists there, else as given.
+    /// Path of the file: in the folder of the parameter file if it exists there, otherwise as given.
     std::string path() const;
 
     void declare(Declarations &declarations);

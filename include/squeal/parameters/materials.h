@@ -87,7 +87,7 @@ namespace Squeal
     Material                    disc = {210e9, 0.3, 7850.};
     Material                    pin  = {1.90e9, 0.25, 3070.};
     std::vector<VolumeMaterial> volumes;                                        ///< volumes with individual materials
-    std::vector<VolumeMaterial> orthotropic;                                    ///< orthotropic volumes; axes: see below
+    std::vector<VolumeMaterial> orthotropic;                                    ///< orthotropic volumes, without their axes
     std::vector<MaterialAxes>   axes;                                           ///< material axes that are not cylindrical
     std::vector<Mount>          mounts = {{"disc_bore", 0., 7.80e10, 1.88e10}}; ///< springs
     std::vector<Mount>          dashpots;

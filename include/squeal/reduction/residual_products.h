@@ -21,7 +21,7 @@ namespace Squeal
   };
 
   /**
-   * Computes inner products of residuals from small matrices: residuals are sums over the terms θ A of the system,
+   * Computes inner products of residuals from small matrices. Residuals are sums over the terms θ A of the system,
    *
    *   Q(λ) T φ_r  = S T φ_r + W y,   Q(λ)ᵀ T ψ_r = S T ψ_r + W z,   S = K_c + s² M_c,
    *
@@ -42,7 +42,7 @@ namespace Squeal
   public:
     /**
      * @param inverse factor of S; a positive @p shift s [rad/s] requires a system without damping
-     * @param values  parameter values: terms that are zero there, except friction, must also be zero in products()
+     * @param values  parameter values; terms that vanish at these values, except friction, must also vanish in products()
      *
      * The arguments must outlive the object.
      */
@@ -58,7 +58,7 @@ namespace Squeal
      * independent vectors. The relative standard deviation is 6 % for a norm; for a product, it is 9 % of the product of the norms. Call
      * before extend().
      *
-     * @return false if the library of the factor cannot draw V: products remain exact
+     * @return false if the library of the factor cannot draw V; products then remain exact
      */
     bool use_sketch();
 

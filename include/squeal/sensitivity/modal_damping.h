@@ -44,7 +44,7 @@ namespace Squeal
   {
   public:
     /**
-     * @param undamped system with the modes Φ: its stiffness, mass and kernel. Must outlive this object, as must inverse and modes
+     * @param undamped stiffness, mass and kernel of the system with the modes Φ; must outlive this object, like inverse and modes
      * @param inverse  (K_c + s² M_c)⁻¹
      * @param modes    all modes in the band and its margin
      * @param n_damped number of damped modes, which are the lowest modes. Throws SolverError if the next mode has the same

@@ -138,7 +138,7 @@ namespace Squeal
     /// True if A can be written as a sparse matrix.
     bool is_sparse() const;
 
-    /// True if A belongs to the mass, damping or stiffness without friction: symmetric, and not a friction term.
+    /// True if A belongs to the mass, damping or stiffness without friction, that is, if A is symmetric and not a friction term.
     bool is_frictionless() const
     {
       return symmetry == Symmetry::symmetric && kind != TermKind::friction;
@@ -209,8 +209,8 @@ namespace Squeal
   /// Σ ‖θ A‖_∞ ≥ ‖Σ θ A‖_∞ over the terms with a power of λ; all these terms must have a sparse form.
   double norm_bound(const std::vector<Term> &terms, const ParameterValues &values, int power);
 
-  /// The same Q at these values with as few terms as possible: one sparse term for each power and symmetry, with a coefficient of one,
-  /// without zero terms. Low-rank terms are not allowed.
+  /// The same Q at these values with as few terms as possible: one sparse term with a coefficient of one for each power and symmetry,
+  /// unless it is zero. Low-rank terms are not allowed.
   std::vector<Term> merged(const std::vector<Term> &terms, const ParameterValues &values);
 
   /// Common terms of several systems, the members of a family, which differ only in coefficients.
@@ -222,7 +222,7 @@ namespace Squeal
   };
 
   /**
-   * Terms Σ θ_k A_k of a family with as few matrices as possible: terms whose coefficients θ_k have the same ratio in all members are
+   * Terms Σ θ_k A_k of a family with as few matrices as possible. Terms whose coefficients θ_k have the same ratio in all members are
    * summed, with the means of θ_k over the members. All terms must be sparse.
    *
    * @param members values of the parameters of the terms for each member, at least one
