@@ -20,7 +20,7 @@ namespace Squeal
       "is the k-th number of a parameter that is a list; names joined by `+` take the same value.");
     declarations.add(
       "File", file,
-      "CSV file of designs: names as in Variables in the first line, then one design per line. The program looks in the folder of the "
+      "CSV file of designs: names as in Variables in the first line, then one design per line. It is searched for in the folder of the "
       "parameter file, then in the current directory.");
     declarations.add("Number of designs", n_samples, "none", "Number of samples of a Latin hypercube or a Sobol sequence.", {1., 1e5});
     declarations.add("Seed", seed, "none", "Seed of the random numbers: equal seeds give equal designs.", {0., 2147483647.});

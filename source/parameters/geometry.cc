@@ -189,10 +189,10 @@ namespace Squeal
     declarations.enter("Geometry");
     declarations.add(
       "File", file,
-      "Geometry or mesh of disc and pins: a Gmsh script (.geo) or a Gmsh mesh (.msh). The program looks in the folder of the parameter "
-      "file, in the current directory, then among the supplied geometries. A file with physical volumes is a solid model and is used "
-      "unchanged. A file with only physical surfaces and curves is a plan: a planar geometry that is meshed and extruded. A .geo can use "
-      "every parameter below as a variable, and its own variables (DefineConstant, DefineNumber) become parameters of this section.");
+      "Geometry or mesh of disc and pins: a Gmsh script (.geo) or a Gmsh mesh (.msh). The file is searched for in the folder of the "
+      "parameter file, in the current directory, then among the supplied geometries. A file with physical volumes is a solid model and is "
+      "used unchanged. A file with only physical surfaces and curves is a plan: a planar geometry that is meshed and extruded. A .geo can "
+      "use every parameter below as a variable, and its own variables (DefineConstant, DefineNumber) become parameters of this section.");
     declarations.add("Disc inner radius", disc_inner_radius, "m", "Radius of the bore of the disc.", {0.});
     declarations.add("Disc outer radius", disc_outer_radius, "m", "Radius of the rim of the disc.", {0.});
     declarations.add("Disc thickness", disc_thickness, "m", "Thickness of the disc, which is symmetric about z = 0.", {0.});

@@ -111,7 +111,7 @@ namespace Squeal
       if (!(sizes > 0.))
         throw ParameterError("a vector of the axes is zero", where, "give two nonzero vectors");
       if (!(cross > least_sine * sizes))
-        throw ParameterError("the two vectors are parallel within rounding errors", where,
+        throw ParameterError("the two vectors are parallel or nearly parallel", where,
                              "give two vectors that span the plane of axes 1 and 2");
     }
 

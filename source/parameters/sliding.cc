@@ -39,7 +39,7 @@ namespace Squeal
     declarations.add(
       "Displacement", displacement, "m",
       "For Control = displacement: travel of each backplate towards the disc along the axis (for a shoe on a rim, along its mean contact "
-      "normal), from the position in which a pin without gap touches the disc.",
+      "normal), from the position in which a pin without a gap touches the disc.",
       {0.});
     declare_list(
       declarations, "Loads", pin_loads,
@@ -74,9 +74,11 @@ namespace Squeal
                            "parameter Steady sliding/Displacement",
                            "give a positive travel, or set Steady sliding/Control = load per side");
     if ((control == BackplateControl::pressure) == pressed_faces.empty())
-      throw ParameterError(
-        pressed_faces.empty() ? "no face is pressed" : "pressed faces are given, but `" + to_string(control) + "` is prescribed",
-        "parameter Steady sliding/Pressed faces", "name the faces and set Steady sliding/Control = pressure, or do neither");
+      throw ParameterError(pressed_faces.empty() ? "no face is pressed" :
+                                                   "pressed faces are given, but `" + to_string(control) + "` is prescribed",
+                           "parameter Steady sliding/Pressed faces",
+                           "name the faces if Steady sliding/Control = pressure, and leave the list empty "
+                           "otherwise");
     for (const std::string &face : pressed_faces)
       if (std::count(pressed_faces.begin(), pressed_faces.end(), face) > 1)
         throw ParameterError("the surface " + face + " is named twice", "parameter Steady sliding/Pressed faces", "name each face once");

@@ -15,7 +15,7 @@
 
 namespace Squeal
 {
-  /// Approximation of circles by polygons of straight edges.
+  /// Approximation of circles by polygons.
   enum class Outlines
   {
     inscribed, ///< nodes on the circle
