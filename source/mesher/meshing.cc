@@ -38,7 +38,6 @@ namespace Squeal
         throw GmshError("Gmsh failed while " + step);
     }
 
-    /// Elements of a mesh by their type.
     struct Elements
     {
       /// Elements of one entity, or of all entities of a dimension.

@@ -22,7 +22,6 @@ namespace Squeal
       double       weight; ///< weight in the dof of the element
     };
 
-    /// An element that contributes to local rows.
     struct Contribution
     {
       const NodalElement  *element;

@@ -26,7 +26,6 @@ namespace Squeal
 
   namespace
   {
-    /// The part of the model on one process.
     struct Part
     {
       std::vector<Node> nodes;
@@ -142,8 +141,8 @@ namespace Squeal
 
     private:
       const Mesh                                             &mesh;
-      const SlaveRows                                        &masters; ///< masters of tied nodes
-      std::vector<std::pair<CellFace, std::vector<unsigned>>> faces;   ///< outer faces with their surfaces
+      const SlaveRows                                        &masters;
+      std::vector<std::pair<CellFace, std::vector<unsigned>>> faces; ///< outer faces with their surfaces
       std::vector<unsigned int>                               process_of_cell, process_of_node;
       std::vector<Node>                                       nodes_of_mesh;
       std::vector<int>                                        n_dofs_of_process;

@@ -137,7 +137,6 @@ namespace Squeal
     if (Phi != nullptr && n_rows > 0)
       modes_forces = transpose_times(factors, *Phi).transpose().cast<Complex>();
 
-    // Norms and number of terms
     for (Block &block : blocks)
       block.norm = max_norm(weights_of(*block.term, system.values)) *
                    norm_on_complement({block.term->right.get()}, complement_inverse, M.communicator());

@@ -169,7 +169,6 @@ namespace Squeal
 
   namespace
   {
-    /// A linear cell on nodes of an element.
     struct Part
     {
       Shape                     shape;

@@ -24,9 +24,9 @@ namespace Squeal
     declarations.add(
       "Coarser mesh", coarser_mesh,
       "Second mesh, from which the discretisation error of each mode is estimated. Give parameters of the section Geometry with their "
-      "values for the coarser mesh, for example disc_size = 0.019, pad_size = 0.012, or a file (.geo, .msh). The difference between the "
-      "two meshes is at least as large as the error if the elements of the coarser mesh are about twice as large. If Accuracy is set, the "
-      "program chooses the coarser mesh. Empty: no error estimate.");
+      "values for the coarser mesh, for example disc_size = 0.019, pad_size = 0.012, or a file (.geo, .msh). The estimate is at least as "
+      "large as the error if the elements of the coarser mesh are about twice as large. If Accuracy is set, the program chooses the "
+      "coarser mesh. Empty: no error estimate.");
 
     declarations.enter("Band");
     declarations.add(
@@ -107,8 +107,8 @@ namespace Squeal
                      "Number of frames per period in the animation of an unstable mode; 0: no animation.", {0, 1000});
     declarations.add("Animation periods", animation_periods, "none", "Number of periods in an animation.", {1, 1000});
     declarations.add("Animation growth", animation_growth,
-                     "Scales the mode by e^(R t). The amplitude grows by a factor of e in 1 / (2 pi divergence rate) periods, or 16 "
-                     "periods at a divergence rate of 1 %.");
+                     "Scales the mode by e^(R t): by a factor of e in 1 / (2 pi divergence rate) periods, or 16 periods at a divergence "
+                     "rate of 1 %.");
     declarations.add(
       "Write matrices", write_matrices,
       "Writes the node coordinates and, in Matrix Market format, M, C (material damping) and K, and for the closed contact nodes C_b "
@@ -116,8 +116,7 @@ namespace Squeal
     declarations.add(
       "Write system", write_system,
       "Writes the coupled system to the folder system of the results, as input for the parameter System. `full`: all terms. `reduced`: "
-      "for Study = sweep, the reduced model, accurate to Sweep/Tolerance between the first and the last value; for Study = robustness, "
-      "the reduced model, accurate to Robustness/Tolerance within the ranges of the samples; for Study = reduction, the system of each "
-      "basis at the given values.");
+      "the reduced model of a sweep, accurate to Sweep/Tolerance between the first and the last value; of a robustness study, accurate to "
+      "Robustness/Tolerance within the ranges of the samples; or of each basis of Study = reduction.");
   }
 } // namespace Squeal

@@ -104,8 +104,7 @@ namespace Squeal
         text("the line has ", values.size(), values.size() == 1 ? " value" : " values", ", but the table has ", n_names,
              n_names == 1 ? " column" : " columns", is_comma_more ? "; the line ends with a comma" : separator),
         where,
-        "give one value for each column, separated by commas, with decimal points and without a comma at the end; quote values "
-        "that contain commas" +
+        "give one value for each column, with decimal points and without a comma at the end; quote values that contain commas" +
           decimal_point_hint(line));
     }
   } // namespace

@@ -57,7 +57,6 @@ namespace Squeal
       const std::string radii_name = side + " pin radii", angles_name = side + " pin angles";
       const double      pin_radius = parameters.pin_diameter / 2.;
 
-      // Pins must be inside the annulus
       for (std::size_t i = 0; i < layout.radii.size(); ++i)
         {
           const double inside  = parameters.disc_inner_radius - (layout.radii[i] - pin_radius);
@@ -72,7 +71,6 @@ namespace Squeal
                         parameters.disc_outer_radius - pin_radius, " m, both excluded, or make the pin smaller"));
         }
 
-      // Pins must not overlap
       const double to_radians = std::acos(-1.) / 180.;
       for (std::size_t i = 0; i < layout.radii.size(); ++i)
         for (std::size_t j = i + 1; j < layout.radii.size(); ++j)
@@ -236,7 +234,7 @@ namespace Squeal
     declarations.add(
       "Allow shell commands", allow_shell_commands,
       "Allows a .geo to start programs, to create, write and remove files, and to use the network. If the operating system cannot forbid "
-      "these actions, a note is printed. Set it to true only if you trust every line of the file.");
+      "these actions, a note is printed. Set it to true only if you trust every line.");
     declarations.add("Meshing time limit", meshing_time_limit, "s", "Time limit for Gmsh.", {0.});
     declarations.add("Meshing memory limit", meshing_memory_limit, "GB", "Memory limit for Gmsh.", {0.});
     for (Variable &variable : variables)
@@ -245,7 +243,6 @@ namespace Squeal
 
   void GeometryParameters::check() const
   {
-    // Sizes and counts
     if (file.empty())
       refuse("Geometry/File is empty", "File", "name a .geo or .msh file, or remove the line to use disc_pins.geo");
     check_format(file);
@@ -303,7 +300,6 @@ namespace Squeal
 
   namespace
   {
-    /// Rounded product, at least one.
     unsigned int scaled(const double number, const double factor)
     {
       return std::max(1L, std::lround(number * factor));
@@ -320,8 +316,8 @@ namespace Squeal
           text("the mesh density of Geometry/File = ", in_quotes(geometry.file), " cannot be changed: the file does not use Geometry/",
                parameter),
           "parameter Geometry/File",
-          text("give a script (.geo) that uses the variables element_size, disc_layers and pin_layers (in a plan, element_size is "
-               "sufficient); or set Accuracy = as given and a Study other than accuracy"));
+          text("give a script (.geo) that uses element_size, disc_layers and pin_layers (in a plan, only element_size); or set Accuracy = "
+               "as given and a Study other than accuracy"));
   }
 
   GeometryParameters refined(const GeometryParameters &geometry, const double factor)

@@ -42,7 +42,6 @@ namespace Squeal
       });
     }
 
-    /// Nesting depth of brackets, and whether the position is in a string.
     struct Nesting
     {
       int  depth     = 0;

@@ -19,7 +19,7 @@ namespace Squeal
     /// Two groups of digits joined by a single comma: "0,4", also in "pin: 0,4; ...", but not "1,2,3".
     struct JoinedDigits
     {
-      std::string before, after; ///< digits before and after the comma
+      std::string before, after;
 
       bool is_fraction() const
       {
@@ -40,7 +40,6 @@ namespace Squeal
       return result;
     }
 
-    /// Number of commas with a blank before or after.
     std::ptrdiff_t n_spaced_commas(const std::string &text)
     {
       static const std::regex spaced(R"(\s,|,\s)");

@@ -63,7 +63,7 @@ namespace Squeal
     }
 
     constexpr const char *how_to_quote =
-      R"(enclose it in double quotes; inside them, write \" for a quote, \\ for a backslash and \n for a line break)";
+      R"(enclose it in double quotes; inside, write \" for a quote, \\ for a backslash and \n for a line break)";
 
     /// Position of the closing quote in a text that begins with a quote; the end of the text if the quote is not closed.
     std::size_t closing_quote(const std::string &text)

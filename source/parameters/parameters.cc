@@ -84,7 +84,6 @@ namespace Squeal
       return wrong_section * distance(written_name, candidate_name) + std::min(distance(written_section, candidate_section), wrong_section);
     }
 
-    /// Rejects an undeclared name.
     void check_name(const ParameterStatement &statement, const std::vector<std::string> &known)
     {
       if (std::find(known.begin(), known.end(), statement.path) != known.end())
@@ -142,7 +141,6 @@ namespace Squeal
       return {single_spaced(text.substr(0, equal)), read_value(text.substr(equal + 1), where), where};
     }
 
-    /// Declares the parameter that selects the study.
     void declare_study(Declarations &declarations, const Study *&study)
     {
       std::vector<std::string> names;

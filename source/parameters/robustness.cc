@@ -175,7 +175,7 @@ namespace Squeal
           boost::trim(name);
         const auto value = parse_number(given);
         if (names.size() != 2 || names.front() == names.back() || !value || !(std::abs(*value) < 1.))
-          refuse(in_quotes(pair + " = " + given) + " is not a correlation of two different parameters with a value between -1 and 1");
+          refuse(in_quotes(pair + " = " + given) + " is not a correlation between -1 and 1 of two different parameters");
         for (const std::string &name : names)
           {
             const auto found = std::find_if(known.begin(), known.end(), [&](const UncertainParameter &p) { return p.name == name; });

@@ -23,7 +23,6 @@ namespace Squeal
     constexpr int    n_steps              = 10;
     constexpr double largest_disagreement = 1e-6;
 
-    /// An expression that muParser evaluates.
     class Expression : public ParameterFunction
     {
     public:

@@ -19,7 +19,6 @@ namespace Squeal
     using Json = nlohmann::ordered_json;
   }
 
-  /// A dense matrix in Matrix Market form.
   static std::string matrix_market_array(const DenseMatrix &A)
   {
     std::ostringstream content;

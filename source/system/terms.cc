@@ -17,7 +17,6 @@ namespace Squeal
   {
     using Matrix = std::shared_ptr<const SparseMatrix>;
 
-    /// L diag(d) Rᵀ as a sparse matrix.
     Matrix product(const Term &term, const ParameterValues &values)
     {
       const SparseMatrix &R = *term.right->sparse_transpose(), &L = *term.left->sparse_transpose();
@@ -44,7 +43,6 @@ namespace Squeal
 
   namespace
   {
-    /// A number times powers of parameters.
     class Monomial : public ParameterFunction
     {
     public:

@@ -21,7 +21,6 @@ namespace Squeal
   template <typename Enum>
   inline constexpr std::nullptr_t enum_table = nullptr;
 
-  /// Name of @p value.
   template <typename Enum>
   std::string to_string(const Enum value)
   {
@@ -31,7 +30,6 @@ namespace Squeal
     return "?";
   }
 
-  /// All names, in the order of the enumeration.
   template <typename Enum>
   std::vector<std::string> enum_names()
   {

@@ -14,6 +14,5 @@ namespace Squeal
     std::filesystem::path mesher;     ///< executable that runs Gmsh
   };
 
-  /// Installation of this process.
   const Installation &installation();
 } // namespace Squeal

@@ -30,11 +30,10 @@ namespace Squeal
   double peak_resident_memory();
 
   /// Returns freed memory at the end of the heap to the system if it exceeds 256 MB. Call once at the start of main(). SuperLU_dist, which
-  /// deal.II packages link, configures the allocator to keep all freed memory, so that memory would accumulate over the steps of a run.
-  /// Large blocks are not mapped individually: clearing the pages of each temporary vector would take a tenth of the time of a large run.
+  /// deal.II packages link, configures the allocator to keep all freed memory. Large blocks are not mapped individually: clearing the pages
+  /// of each temporary vector would take a tenth of the time of a large run.
   void return_freed_blocks();
 
-  /// Returns all freed memory to the system.
   void return_freed_memory();
 
   /// Returns freed memory to the system and resets the peak; returns false if the system does not allow the reset.

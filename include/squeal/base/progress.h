@@ -71,13 +71,11 @@ namespace Squeal
     /// Prints a line that belongs to no step.
     void note(const std::string &text);
 
-    /// All finished steps.
     const std::vector<StepRecord> &steps() const
     {
       return records;
     }
 
-    /// Seconds since construction.
     double elapsed() const
     {
       return run.cost().seconds;

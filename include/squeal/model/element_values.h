@@ -95,7 +95,7 @@ namespace Squeal
     const Table &table(Shape shape);
 
     const Model                      &model;
-    unsigned int                      degree; ///< degree of the quadrature rule
+    unsigned int                      degree;
     std::array<Table, 6>              tables;
     const Table                      *now     = nullptr;
     const NodalElement               *current = nullptr;

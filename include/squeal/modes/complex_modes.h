@@ -49,7 +49,7 @@ namespace Squeal
    */
   void finish_modes(const CoupledSystem &system, const ParameterValues &values, const UpdatedInverse &inverse, ComplexModes &modes);
 
-  /// Verdict on the growth of a mode. Tables list a neutral mode as stable.
+  /// Verdict on the growth of a mode.
   enum class Verdict
   {
     stable, ///< the mode decays

@@ -87,10 +87,10 @@ namespace Squeal
     struct Block
     {
       const Term              *term;
-      int                      first_row; ///< row index in N
-      DenseMatrix              on_modes;  ///< RᵀΦ
-      std::vector<DenseMatrix> moments;   ///< Rᵀ T_k P (K + s M)⁻¹ E
-      double                   norm;      ///< norm of diag(d) Rᵀ (K + s M)^−½ on the complement
+      int                      first_row;
+      DenseMatrix              on_modes; ///< RᵀΦ
+      std::vector<DenseMatrix> moments;  ///< Rᵀ T_k P (K + s M)⁻¹ E
+      double                   norm;     ///< norm of diag(d) Rᵀ (K + s M)^−½ on the complement
     };
 
     const CoupledSystem &system;

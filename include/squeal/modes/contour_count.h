@@ -51,7 +51,6 @@ namespace Squeal
   /// Rectangle of a band; its lower edge is at 0.001 of the band's end.
   ContourOptions contour_of_band(const Band &band);
 
-  /// Number of the given eigenvalues in the rectangle.
   int n_in_rectangle(const std::vector<std::complex<double>> &lambda, const ContourOptions &contour);
 
   /// Throws SolverError unless exactly @p n_counted of the given eigenvalues are in the rectangle.

@@ -14,8 +14,8 @@ namespace Squeal
   /// Oscillating modes of a reduced model, eq. (12) of the paper, right and left, in the coordinates of its basis.
   struct ReducedModes
   {
-    ParameterValues values;          ///< parameter values of the system
-    ReducedPencil   pencil;          ///< reduced pencil at these values
+    ParameterValues values;
+    ReducedPencil   pencil;
     DenseMatrix     mass, stiffness; ///< TᵀM_cT and TᵀK_cT, for the norms
 
     std::vector<std::complex<double>> lambda; ///< Im λ > 0, ascending by Im, then Re [rad/s]

@@ -48,7 +48,6 @@ namespace Squeal
     double      frequency; ///< [Hz]
   };
 
-  /// Options of the animation of a mode.
   struct AnimationOptions
   {
     unsigned int frames_per_period = 16;
@@ -140,7 +139,7 @@ namespace Squeal
     std::vector<double>                                        areas;  ///< areas of the pairs of contact nodes [m²]
     std::vector<double>                                        closed; ///< 1 for pairs in contact
     std::map<std::optional<Component>, Stage>                  stages;
-    std::optional<Stage>                                       surface; ///< surface for animations
+    std::optional<Stage>                                       surface;
     const Stage                                                contact_faces;
     std::vector<int> pairs; ///< pair of each vertex; -1: no pair, because the face overhangs the disc
   };

@@ -74,7 +74,6 @@ namespace Squeal
         }
     }
 
-    /// Writes comma-separated values with a header line.
     void write_csv(std::ostream &stream) const;
 
     /// Prints aligned columns; texts are aligned to the left, numbers to the right.
@@ -93,6 +92,6 @@ namespace Squeal
     Entry checked(const Entry &cell) const;
 
     std::vector<Head>               heads;
-    std::vector<std::vector<Entry>> cells; ///< entries of each column
+    std::vector<std::vector<Entry>> cells;
   };
 } // namespace Squeal

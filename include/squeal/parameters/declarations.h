@@ -58,7 +58,6 @@ namespace Squeal
              const Range         &range        = {},
              std::size_t          most_numbers = std::numeric_limits<std::size_t>::max());
 
-    /// A value of an enumeration, by name.
     template <typename Enum>
     void add(const std::string &name, Enum &value, const std::string &documentation)
     {

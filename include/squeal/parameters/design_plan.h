@@ -24,7 +24,7 @@ namespace Squeal
   {
     std::string              name;
     std::vector<std::string> levels;
-    double                   first = 0., last = 0.; ///< ends of the range
+    double                   first = 0., last = 0.;
     bool                     is_range = false, by_ratio = false;
 
     /// Value at the fraction t in [0, 1] of the range or list.
@@ -61,15 +61,14 @@ namespace Squeal
   /// The k-th number in @p text, counted from one; digits in names do not count. Throws ParameterError if there are fewer numbers.
   std::string number_of(const std::string &text, unsigned int k);
 
-  /// @p text with its k-th number replaced, counted from one; digits in names do not count. Throws ParameterError if there are fewer
-  /// numbers.
+  /// @p text with the number from number_of() replaced. Throws ParameterError if there are fewer numbers.
   std::string with_number(const std::string &text, unsigned int k, const std::string &value);
 
   /// Path of the file of designs: in the folder of the parameter file, or in the current directory; empty if the designs do not come from a
   /// file.
   std::string designs_file(const Parameters &parameters);
 
-  /// Designs from the CSV file Designs/File: names of the variables in the first line, then one design per line. Throws FileError if the
-  /// file cannot be read, and ParameterError, naming the line, if it is not comma-separated UTF-8 text.
+  /// Designs from the CSV file Designs/File: names of the variables in the first line, then one design per line. Throws the errors of
+  /// read_csv().
   DesignPlan read_design_file(const Parameters &parameters);
 } // namespace Squeal

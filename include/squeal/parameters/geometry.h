@@ -83,7 +83,7 @@ namespace Squeal
 
     void declare(Declarations &declarations);
 
-    /// Throws ParameterError for invalid values or combinations.
+    /// Throws ParameterError.
     void check() const;
   };
 
@@ -108,7 +108,7 @@ namespace Squeal
    * rings and elements k of the pin-face blocks (3 k (k + 1) + 1 nodes) are multiplied by the factor and rounded, but at least one. Grading
    * ratios of layers and rings are reduced accordingly. Unchanged for a factor of 1.
    *
-   * Throws as check_follows().
+   * Throws the errors of check_follows().
    */
   GeometryParameters refined(const GeometryParameters &geometry, double factor);
 } // namespace Squeal

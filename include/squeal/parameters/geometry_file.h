@@ -16,7 +16,6 @@ namespace Squeal
    */
   std::string find_geometry(const std::string &name, const std::string &parameter_directory);
 
-  /// True if the geometry is supplied with the program.
   bool is_supplied(const std::string &geometry);
 
   /// True for a Gmsh script (.geo), false for a mesh.
@@ -25,7 +24,7 @@ namespace Squeal
   /// A variable that a Gmsh script exports.
   struct GeometryVariable
   {
-    std::string name;        ///< name in the script
+    std::string name;
     std::string value;       ///< value as written in the script
     std::string onelab_name; ///< option Name of DefineNumber; empty for DefineConstant
   };

@@ -86,7 +86,7 @@ namespace Squeal
   {
     Material                    disc = {210e9, 0.3, 7850.};
     Material                    pin  = {1.90e9, 0.25, 3070.};
-    std::vector<VolumeMaterial> volumes;                                        ///< volumes with individual materials
+    std::vector<VolumeMaterial> volumes;
     std::vector<VolumeMaterial> orthotropic;                                    ///< orthotropic volumes, without their axes
     std::vector<MaterialAxes>   axes;                                           ///< material axes that are not cylindrical
     std::vector<Mount>          mounts = {{"disc_bore", 0., 7.80e10, 1.88e10}}; ///< springs
@@ -117,7 +117,6 @@ namespace Squeal
     /// Mutable pointers to the values of all springs, dashpots and masses.
     std::vector<double *> mount_values();
 
-    /// Names of the surfaces with springs, dashpots or masses.
     std::vector<std::string> mounted_surfaces() const;
   };
 

@@ -45,7 +45,7 @@ namespace Squeal
 
   struct ListEntry
   {
-    std::string         text; ///< the entry as written
+    std::string         text;
     std::string         key;
     std::vector<double> numbers;
   };

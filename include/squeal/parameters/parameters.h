@@ -25,10 +25,9 @@
 
 namespace Squeal
 {
-  /// All input of a run.
   struct Parameters
   {
-    const Study             *study = studies().front(); ///< study to run
+    const Study             *study = studies().front();
     AccuracyGoal             goal  = AccuracyGoal::as_given;
     std::vector<std::string> replaced; ///< parameters whose values were replaced by the accuracy goal
     GivenSystemParameters    system;   ///< system file that replaces geometry, materials and contact
@@ -51,7 +50,6 @@ namespace Squeal
     SolverParameters         solvers;
     OutputParameters         output;
 
-    /// Declares all parameters and binds them to the members.
     void declare(Declarations &declarations);
 
     /**
@@ -71,7 +69,6 @@ namespace Squeal
     /// True if the contact state is the steady sliding state.
     bool needs_steady_sliding() const;
 
-    /// True with radial dissipation or a friction slope.
     bool has_contact_damping() const;
 
     /// True if the study computes modes with friction; otherwise the friction coefficient affects only the steady sliding state.
@@ -83,7 +80,7 @@ namespace Squeal
     /// True if the contact state or the contact damping requires a positive Operation/Load per side.
     bool uses_load_per_side() const;
 
-    /// Throws ParameterError for invalid values or combinations.
+    /// Throws ParameterError.
     void check() const;
 
   private:

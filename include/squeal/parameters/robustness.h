@@ -10,7 +10,6 @@
 
 namespace Squeal
 {
-  /// Distribution of an uncertain number.
   enum class DistributionKind
   {
     uniform,   ///< two limits
@@ -34,19 +33,18 @@ namespace Squeal
     static constexpr double normal_end = 3.;
   };
 
-  /// An uncertain parameter.
   struct UncertainParameter
   {
     std::string  name; ///< name in the parameter file, as in Designs/Variables, or in the system file
     Distribution distribution;
     bool         is_relative  = false; ///< numbers are per cent of the nominal value
-    bool         for_each_pin = false; ///< independent values for each pin
+    bool         for_each_pin = false;
   };
 
   struct Correlation
   {
-    std::string first, second; ///< names of uncertain parameters
-    double      value;         ///< correlation of the normal copula [-]
+    std::string first, second;
+    double      value; ///< correlation of the normal copula [-]
   };
 
   /// Scatter of modes due to uncertain parameters (section `Robustness`).

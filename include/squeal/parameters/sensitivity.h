@@ -24,8 +24,8 @@ namespace Squeal
   /// Derivatives computed by `Study = sensitivity`, and their accuracy (section `Sensitivity`).
   struct SensitivityParameters
   {
-    unsigned int          modes      = 10;   ///< maximum number of modes whose derivatives are computed
-    bool                  thresholds = true; ///< also compute derivatives of thresholds
+    unsigned int          modes      = 10; ///< maximum number of modes whose derivatives are computed
+    bool                  thresholds = true;
     GeometrySensitivities geometry   = GeometrySensitivities::sizes;
     double                tolerance  = 1e-4; ///< relative change of derivatives below which the basis is no longer extended [-]
 

@@ -67,7 +67,7 @@ namespace Squeal
     BackplateControl     control      = BackplateControl::load_per_side;
     double               displacement = 0.; ///< displacement of each backplate towards the disc [m]
     std::vector<PinLoad> pin_loads;         ///< pins with a load other than an equal share of their side
-    std::vector<PinGap>  gaps;              ///< pins with an initial gap
+    std::vector<PinGap>  gaps;
 
     std::vector<std::string> pressed_faces; ///< faces to which pressure control applies the load per side
 

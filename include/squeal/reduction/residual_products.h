@@ -68,7 +68,7 @@ namespace Squeal
     /// Clears the basis; the next extend() starts a new basis.
     void clear();
 
-    /// Assembles the bracket or Z from its parts. products() does so on demand; call before sharing the object between threads.
+    /// Assembles the bracket or Z. products() calls it on demand; call it before sharing the object between threads.
     void prepare() const;
 
     /// Products for reduced modes λ, φ_r and ψ_r (r × k).
@@ -77,7 +77,6 @@ namespace Squeal
                               const ComplexDenseMatrix                &right,
                               const ComplexDenseMatrix                &left) const;
 
-    /// Modes of a reduced model at an operating point.
     struct ModesAt
     {
       ParameterValues                   values;
@@ -119,7 +118,6 @@ namespace Squeal
       DenseMatrix              sketched;        ///< VᵀA T
     };
 
-    /// A factor of low-rank terms.
     struct Factor
     {
       const LowRankFactor *factor;

@@ -46,7 +46,6 @@ namespace Squeal
     ComplexDenseMatrix along(const ParameterValues &values, const ParameterValues &rates) const;
 
   private:
-    /// Products of one term.
     struct Product
     {
       Term               term;        ///< the term without its matrices

@@ -16,7 +16,7 @@ namespace Squeal
     std::string              parameter; ///< name, for example "Geometry/Pin height"
     std::string              pin;       ///< the only pin that moves; empty: all
     std::string              unit;
-    double                   value;         ///< value of the parameter in this unit
+    double                   value;
     std::vector<Mesh::Point> velocity;      ///< dx/dp of each node [m per unit]
     bool                     moves_contact; ///< contact nodes move in the plane of the disc
   };

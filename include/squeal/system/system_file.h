@@ -15,7 +15,6 @@
 
 namespace Squeal
 {
-  /// A named parameter of a system file.
   struct FileParameter
   {
     std::string name;
@@ -24,7 +23,6 @@ namespace Squeal
     std::string unit = "-", description = {};
   };
 
-  /// A named group of dofs.
   struct DofGroup
   {
     std::string                      name;
@@ -50,7 +48,7 @@ namespace Squeal
 
     /// Symmetric, skew or low-rank terms; an unsymmetric matrix is split into its symmetric and its skew part.
     std::vector<Term>          terms;
-    ParameterValues            weights; ///< weights of low-rank terms
+    ParameterValues            weights;
     std::vector<DofGroup>      groups;
     std::optional<ShapePoints> points;
     std::string                measured_modes; ///< CSV file of measured modes for a fit; empty: none

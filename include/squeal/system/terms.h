@@ -97,9 +97,9 @@ namespace Squeal
   /// Physical origin of a term.
   enum class TermKind
   {
-    body,            ///< elasticity, inertia and material damping
-    mount,           ///< springs and dashpots between bodies and the ground
-    rotation,        ///< rotation of the disc
+    body,  ///< elasticity, inertia and material damping
+    mount, ///< springs and dashpots between bodies and the ground
+    rotation,
     friction,        ///< forces μ r_n along t
     circulatory,     ///< skew parts of unsymmetric matrices
     contact_damping, ///< forces at the contact nodes proportional to relative velocities
@@ -119,10 +119,10 @@ namespace Squeal
     std::string                          name;      ///< name for messages
     int                                  power = 0; ///< p_k: 0, 1 or 2
     Coefficient                          coefficient;
-    std::shared_ptr<const SparseMatrix>  matrix;                         ///< A, n × n; null if A has low rank
-    Symmetry                             symmetry = Symmetry::symmetric; ///< symmetry of the matrix
-    std::shared_ptr<const LowRankFactor> left = {}, right = {};          ///< L and R, n × m
-    std::string                          weights = {};                   ///< list parameter with d; empty: ones
+    std::shared_ptr<const SparseMatrix>  matrix; ///< A, n × n; null if A has low rank
+    Symmetry                             symmetry = Symmetry::symmetric;
+    std::shared_ptr<const LowRankFactor> left = {}, right = {}; ///< L and R, n × m
+    std::string                          weights = {};          ///< list parameter with d; empty: ones
     TermKind                             kind    = TermKind::body;
 
     /// θ(p) λ^p_k
@@ -132,7 +132,6 @@ namespace Squeal
       return coefficient.at(values) * (power == 0 ? Number(1.) : power == 1 ? lambda : lambda * lambda);
     }
 
-    /// True if the term is zero at these values.
     bool vanishes(const ParameterValues &values) const;
 
     /// True if A can be written as a sparse matrix.
