@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// A disc brake: a disc with its hat, and two chamfered pads with one slot, each of lining and backplate. Pads and disc
-// are meshed separately, with quadratic tetrahedra; their faces need not match. This is an example of a custom solid;
-// prm/brake.prm defines the sliding surfaces and the materials. Units: m, degree.
+// A disc brake: a disc with its hat, and two chamfered pads with one slot each, which consist of lining and backplate.
+// Pads and disc are meshed separately, with quadratic tetrahedra; their faces need not match. This is an example of a
+// custom solid; prm/brake.prm defines the sliding surfaces and the materials. Units: m, degree.
 
 SetFactory("OpenCASCADE");
 
@@ -28,7 +28,7 @@ DefineConstant[
 
 h = ring_thickness / 2;
 
-// Disc: the friction ring, and on it a hat that opens downwards
+// Disc: friction ring with a hat that opens downwards
 Cylinder(1) = {0, 0, -h, 0, 0, 2 * h, disc_radius};
 Cylinder(2) = {0, 0, -h, 0, 0, h + hat_height, hat_radius + hat_wall / 2};
 disc() = BooleanUnion{ Volume{1}; Delete; }{ Volume{2}; Delete; };
@@ -36,7 +36,7 @@ Cylinder(3) = {0, 0, -2 * h, 0, 0, 2 * h + hat_height - hat_wall, hat_radius - h
 Cylinder(4) = {0, 0, 0, 0, 0, 2 * hat_height, bore_radius};
 disc() = BooleanDifference{ Volume{disc()}; Delete; }{ Volume{3, 4}; Delete; };
 
-// A pad above the disc: a sector of a ring, without its chamfers at both ends and its slot
+// A pad above the disc: a sector of a ring with chamfers at both ends and a slot
 angle = pad_angle * Pi / 180;
 edge  = Sqrt(2) * chamfer;
 For part In {0 : 1}

@@ -2,7 +2,7 @@
 
 // Plan of the built-in geometry: an annular disc and round pins on its two faces. Squeal meshes this plan in two
 // dimensions, fills the pins' circles with a structured grid and extrudes disc and pins layer by layer. It sets the
-// values below from section "Geometry" of its parameter file. If the file is opened in Gmsh, it shows the plan with
+// values below from section "Geometry" of the parameter file. If the file is opened in Gmsh, it shows the plan with
 // these values. Units: m, degree.
 
 DefineConstant[
@@ -31,8 +31,9 @@ Mesh.Algorithm            = 6;
 Mesh.SubdivisionAlgorithm = 1;
 Mesh.MeshSizeMax          = size;
 
-// Pins. A top pin and the nearest bottom pin that overlaps it share a hole in the plan. If hole and pin have different
-// positions, a physical point marks the position of the pin, and the mesh of the disc is sheared between its two faces.
+// Pins. A top pin and the nearest bottom pin that overlaps it share a hole in the plan. If a hole and its pin have
+// different positions, a physical point marks the position of the pin, and the mesh of the disc is sheared between its
+// two faces.
 n_top     = #top_pin_radii();
 n_pins    = n_top + #bottom_pin_radii();
 tolerance = 1e-6 * pin_diameter;
@@ -82,7 +83,7 @@ For ring In {0 : 1}
   loop~{ring} = newll; Curve Loop(loop~{ring}) = {c : c + 2};
 EndFor
 
-// Position of a hole: that of its pin, or the midpoint of the two pins of a pair
+// Position of a hole: position of its pin, or midpoint of the two pins of a pair
 For pin In {1 : n_pins}
   other = twin~{pin};
   hole_x~{pin} = x~{pin};
@@ -100,8 +101,9 @@ For pin In {1 : n_pins}
   EndIf
 EndFor
 
-// Move holes apart that overlap because a pin overlaps two pins of the other side, and holes of pins on different sides
-// that leave no space for elements between them: halving a circle of three intervals moves nodes by half its radius.
+// Separate holes that overlap because a pin overlaps two pins of the other side, and holes of pins on different sides
+// without enough space for elements between them, because halving a circle of three intervals moves nodes by half its
+// radius.
 closest = (k > 1) ? 1.05 : 1.25;
 least   = disc_inner_radius + 0.55 * pin_diameter;
 most    = disc_outer_radius - 0.55 * pin_diameter;
@@ -115,7 +117,7 @@ For pass In {1 : 50}
           dx = hole_x~{pin} - hole_x~{other};
           dy = hole_y~{pin} - hole_y~{other};
           distance = Hypot(dx, dy);
-          // A pin exactly opposite another pin counts as being on the same side as any third pin
+          // A pin exactly opposite another pin counts as a pin on both sides
           same_side = (pin <= n_top) == (other <= n_top) || opposite~{pin} || opposite~{other};
           If(distance < (same_side ? 1 : closest) * pin_diameter)
             crowded = 1;
@@ -141,10 +143,10 @@ For pass In {1 : 50}
   EndIf
 EndFor
 If(crowded)
-  Error("There is no room in the plan for the top and bottom pins, which overlap but are not opposite each other. Move the pins of one side, or draw a custom plan");
+  Error("The plan has no space for top and bottom pins that overlap without being opposite. Move the pins of one side, or draw a custom plan");
 EndIf
 
-// Circles of three arcs, created with the first pin of a pair
+// Circles of three arcs; the first pin of a pair creates the common circle
 holes() = {};
 For pin In {1 : n_pins}
   other = twin~{pin};
@@ -181,8 +183,8 @@ EndFor
 
 s = news; Plane Surface(s) = {loop_1, loop_0, holes()};
 
-// If the edges of pins are much shorter than the elements of the disc, element sizes grow by two fifths of the distance
-// from the pin; Gmsh's default would fill the space between pins with small elements.
+// Let element sizes grow by two fifths of the distance from the pin if edges of pins are much shorter than elements of
+// the disc, because Gmsh's default would fill the space between pins with small elements.
 edge = Pi * pin_diameter / (3 * k);
 If(edge < size / 4)
   outlines() = {};

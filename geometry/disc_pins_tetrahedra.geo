@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 // The built-in disc and pins as a solid of quadratic tetrahedra, with curved elements on round surfaces. Disc and pins
-// are meshed individually, so that their contact faces do not match. Squeal sets the variables of disc_pins.geo, and on
-// request the two variables below them, from section "Geometry" of its parameter file. Numbers of layers and of nodes
-// per pin face have no effect. Edges of elements of the disc are twice the element size long, because nodes of
-// quadratic elements are half an edge apart. Units: m, degree.
+// are meshed individually, so that their contact faces do not match. Squeal sets the variables of disc_pins.geo, and
+// optionally the two variables below them, from section "Geometry" of the parameter file. Numbers of layers and of
+// nodes per pin face have no effect. Edges of disc elements have twice the element size, because nodes of quadratic
+// elements are half an edge apart. Units: m, degree.
 
 SetFactory("OpenCASCADE");
 
@@ -47,7 +47,7 @@ For i In {0 : #faces() - 1}
   EndIf
 EndFor
 
-// Pins; those above the disc come first
+// Pins, first above, then below the disc
 n_top = #top_pin_radii();
 pins() = {}; contact() = {}; clamp() = {}; side() = {};
 For pin In {1 : n_top + #bottom_pin_radii()}

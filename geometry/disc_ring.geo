@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 // Plan of a ring-shaped disc and a pad on its upper face that covers the whole circumference between the mean radius
-// and the rim, so that waves along the contact meet no edge. element_size is the length of the elements along the mean
-// circle. Units: m.
+// and the rim, so that waves along the contact do not reach an edge. element_size is the length of the elements along
+// the mean circle. Units: m.
 
 DefineConstant[
   disc_inner_radius = 0.0055,

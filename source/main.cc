@@ -32,13 +32,13 @@ namespace
 {
   constexpr const char *usage = R"(squeal PRM [options]
 
-Decides whether a disc rubbed by friction pins squeals.
+Predicts whether a disc with friction pins squeals.
 
   PRM                        parameter file
   --set "Section/Name=value" overrides a parameter; may be repeated
   --output DIR               result folder (default: results/<name of PRM>)
-  --designs LIST             only these designs of Study = geometry, as in 3,7-9
-  --dry-run                  reads, checks, meshes, prints counts, and stops
+  --designs LIST             solves only these designs of Study = geometry, for example 3,7-9
+  --dry-run                  checks the input, generates the mesh, prints counts and stops
   --print-parameters         prints every parameter with its value and meaning
   --version                  prints the version, the licence and the libraries
   -h, --help                 prints this text
@@ -66,7 +66,8 @@ Decides whether a disc rubbed by friction pins squeals.
         return;
       }
     if (line.parameter_file.empty())
-      throw ParameterError("no parameter file is given", "command line", "squeal prm/disc_pins.prm; squeal --help lists the options");
+      throw ParameterError("no parameter file is given", "command line",
+                           "name one, for example squeal prm/disc_pins.prm; squeal --help lists the options");
 
     const Parameters parameters = Parameters::read(line.parameter_file, line.overrides);
     RunOptions       options;
@@ -86,7 +87,7 @@ Decides whether a disc rubbed by friction pins squeals.
     run_study(run);
   }
 
-  /// Redirects closed standard streams to /dev/null: otherwise files and pipes opened later would reuse their descriptors and receive the
+  /// Redirects closed standard streams to /dev/null. Otherwise, files and pipes opened later would reuse their descriptors and receive the
   /// printed output.
   void open_closed_streams()
   {
@@ -116,13 +117,14 @@ Decides whether a disc rubbed by friction pins squeals.
     catch (const std::bad_alloc &)
       {
         return "the memory is exhausted\n  where:  this machine, or the limit of this process\n"
-               "  change: use larger elements or fewer layers, a lower frequency, or more processes on more machines";
+               "  change: use larger elements, fewer layers, a lower Band/Maximum frequency, or processes on more machines";
       }
     catch (const std::system_error &error)
       {
         return std::string("a system call failed: ") + error.what() +
-               "\n  where:  this machine, or the limits of this process on threads (ulimit -u) and memory (ulimit -v)\n"
-               "  change: use fewer threads, OMP_NUM_THREADS=1 or Linear algebra/Threads = 1, or raise the limit";
+               "\n  where:  a file, or the limits of this process on threads (ulimit -u) and memory (ulimit -v)\n"
+               "  change: check permissions and free space of the file; or use fewer threads, OMP_NUM_THREADS=1 or Linear "
+               "algebra/Threads = 1, or raise the limit";
       }
     catch (const std::exception &error)
       {
@@ -138,8 +140,7 @@ Decides whether a disc rubbed by friction pins squeals.
   /// Prints the message of a failed run; returns the exit status.
   int report(const std::string &message, const bool is_root)
   {
-    // Most errors occur on all processes and are reported by process 0. Other processes wait, and report theirs only if process 0 has not
-    // aborted the job by then
+    // Delay other processes, because most errors occur on all processes, and process 0 reports the error and aborts the job
     if (!is_root)
       std::this_thread::sleep_for(std::chrono::seconds(3));
     print_error(message);
@@ -157,23 +158,23 @@ int main(int argc, char **argv)
   // Ignore SIGXFSZ so that write() fails with EFBIG
   std::signal(SIGXFSZ, SIG_IGN);
 
-  // Some libraries abort at startup if the current folder does not exist
+  // Check the current folder, because some libraries abort at startup if it does not exist
   std::error_code                              no_folder;
   [[maybe_unused]] const std::filesystem::path here = std::filesystem::current_path(no_folder);
   if (no_folder)
     {
-      print_error(Squeal::FileError("the folder in which the program was started cannot be found: " + no_folder.message(), "current folder",
-                                    "change to a folder that exists")
-                    .what());
+      print_error(
+        Squeal::FileError("the current folder cannot be found: " + no_folder.message(), "current folder", "change to an existing folder")
+          .what());
       return 1;
     }
 
-  // Libraries parse argv; PETSc installs signal handlers
+  // Hide the arguments from libraries, which would parse them, and disable the signal handlers of PETSc
   char   without_handler[]   = "-no_signal_handler";
   char  *library_arguments[] = {argv[0], without_handler, nullptr};
   char **library_argv        = library_arguments;
   int    library_argc        = 2;
-  // deal.II must not start threads in addition to those of the program
+  // Prevent deal.II from starting threads in addition to the threads of the program
   dealii::Utilities::MPI::MPI_InitFinalize mpi(library_argc, library_argv, 1);
   const bool                               is_root = dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
   std::ostream                             silence(nullptr);
@@ -186,7 +187,8 @@ int main(int argc, char **argv)
       Squeal::Progress progress(screen, live && is_root);
       run(Squeal::parse_command_line({argv + 1, argv + argc}), command, screen, progress);
       if (is_root && !screen.flush())
-        throw Squeal::FileError("not everything could be printed", "standard output", "check where it is redirected to, and free space");
+        throw Squeal::FileError("the output could not be printed completely", "standard output",
+                                "check the target of the redirection and its free space");
       return 0;
     }
   catch (...)

@@ -51,7 +51,7 @@ namespace Squeal
         if (const auto found = switches.find(name); found != switches.end())
           {
             if (equals != std::string::npos)
-              refuse("an option takes no value", word);
+              refuse("this option takes no value", word, "write " + name);
             *found->second = true;
           }
         else if (const auto option = with_value.find(name); option != with_value.end())
@@ -61,17 +61,17 @@ namespace Squeal
             else if (i + 1 < words.size() && !boost::starts_with(words[i + 1], "--"))
               option->second->push_back(words[++i]);
             else
-              refuse("an option lacks its value", word);
+              refuse("this option lacks its value", word, "write " + name + "=VALUE");
           }
         else
           refuse("unknown option", word, "squeal --help lists the options; write ./NAME for a file whose name begins with `-`");
       }
     if (files.size() > 1)
-      refuse("more than one parameter file", files[1], "give one; scripts/run.sh runs several in turn");
+      refuse("more than one parameter file", files[1], "give only one; scripts/run.sh runs several files in sequence");
     if (outputs.size() > 1)
       refuse("more than one result folder", outputs[1], "give --output once");
     if (designs.size() > 1)
-      refuse("more than one list of designs", designs[1], "give --designs once, as in --designs 3,7-9");
+      refuse("more than one list of designs", designs[1], "give --designs once, for example --designs 3,7-9");
     if (!files.empty())
       line.parameter_file = files.front();
     if (!outputs.empty())

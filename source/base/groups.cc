@@ -53,7 +53,6 @@ namespace Squeal
           }
         while (row_of[column] != 0);
 
-        // Augment along the path
         while (column != 0)
           {
             row_of[column] = row_of[previous[column]];

@@ -34,7 +34,7 @@ namespace Squeal
       return numbers;
     }
 
-    /// Remaining memory of a control group [byte]. Its limit may be `max`; in a container, folders of nested groups may be missing.
+    /// Remaining memory of a control group [byte]; infinite if its limit is `max` or, in a container, its folder is missing.
     double left_by_group(const fs::path &folder)
     {
       double limit, usage;

@@ -7,7 +7,8 @@
 
 #include <cstdlib>
 
-/// Overrides MPI_Init() of the library: Ipopt, which OpenTURNS may load, would start MPI before main(). deal.II calls MPI_Init_thread().
+/// Replaces MPI_Init() of the library, because Ipopt, which OpenTURNS may load, would start MPI before main(); deal.II calls
+/// MPI_Init_thread().
 extern "C" int MPI_Init(int * /*argc*/, char *** /*argv*/)
 {
   return MPI_SUCCESS;

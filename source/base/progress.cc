@@ -15,7 +15,6 @@ namespace Squeal
   {
     constexpr const char *erase_line = "\r\033[K";
 
-    /// Name and elapsed time of a step.
     std::string line_start(const std::string &name, const double seconds)
     {
       std::ostringstream line;

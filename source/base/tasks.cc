@@ -23,11 +23,11 @@ namespace Squeal
   {
     if (wanted > 0)
       return wanted;
-    // OMP_NUM_THREADS may be a list for nested loops: read its first number
+    // Read the first number, because OMP_NUM_THREADS may be a list for nested loops
     if (const char *text = std::getenv("OMP_NUM_THREADS"); text != nullptr)
       if (const long number = std::strtol(text, nullptr, 10); number > 0)
         return static_cast<unsigned int>(std::min(number, 1024l));
-    // A process that is bound to fewer cores than its share uses only these cores
+    // Use fewer cores than the share of this process if it is bound to fewer cores
     const unsigned int share = std::thread::hardware_concurrency() / std::max(1u, n_processes);
     return std::max(1u, std::min(n_usable_cores(), share));
   }

@@ -19,7 +19,7 @@ namespace Squeal
     /// Environment variable for the number of threads of this program and of libraries.
     constexpr const char *threads_variable = "OMP_NUM_THREADS";
 
-    /// Environment without the variables of the MPI job: the worker must not join it.
+    /// Environment without the variables of the MPI job, so that the worker does not join this job.
     process::environment environment_of_worker(const unsigned int n_threads)
     {
       process::environment result = boost::this_process::environment();
@@ -65,7 +65,7 @@ namespace Squeal
     catch (const process::process_error &error)
       {
         throw FileError("a process cannot be started: " + error.code().message(), "file " + log.string(),
-                        "check permissions, free space, and limits on processes and memory");
+                        "check permissions, free disk space, and limits on processes and memory");
       }
   }
 

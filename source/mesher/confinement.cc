@@ -30,7 +30,7 @@ namespace Squeal
     // Calls that fail with EACCES instead of ending the process, because Gmsh tries to remove files that it did not create
     constexpr int removing_files[] = {SCMP_SYS(unlink), SCMP_SYS(unlinkat), SCMP_SYS(rmdir)};
 
-    // Newer calls with arguments that a filter cannot check: they fail with ENOSYS, and libraries use the older calls
+    // Newer calls with arguments that a filter cannot check; they fail with ENOSYS so that libraries use the older calls
     constexpr int unavailable[] = {SCMP_SYS(clone3), SCMP_SYS(openat2), SCMP_SYS(io_uring_setup)};
 
     void check(const int result)
@@ -42,7 +42,7 @@ namespace Squeal
 
   void confine()
   {
-    // Limit the size of the file to which Gmsh writes its output
+    // Limit the size of the log file of Gmsh
     constexpr rlim_t largest_log = 1 << 24; // [byte]
     const rlimit     file_size{largest_log, largest_log};
     setrlimit(RLIMIT_FSIZE, &file_size);
@@ -50,7 +50,7 @@ namespace Squeal
 
     const std::unique_ptr<void, void (*)(scmp_filter_ctx)> filter(seccomp_init(SCMP_ACT_ALLOW), seccomp_release);
     if (!filter)
-      throw std::runtime_error("seccomp: not on this system");
+      throw std::runtime_error("seccomp is not available on this system");
     for (const int call : forbidden)
       check(seccomp_rule_add(filter.get(), SCMP_ACT_KILL_PROCESS, call, 0));
     for (const std::uint64_t bit : {O_WRONLY, O_RDWR, O_CREAT, O_TRUNC})

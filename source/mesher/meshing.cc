@@ -16,7 +16,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Runs one step and checks the log, because Gmsh continues after most errors: a call that returns may have failed.
+    /// Runs one step and checks the log, because Gmsh continues after most errors.
     void attempt(const std::string &step, const std::function<void()> &action)
     {
       bool failed = false;
@@ -38,7 +38,6 @@ namespace Squeal
         throw GmshError("Gmsh failed while " + step);
     }
 
-    /// Elements of a mesh by their type.
     struct Elements
     {
       /// Elements of one entity, or of all entities of a dimension.
@@ -61,7 +60,7 @@ namespace Squeal
     }
 
     /// True for mesh formats before 4, in which every element has a physical tag in addition to the tag of its entity. Gmsh adds all
-    /// elements of an entity to the groups of each of them, which is wrong for files with a single entity, as some converters write.
+    /// elements of an entity to the groups of all its elements, which is wrong for files with a single entity from some converters.
     bool has_physical_tags(const std::string &file)
     {
       std::ifstream stream(file, std::ios::binary);
@@ -205,7 +204,7 @@ namespace Squeal
     setenv("HOME", home.c_str(), 1);
     gmsh::option::setNumber("General.Terminal", 1);
     gmsh::option::setNumber("General.NumThreads", 1);
-    // Detect errors in the log: an exception in the parallel region in which Gmsh meshes surfaces would end the program
+    // Detect errors in the log instead, because an exception in the parallel region in which Gmsh meshes surfaces would end the program
     gmsh::option::setNumber("General.AbortOnError", 0);
     gmsh::option::setNumber("Mesh.RandomSeed", 1);
     gmsh::option::setNumber("Mesh.RandomFactor", 1e-9);

@@ -23,14 +23,14 @@ namespace Squeal
   /// Sets the value for DefineNumber[..., Name "..."]. Throws GmshError.
   void set_number(const std::string &name, double value);
 
-  /// Opens a script that sets variables, then a geometry or mesh file (may be empty), and generates the mesh unless the file contains it:
-  /// for a solid as prescribed in the file, for a plan with quadrilaterals only, with every element halved. Groups with the same name are
-  /// merged. Throws GmshError, and std::bad_alloc if memory is exhausted.
+  /// Opens a script that sets variables, then a geometry or mesh file (may be empty), and generates the mesh unless the file contains it. A
+  /// solid is meshed as prescribed in the file, a plan with quadrilaterals only, by subdivision of its elements. Groups with the same name
+  /// are merged. Throws GmshError, and std::bad_alloc if memory is exhausted.
   GmshMesh mesh_geometry(const std::string &script, const std::string &file);
 
   /**
-   * Confines this process: it can no longer start programs, write, create, rename or remove files, or open connections. Files that are
-   * already open remain usable. A forbidden call ends the process by SIGSYS (libseccomp).
+   * Confines this process, which can then no longer start programs, write, create, rename or remove files, or open connections. Files that
+   * are already open remain usable. A forbidden call ends the process by SIGSYS (libseccomp).
    *
    * Gmsh scripts could perform these actions by SystemCall, NonBlockingSystemCall, OnelabRun, CreateDir, Save, Print, Printf > "file", and
    * some plugins and options.

@@ -14,7 +14,7 @@ namespace Squeal
 
   namespace
   {
-    /// A free dof of an element, or of a master of its tied nodes, with its local row; -1 for rows of other processes.
+    /// A free dof of an element, or of a master of its tied nodes, with its local row, or -1 if another process owns the row.
     struct FreeDof
     {
       unsigned int in_element;
@@ -22,7 +22,6 @@ namespace Squeal
       double       weight; ///< weight in the dof of the element
     };
 
-    /// An element that contributes to local rows.
     struct Contribution
     {
       const NodalElement  *element;
@@ -30,7 +29,7 @@ namespace Squeal
     };
 
     /// Elements with one or more local rows. Several processes integrate the elements at partition boundaries, so that no matrix entries
-    /// are sent.
+    /// need to be sent.
     std::vector<Contribution> contributions(const Model &model, const std::vector<const NodalElement *> &elements)
     {
       std::vector<Contribution> result;
@@ -69,8 +68,8 @@ namespace Squeal
     /// Number of elements in a task, and number of element matrices that are stored before they are added.
     constexpr int elements_of_task = 256, elements_together = 8 * elements_of_task;
 
-    /// Integrates and assembles blocks of elements: threads first integrate different elements, then add element matrices to different
-    /// matrices, always in the order of the elements.
+    /// Integrates and assembles blocks of elements: threads first integrate different elements, then add the element matrices, in the order
+    /// of the elements, to different matrices.
     void integrate_and_add(const Model                               &model,
                            const std::vector<Contribution>           &contributions,
                            const std::vector<ElementIntegral>        &integrals,

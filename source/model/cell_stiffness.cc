@@ -80,7 +80,7 @@ namespace Squeal
           for (unsigned int j = 0; j < m; ++j)
             modes(i, j) = full(n + i, n + j);
         }
-      // L⁻¹ K_αu: the product of its transpose with itself is exactly symmetric
+      // Use L⁻¹ K_αu, because the product of its transpose with itself is exactly symmetric
       const DenseMatrix half = modes.llt().matrixL().solve(coupling);
       for (unsigned int i = 0; i < n; ++i)
         for (unsigned int j = 0; j <= i; ++j)

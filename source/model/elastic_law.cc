@@ -25,7 +25,7 @@ namespace Squeal
       return result;
     }
 
-    /// C in x, y and z from C in the material axes, the columns of R.
+    /// C in x, y and z from C in the material axes, which are the columns of R.
     ElasticLaw::Stiffness rotated(const ElasticLaw::Stiffness &C, const Eigen::Matrix3d &R)
     {
       // Rotation of stresses, σ_ij = R_ik R_jl σ_kl

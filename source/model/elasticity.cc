@@ -16,7 +16,7 @@ namespace Squeal
 
   namespace
   {
-    /// Rejects an inverted element. Curved edges may invert an element that is correct with straight edges.
+    /// Rejects an inverted element; curved edges may invert an element that is valid with straight edges.
     void check_orientation(const ElementValues &values, const std::string &volume)
     {
       Point<3> centre;
@@ -26,8 +26,8 @@ namespace Squeal
         if (!(values.JxW(q) > 0.))
           throw MeshError("the element is inverted: its Jacobian is not positive everywhere",
                           text("volume ", volume, ", element with centre (", centre, ") m"),
-                          "make the elements at curved boundaries smaller, e.g. by Geometry/Nodes per pin face or "
-                          "Geometry/Element size, or choose a Discretization/Element other than quadratic");
+                          "correct this element of the mesh; at curved boundaries, use smaller elements (Geometry/Nodes per pin face, "
+                          "Geometry/Element size), or choose a Discretization/Element other than quadratic");
     }
 
     using Matrix = std::shared_ptr<const SparseMatrix>;
@@ -168,7 +168,7 @@ namespace Squeal
     for (unsigned int volume = 0; volume < model.volume_names().size(); ++volume)
       for (Term &term : volume_terms(model, volume, materials.of(model.volume_names()[volume])))
         bodies.terms.push_back(std::move(term));
-    std::map<std::pair<std::string, int>, Matrix> matrices; // by surface and direction: springs and dashpots use the same matrix
+    std::map<std::pair<std::string, int>, Matrix> matrices; // by surface and direction, for springs and dashpots
     for (const MountParameter &mount : mount_parameters(materials))
       {
         auto &matrix = matrices[{mount.surface, mount.direction}];

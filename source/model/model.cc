@@ -26,7 +26,6 @@ namespace Squeal
 
   namespace
   {
-    /// The part of the model on one process.
     struct Part
     {
       std::vector<Node> nodes;
@@ -65,7 +64,8 @@ namespace Squeal
     {
       const std::vector<char> buffer = Utilities::pack(part, false);
       const unsigned long     size   = buffer.size();
-      AssertThrow(size <= static_cast<unsigned long>(std::numeric_limits<int>::max()), ExcMessage("a part is too large for a message"));
+      AssertThrow(size <= static_cast<unsigned long>(std::numeric_limits<int>::max()), ExcMessage("a part of the model is too large for "
+                                                                                                  "one MPI message"));
       MPI_Send(&size, 1, MPI_UNSIGNED_LONG, process, 0, communicator);
       MPI_Send(buffer.data(), static_cast<int>(size), MPI_CHAR, process, 0, communicator);
     }
@@ -141,8 +141,8 @@ namespace Squeal
 
     private:
       const Mesh                                             &mesh;
-      const SlaveRows                                        &masters; ///< masters of tied nodes
-      std::vector<std::pair<CellFace, std::vector<unsigned>>> faces;   ///< outer faces with their surfaces
+      const SlaveRows                                        &masters;
+      std::vector<std::pair<CellFace, std::vector<unsigned>>> faces; ///< outer faces with their surfaces
       std::vector<unsigned int>                               process_of_cell, process_of_node;
       std::vector<Node>                                       nodes_of_mesh;
       std::vector<int>                                        n_dofs_of_process;
@@ -172,7 +172,7 @@ namespace Squeal
         });
       }
 
-      /// Partitions the cells by METIS, with cells that share a face as neighbours.
+      /// Partitions the cells with METIS; cells that share a face are neighbours.
       void distribute_cells(const unsigned int n_processes)
       {
         DynamicSparsityPattern      neighbours(mesh.cells.size());
@@ -188,7 +188,7 @@ namespace Squeal
         SparsityTools::partition(pattern, n_processes, process_of_cell);
       }
 
-      /// Numbers nodes in the order of the cells; a node belongs to the first process that has a cell with this node.
+      /// Numbers nodes in the order of the cells; a node belongs to the lowest process that has a cell with this node.
       void number_nodes()
       {
         constexpr unsigned int nobody = -1;
@@ -220,8 +220,8 @@ namespace Squeal
           {
             Node &node = nodes_of_mesh[slave];
             if (node.dofs[0] < 0)
-              throw MeshError(text("a tied node is clamped by pin_clamp, at (", mesh.points[slave], ") m"), "parameter Contact/Tied",
-                              "exchange the surfaces of the tie, or keep tied and clamped faces apart");
+              throw MeshError(text("the tied node at (", mesh.points[slave], ") m is clamped by pin_clamp"), "parameter Contact/Tied",
+                              "exchange the two surfaces of the tie, or separate the tied faces from pin_clamp");
             node.dofs = {{-1, -1, -1}};
           }
 
@@ -256,12 +256,12 @@ namespace Squeal
     , n_all_dofs(0)
   {
     if (mesh.degree > degree())
-      throw MeshError("the mesh is of second order", "parameter Discretization/Element",
-                      "set Discretization/Element = quadratic, or mesh with elements of first order");
+      throw MeshError("the mesh is of second order, but the elements are of first order", "parameter Discretization/Element",
+                      "set Discretization/Element = quadratic, or generate a mesh of first order");
     Part own;
     if (this_process(communicator) == 0)
       {
-        // Only process 0 has all cells; it creates the parts of other processes one at a time
+        // Create the parts of other processes one at a time on process 0, which has all cells
         const unsigned int n        = n_processes(communicator);
         const Mesh         with_all = degree() == 2 ? second_order(mesh) : mesh;
         const TiedNodes    tied     = tied_nodes(with_all);

@@ -125,7 +125,7 @@ namespace Squeal
           continue;
         if (term.matrix)
           throw SolverError("the term `" + term.name + "` is not confined to the contact", "determinant condensed to the contact nodes",
-                            "use sparse LU factors instead (small systems), or remove the term, for example Rayleigh damping");
+                            "remove this term, for example Rayleigh damping, or remove Sweep/Count modes at");
         const auto known     = std::find(factors.begin(), factors.end(), term.left.get());
         const int  first_row = total_rank({factors.begin(), known});
         if (known == factors.end())
@@ -137,7 +137,6 @@ namespace Squeal
     if (Phi != nullptr && n_rows > 0)
       modes_forces = transpose_times(factors, *Phi).transpose().cast<Complex>();
 
-    // Norms and number of terms
     for (Block &block : blocks)
       block.norm = max_norm(weights_of(*block.term, system.values)) *
                    norm_on_complement({block.term->right.get()}, complement_inverse, M.communicator());
@@ -148,7 +147,8 @@ namespace Squeal
     for (n_moments = 1; std::any_of(request.lambda.begin(), request.lambda.end(), is_coarse); ++n_moments)
       if (n_moments == most_terms)
         throw SolverError("a series of " + std::to_string(most_terms) + " terms does not reach the tolerance",
-                          "determinant condensed to the contact nodes", "use more real modes");
+                          "determinant condensed to the contact nodes",
+                          "change Band/Maximum frequency or Band/Maximum rate, or remove Sweep/Count modes at");
 
     // Moments: T_{k+1} = 2 (2 w H − I) T_k − T_{k−1}. Project in every step, because H amplifies rounding errors in the modes
     for (Block &block : blocks)

@@ -24,14 +24,15 @@ namespace Squeal
     /// Largest ‖ΔN N⁻¹‖ at the points of the contour; between the points, N⁻¹ may be twice as large [-].
     constexpr double largest_truncation = 0.25;
 
-    /// First and smallest bound of the truncation error of N; the latter is limited by rounding [-].
+    /// Initial and smallest tolerance for the truncation error of N; rounding limits the smallest tolerance [-].
     constexpr double first_tolerance = 1e-7, least_tolerance = 1e-13;
 
     /// Shorter steps, relative to ω_high, indicate that a zero lies on the contour. Also the smallest distance of a real mode from ω_low
     /// and ω_high [-].
     constexpr double shortest_step = 1e-9;
 
-    /// Corners of the contour, counterclockwise. By symmetry, only half of it is followed without damping; it then counts twice.
+    /// Corners of the contour, counterclockwise. Without damping, only half of the contour is followed because of symmetry, and it counts
+    /// twice.
     struct Contour
     {
       Contour(const ContourOptions &options, const bool damped)
@@ -41,8 +42,9 @@ namespace Squeal
         , multiplicity(damped ? 1 : 2)
       {
         if (!(high > low))
-          throw SolverError(decimal_text(hertz(high)) + " Hz as the end of the band, " + decimal_text(hertz(low)) + " Hz as its beginning",
-                            place, "give a band whose end is above its beginning");
+          throw SolverError("the end of the band, " + decimal_text(hertz(high)) + " Hz, is not above its beginning, " +
+                              decimal_text(hertz(low)) + " Hz",
+                            place, "change Band/Maximum frequency");
         if (damped)
           corners = {{0., low}, {width, low}, {width, high}, {-width, high}, {-width, low}, {0., low}};
         else
@@ -83,8 +85,7 @@ namespace Squeal
               if (length < std::min(rest, shortest_step * contour.high))
                 contour.refuse("a mode lies on the contour", lambda);
               if (determinant.n_points >= options.maximum_points)
-                contour.refuse("more than " + std::to_string(options.maximum_points) + " points are needed; the count was abandoned",
-                               lambda);
+                contour.refuse("more than " + std::to_string(options.maximum_points) + " points are needed; the count stopped", lambda);
 
               const bool last = length == rest;
               const Step step = determinant.attempt(last ? to : lambda + length * direction);
@@ -105,7 +106,7 @@ namespace Squeal
 
       const double turns = contour.multiplicity * phase / (2. * M_PI), whole = std::round(turns);
       if (!(std::abs(turns - whole) < 1e-3))
-        throw SolverError("the determinant does not return to its phase: " + text(turns) + " turns", place,
+        throw SolverError("the phase of the determinant changes by " + text(turns) + " turns along the contour, not by an integer", place,
                           "change Band/Maximum frequency or Band/Maximum rate");
       return whole;
     }
@@ -132,7 +133,7 @@ namespace Squeal
               contour.refuse("a real mode lies on the contour", {0., end});
         }
       if (n_inside != n_frictionless)
-        throw SolverError(text(n_inside, " real modes were found in the band, ", n_frictionless, " exist"), place,
+        throw SolverError(text(n_inside, " real modes were found in the band, but ", n_frictionless, " are counted by inertia"), place,
                           "change Band/Maximum frequency");
     }
 
@@ -144,7 +145,7 @@ namespace Squeal
     {
       const SparseMatrix &K = *system.stiffness, &M = *system.mass;
 
-      // Real modes, and the inverse that is used for them and for the series
+      // Compute the real modes, and the inverse for these modes and for the series
       progress.update("real modes beyond the band");
       SymmetricModesOptions real = options.real_modes;
       if (real.what == SymmetricModesOptions().what)
@@ -250,7 +251,7 @@ namespace Squeal
   void check_count(const int n_counted, const std::vector<Complex> &lambda, const ContourOptions &contour)
   {
     if (const int n_found = n_in_rectangle(lambda, contour); n_found != n_counted)
-      throw SolverError(text(n_found, " complex modes were found in the band up to |Re lambda| = ", contour.largest_growth, " 1/s, ",
+      throw SolverError(text(n_found, " complex modes were found in the band up to |Re lambda| = ", contour.largest_growth, " 1/s, but ",
                              n_counted, " were counted"),
                         place, "lower Complex modes/Tolerance, or change Band/Maximum frequency or Band/Maximum rate");
   }

@@ -87,7 +87,7 @@ namespace Squeal
       F                         = current.factors->solve(F);
       F.diagonal().array() -= 1.;
       const std::complex<double> trace = F.trace();
-      // Balance finite matrices only: a NaN must not reach LAPACK
+      // Balance only finite matrices, because LAPACK does not accept NaN
       const double norm         = F.norm();
       const auto [size, phase]  = agreed_pair(std::isfinite(norm) ? std::min(norm, balanced(F).norm()) : norm, trace.imag());
       constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -99,7 +99,7 @@ namespace Squeal
       step.phase = next.argument - current.argument;
       step.phase += 2. * M_PI * std::round((phase - step.phase) / (2. * M_PI));
       step.largest_phase = std::abs(step.phase);
-      // If the phase differs from the trace by more than the bound, one of them has a large rounding error
+      // Reject the step if phase and trace differ by more than the bound, because one of the two has a large rounding error
       if (!(std::abs(step.phase - phase) <= -std::log(1. - size) - size + 1e-6))
         return {infinity, 0.};
       step.size = std::max(step.size, step.largest_phase / largest_phase_step);
@@ -138,7 +138,7 @@ namespace Squeal
       std::tie(next.argument, next.error) = agreed_pair(next.factors->log_determinant().imag(), sample.offset + sample.factor * norm);
     }
 
-    /// Values of process 0: all processes perform the same computation, but must take identical steps in spite of rounding errors.
+    /// Values of process 0, so that all processes take identical steps in spite of rounding errors.
     std::pair<double, double> agreed_pair(const double first, const double second) const
     {
       const std::vector<double> values = agreed(comm, {{first, second}, {}}).values;

@@ -14,7 +14,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Sum of all terms with one power of λ, which are applied individually: a matrix of the sum would need as much memory as K.
+    /// Sum of all terms with one power of λ, which are applied individually because a matrix of the sum would need as much memory as K.
     struct SumOfTerms : LinearOperator
     {
       SumOfTerms(const CoupledSystem &system, const ParameterValues &values, const int power)
@@ -89,10 +89,10 @@ namespace Squeal
     for (const Term &term : system.terms)
       (term.is_sparse() ? sparse : others).push_back(term);
     const bool has_full_terms = !terms_of(others, values, 1).empty();
-    // Reject modal damping with a shift: the shifted factor cannot include it
+    // Reject modal damping with a shift, because the shifted factor cannot include modal damping
     if (shift != 0. && has_full_terms)
-      throw SolverError("the Krylov solver cannot combine modal damping with a free or softly held disc", "complex modes",
-                        "choose Complex modes/Solver = residual iteration, hold the disc by stiffer Mounts/Elastic mounts, or leave "
+      throw SolverError("the Krylov solver cannot combine modal damping with a disc that is free or softly mounted", "complex modes",
+                        "choose Complex modes/Solver = residual iteration, give the disc stiffer Mounts/Elastic mounts, or leave "
                         "Damping/Modal damping ratio empty");
 
     const SumOfTerms      mass(system, values, 2), damping(system, values, 1), stiffness(system, values, 0);
@@ -107,7 +107,8 @@ namespace Squeal
     options.expected                   = n_expected;
     options.close_vectors              = real_modes;
     options.tolerance                  = parameters.complex_tolerance;
-    // Without damping, modes of equal frequency on all pins form a cluster, which a narrower block might not find completely
+    // Use a wider block without damping, because modes of equal frequency on all pins form a cluster that a narrower block might miss in
+    // part
     options.block_size     = pencil.damping ? 8 : 12;
     options.stiffness_norm = norm_bound(sparse, values, 0);
     options.damping_norm   = norm_bound(sparse, values, 1);
@@ -120,8 +121,8 @@ namespace Squeal
       }
     catch (const SolverError &)
       {
-        // Close to a static instability, K̃ is almost singular, and its inverse amplifies rounding errors: try a shift. If there is another
-        // reason, the next attempt throws
+        // Retry with a shift, because K̃ is almost singular close to a static instability; after any other failure, the second attempt
+        // throws again
         if (shift != 0. || has_full_terms)
           throw;
         options.shift = band.end / band_per_stabilizing_shift;

@@ -15,7 +15,7 @@ namespace Squeal
   {
     using Complex = std::complex<double>;
 
-    /// λ is real up to this |Im λ| relative to the end of the band: rounding splits a multiple real λ into complex pairs [-].
+    /// Largest |Im λ| of a real λ, relative to the end of the band, because rounding splits a multiple real λ into complex pairs [-].
     constexpr double real_in_band = 1e-7;
 
     /// Smallest number of basis vectors for which separating the modes of the band saves time.
@@ -39,7 +39,7 @@ namespace Squeal
     void separate_real(ReducedModes &modes, const ReducedModel &model, const double largest_circular_frequency)
     {
       const double hidden = hidden_square(model);
-      // modes.lambda contains one eigenvalue of each conjugate pair: count both
+      // Count twice, because modes.lambda contains one eigenvalue of each conjugate pair
       std::vector<int> others;
       for (std::size_t j = 0; j < modes.lambda.size(); ++j)
         if (const Complex l = modes.lambda[j]; !(std::norm(l) > hidden))

@@ -36,9 +36,10 @@ namespace Squeal
     const unsigned int allowed   = solvers.maximum_modes;
     const double       frequency = hertz(largest_circular_frequency);
     if (count.n_modes > static_cast<int>(allowed))
-      throw ParameterError(text(count.n_modes, " modes lie below ", frequency, " Hz, more than the ", allowed, " allowed"),
+      throw ParameterError(text(count.n_modes, " modes lie below ", frequency, " Hz, more than the maximum of ", allowed),
                            "parameter Real modes/Maximum number of modes",
-                           "lower Band/Maximum frequency, or raise Real modes/Maximum number of modes; time grows up to its cube");
+                           "lower Band/Maximum frequency, or raise Real modes/Maximum number of modes; the computing time increases with "
+                           "up to the cube of the number of modes");
     progress.finish(text(count.n_modes, " below ", frequency, " Hz by inertia"));
     return count;
   }
@@ -60,7 +61,7 @@ namespace Squeal
     result.inverse                   = std::make_shared<UpdatedInverse>(system, shift, solvers.library, attachment);
     const double n_entries           = result.inverse->frictionless().n_factor_entries();
     result.factorisation =
-      progress.finish(text(n_entries / 1e6, " million entries", shift > 0. ? ", shifted: the disc is free or held softly" : ""));
+      progress.finish(text(n_entries / 1e6, " million entries", shift > 0. ? ", shifted because the disc is free or softly mounted" : ""));
 
     progress.begin("Real modes");
     SymmetricModesOptions options = real_modes_options(solvers, "real modes of the coupled system", shift);

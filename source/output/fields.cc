@@ -20,7 +20,7 @@ namespace Squeal
     /// Smallest relative distance of times in a list of modes [-], and smallest distance from time zero [Hz].
     constexpr double least_relative_step = 1e-6, least_step = 1e-6;
 
-    /// Resolution of fields: number of steps per largest displacement or per radian.
+    /// Resolution of fields as the number of steps per largest displacement or per radian.
     constexpr double steps_of_fields = 65536., steps_of_animations = 4096.;
 
     /// Rounds to multiples of 1 / @p n for better compression.

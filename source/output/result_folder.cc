@@ -48,7 +48,7 @@ namespace Squeal
     FileError not_written(const std::string &file, const int problem)
     {
       return FileError(std::string("the file cannot be written: ") + std::strerror(problem), "file " + file,
-                       "check permissions and free space");
+                       "check permissions, free disk space and free memory");
     }
 
     bool is_there(const fs::path &file)
@@ -84,7 +84,7 @@ namespace Squeal
       {
         remove_traces();
         throw FileError("the result folder cannot be created: " + error.code().message(), "--output " + shown,
-                        "choose a folder that you may write to");
+                        "choose a folder with write permission");
       }
     catch (const FileError &)
       {
@@ -113,17 +113,18 @@ namespace Squeal
     fs::remove(file);
     if (problem != 0)
       throw FileError(std::string("files cannot be written to the result folder: ") + std::strerror(problem), where,
-                      "choose a folder that you may write to, with free space");
+                      "choose a folder with write permission and free disk space");
   }
 
   void ResultFolder::take_lock()
   {
     lock = ::open(place.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (::flock(lock, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) // other errors: some file systems have no locks
+    if (::flock(lock, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) // ignore other errors, because some file systems have no locks
       return;
     ::close(lock);
     lock = -1; // keeps remove_traces() from removing the files of the other run
-    throw FileError("another run is writing to `" + shown + "`", "--output " + shown, "wait until it has ended, or choose another name");
+    throw FileError("another run is writing to `" + shown + "`", "--output " + shown,
+                    "wait until the other run has ended, or choose another folder");
   }
 
   ResultFolder::~ResultFolder()
@@ -189,7 +190,7 @@ namespace Squeal
         {
           const fs::path kept = free_name(target);
           fs::rename(target, kept);
-          remarks.push_back("the results use the name `" + name + "`: your file in " + shown + " is `" +
+          remarks.push_back("the results use the name `" + name + "`; your file in " + shown + " was renamed to `" +
                                           kept.lexically_relative(place).string() + "`");
         }
       fs::create_directories(target.parent_path());
@@ -212,7 +213,7 @@ namespace Squeal
         for (const auto &[name, size] : written)
           if (std::error_code missing; fs::file_size(unfinished / name, missing) != size)
             throw FileError("a result was removed or changed while the program ran", "file " + shown + "/" + name,
-                            "make sure that nothing else writes to the result folder, and run again");
+                            "make sure that no other program changes the result folder, and run again");
         try
           {
             remarks = put_in_place();
@@ -221,7 +222,7 @@ namespace Squeal
           {
             is_stuck = true;
             throw FileError("the results cannot be moved to the result folder: " + error.code().message(), "--output " + shown,
-                            "the missing ones are in `" + unfinished.string() + "`: move them yourself");
+                            "move the remaining results from `" + unfinished.string() + "` to this folder");
           }
       }
     if (afterwards)
@@ -285,7 +286,7 @@ namespace Squeal
                                {"peak memory so far [byte]", step.peak_memory},
                                {"result", step.summary}});
     tree[file_list] = record.files;
-    // Replace invalid bytes: file names and command-line words need not be UTF-8
+    // Replace invalid bytes, because file names and command-line words need not be UTF-8
     stream << tree.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
   }
 

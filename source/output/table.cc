@@ -56,7 +56,7 @@ namespace Squeal
   {
     if (const auto *number = std::get_if<double>(&cell); number != nullptr && !std::isfinite(*number))
       throw Error("a result is not a finite number", "table column `" + heads.back().name + "`",
-                  "this is a defect of the program or of an extreme model; check material values and units");
+                  "check material values and units; if they are correct, report this defect of the program");
     return cell;
   }
 

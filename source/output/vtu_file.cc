@@ -17,7 +17,7 @@ namespace Squeal
 {
   namespace
   {
-    /// zlib levels from 1 (fast) to 9: fields are compressed for every file, a mesh only once.
+    /// zlib levels from 1 (fast) to 9; fields are compressed for every file, a mesh only once.
     constexpr int level_of_fields = 1, level_of_meshes = 9;
 
     template <typename Number>
@@ -169,7 +169,6 @@ namespace Squeal
 
   namespace
   {
-    /// A linear cell on nodes of an element.
     struct Part
     {
       Shape                     shape;
@@ -193,7 +192,7 @@ namespace Squeal
       std::vector<Part> middle;
       if (shape == Shape::triangle)
         middle = {{shape, {3, 4, 5}}};
-      if (shape == Shape::tetrahedron) // the remainder is an octahedron, which is divided about one diagonal
+      if (shape == Shape::tetrahedron) // the remainder is an octahedron, which is divided along one diagonal
         middle = {{shape, {4, 5, 6, 8}}, {shape, {4, 6, 7, 8}}, {shape, {4, 7, 9, 8}}, {shape, {4, 9, 5, 8}}};
       if (shape == Shape::wedge)
         middle = {{shape, {6, 9, 7, 15, 17, 16}}, {shape, {15, 17, 16, 12, 14, 13}}};
@@ -227,8 +226,8 @@ namespace Squeal
     /// VTK cell types, in the order of the shapes.
     constexpr std::array<std::uint8_t, 6> vtk_types = {{5, 9, 10, 14, 13, 12}};
 
-    /// Elements owned by this process, sorted by angle about z, radius and height of the mean of their corners: consecutive cells share
-    /// nodes, which improves the compression.
+    /// Elements owned by this process, sorted by angle about z, radius and height of the mean of their corners, because cells with common
+    /// nodes in succession improve the compression.
     template <typename Element>
     std::multimap<std::tuple<long, long, double>, const Element *> in_columns(const Model                        &model,
                                                                               const std::vector<const Element *> &elements)
@@ -250,7 +249,7 @@ namespace Squeal
       return result;
     }
 
-    /// Mesh of those @p elements that this process owns; vertices are numbered in the order of the elements.
+    /// Mesh of the @p elements that this process owns; vertices are numbered in the order of the elements.
     template <typename Element>
     FieldMesh mesh_of(const Model &model, const std::vector<const Element *> &elements)
     {

@@ -25,7 +25,7 @@ namespace Squeal
       unsigned int blocks; ///< k, elements along a block edge of a pin face
       unsigned int rings;
       double       grading;
-      unsigned int pin_layers; ///< layers of pins with a height of up to 0.6 times their diameter
+      unsigned int pin_layers; ///< layers of pins with a height of up to squat_pin diameters
       unsigned int disc_layers;
       double       elements_per_wave; ///< elements per wavelength in the disc
     };
@@ -37,7 +37,7 @@ namespace Squeal
       double         tolerance; ///< tolerance of reduced models and solvers: estimated |δλ| / |λ| [-]
     };
 
-    /// Measured on the default model, see doc/accuracy.md. Requires a goal.
+    /// Settings of a goal other than as_given, based on errors of the default model (doc/accuracy.md).
     const Level &level(const AccuracyGoal goal)
     {
       static const MeshDensity                   fine   = {Element::quadratic, 2, 3, 1.5, 5, 3, 10.};
@@ -54,13 +54,13 @@ namespace Squeal
     /// Largest ratio of pin height to diameter for which the layers of a level are sufficient [-].
     constexpr double squat_pin = 0.62;
 
-    /// Relative extension of the band on the coarser mesh, as a multiple of the requested accuracy, and its smallest value [-].
+    /// Relative extension of the band on the coarser mesh as a multiple of the requested accuracy, and minimum extension [-].
     constexpr double margin_of_coarser_band = 2., least_band_margin = 0.02;
 
     /// Relative extension of the band on a given coarser mesh, whose accuracy is unknown [-].
     constexpr double margin_of_given_mesh = 0.05;
 
-    /// Shorter of the wavelengths of thin-plate bending, 2π (D / ρhω²)^¼, and of Rayleigh waves on the faces, at the end of the band [m].
+    /// Shortest wavelength at the end of the band [m]: thin-plate bending, 2π (D / ρhω²)^¼, or Rayleigh waves on the faces.
     double shortest_wave(const Parameters &parameters)
     {
       constexpr double rayleigh  = 0.9; // Rayleigh wave speed relative to the shear wave speed
@@ -183,9 +183,9 @@ namespace Squeal
           for (const std::string &entry : split(text))
             {
               if (std::find(known.begin(), known.end(), entry) == known.end())
-                throw ParameterError("Accuracy study/" + name + " names " + in_quotes(entry) + ", which is not one of " +
+                throw ParameterError("Accuracy study/" + name + " contains " + in_quotes(entry) + ", which is not one of " +
                                        boost::algorithm::join(known, ", "),
-                                     "", "choose among these, separated by commas");
+                                     "", "give one or more of these names, separated by commas");
               read.push_back(enum_value<Enum>(entry));
             }
           values = read;
@@ -196,10 +196,11 @@ namespace Squeal
     void check_list(const std::vector<Value> &values, const char *name)
     {
       if (values.empty())
-        throw ParameterError(text("Accuracy study/", name, " is empty"), text("parameter Accuracy study/", name), "give at least one");
+        throw ParameterError(text("Accuracy study/", name, " is empty"), text("parameter Accuracy study/", name),
+                             "give at least one value");
       if (std::set<Value>(values.begin(), values.end()).size() < values.size())
-        throw ParameterError(text("Accuracy study/", name, " has an entry twice"), text("parameter Accuracy study/", name),
-                             "give each once");
+        throw ParameterError(text("Accuracy study/", name, " contains a value twice"), text("parameter Accuracy study/", name),
+                             "give each value once");
     }
   } // namespace
 
@@ -213,9 +214,9 @@ namespace Squeal
       {0.1, 10.}, 20);
     add_list(declarations, "Elements", elements, "Elements to be compared.");
     add_list(declarations, "Outlines", outlines,
-             "Outlines to be compared, for meshes with straight edges; quadratic elements follow the circles.");
+             "Outlines to be compared for elements with straight edges; quadratic elements follow the circle.");
     declarations.add_text(
-      "Bases", "Names of reduced bases to be compared with full order, separated by commas, as in the section Reduction; empty: none.",
+      "Bases", "Names of the reduced bases to be compared with full order, as in the section Reduction, separated by commas; empty: none.",
       [this] { return boost::algorithm::join(bases, ", "); }, [this](const std::string &text) { bases = split(text); });
     declarations.add("Grown tolerance", grown_tolerance, "none",
                      "A `residual-grown` basis is complete when the estimated relative error of every lambda is below this tolerance.",
@@ -233,7 +234,7 @@ namespace Squeal
     check_list(elements, "Elements");
     check_list(outlines, "Outlines");
     if (factors.size() < 2)
-      throw ParameterError("Accuracy study/Mesh factors has one entry: error estimates need a second mesh",
-                           "parameter Accuracy study/Mesh factors", "give two or more; three show the order of convergence");
+      throw ParameterError("Accuracy study/Mesh factors has only one value, but error estimates require two meshes",
+                           "parameter Accuracy study/Mesh factors", "give two or more values; three also yield the order of convergence");
   }
 } // namespace Squeal

@@ -8,7 +8,8 @@ namespace Squeal
 {
   namespace
   {
-    /// Smallest and largest rate of a band relative to the circular frequency at its end, for which modes can be counted and searched [-].
+    /// Smallest and largest rate, relative to the circular frequency at the end of the band, for which modes can be counted and searched
+    /// [-].
     constexpr double least_rate = 1e-6, greatest_rate = 10.;
   } // namespace
 
@@ -22,10 +23,10 @@ namespace Squeal
       "`quadratic`: 27 nodes; the elements follow curved boundaries.");
     declarations.add(
       "Coarser mesh", coarser_mesh,
-      "Second mesh, used to estimate the discretisation error of each mode from the difference between both meshes: parameters of the "
-      "section Geometry with their values for the coarser mesh, for example disc_size = 0.019, pad_size = 0.012; or a file (.geo, .msh). "
-      "The difference is at least as large as the error if the elements of the coarser mesh are about twice as large. If Accuracy is set, "
-      "the program chooses the coarser mesh. Empty: no error estimate.");
+      "Second mesh, from which the discretisation error of each mode is estimated. Give parameters of the section Geometry with their "
+      "values for the coarser mesh, for example disc_size = 0.019, pad_size = 0.012, or a file (.geo, .msh). The estimate is at least as "
+      "large as the error if the elements of the coarser mesh are about twice as large. If Accuracy is set, the program chooses the "
+      "coarser mesh. Empty: no error estimate.");
 
     declarations.enter("Band");
     declarations.add(
@@ -36,20 +37,21 @@ namespace Squeal
     declarations.add(
       "Maximum rate", maximum_rate, "1/s",
       "Largest |Re lambda| of the modes in the band. Modes that decay faster are not listed; modes that grow faster are listed. The "
-      "argument principle (Sweep/Count modes at; stability run on a system file, on one process) counts the modes up to this rate; the "
-      "stability run fails if the count differs from the number of modes found. 0: all modes with |lambda| up to 1.005 times the circular "
-      "frequency of the band end are listed, and counts use 0.1 times that frequency.",
+      "argument principle counts the modes up to this rate (Sweep/Count modes at; stability run on a system file, on one process); the "
+      "stability run fails if the count differs from the number of modes found. 0: modes with |lambda| up to 1.005 times the circular "
+      "frequency at the end of the band are listed, and counts use a rate of 0.1 times this frequency.",
       {0.});
   }
 
   void DiscretizationParameters::check() const
   {
     if (!(maximum_frequency > 0.))
-      throw ParameterError("the band ends at " + exact_text(maximum_frequency) + " Hz", "parameter Band/Maximum frequency",
-                           "give a positive frequency");
+      throw ParameterError("the end of the band, " + exact_text(maximum_frequency) + " Hz, is not positive",
+                           "parameter Band/Maximum frequency", "give a positive frequency");
     const double end = circular_frequency(maximum_frequency), least = least_rate * end, greatest = greatest_rate * end;
     if (maximum_rate != 0. && !(maximum_rate >= least && maximum_rate <= greatest))
-      throw ParameterError("the rate " + exact_text(maximum_rate) + " 1/s does not fit the end of the band, " + exact_text(end) + " rad/s",
+      throw ParameterError("the rate " + exact_text(maximum_rate) + " 1/s is out of range for a band that ends at " + exact_text(end) +
+                             " rad/s",
                            "parameter Band/Maximum rate", text("give 0, or a rate from ", least, " to ", greatest, " 1/s"));
   }
 
@@ -70,13 +72,13 @@ namespace Squeal
     declarations.add(
       "Solver", complex_solver,
       "Eigensolver for the quadratic problem. `Krylov`: shift-invert block Krylov method for the quadratic pencil at full order (the "
-      "reference). `residual iteration`: a basis of real modes enriched by right and left residuals, with one Cholesky factor for every "
-      "friction coefficient.");
+      "reference). `residual iteration`: a basis of real modes enriched by right and left residuals, with the same Cholesky factor for "
+      "all friction coefficients.");
     declarations.add(
       "Shift inverse", shift_inverse,
       "Inverse of the nonsymmetric stiffness in the Krylov solver. `updated Cholesky`: Cholesky factor of the frictionless system with a "
       "correction of rank n_c. `sparse LU`: LU factors of the nonsymmetric sparse matrix.");
-    declarations.add("Tolerance", complex_tolerance, "none", "Maximum relative residual of a complex mode of the Krylov solver.",
+    declarations.add("Tolerance", complex_tolerance, "none", "Maximum relative residual of a complex mode from the Krylov solver.",
                      {1e-13, 1e-4});
     declarations.add("Iteration tolerance", iteration_tolerance, "none",
                      "Estimated relative error of lambda at which the residual iteration ends.", {1e-12, 1e-2});
@@ -97,24 +99,24 @@ namespace Squeal
   void OutputParameters::declare(Declarations &declarations)
   {
     declarations.enter("Output");
-    declarations.add("Mode shapes", fields, "Selects the complex modes that are written as fields.");
+    declarations.add("Mode shapes", fields, "Complex modes that are written as fields.");
     declarations.add("Component mode shapes", component_fields,
-                     "Also writes the mode shapes of the separate components, disc and pins, free and sliding.");
+                     "Also writes the mode shapes of disc and pins alone, with free and with sliding contact nodes.");
     declarations.add("Real mode shapes", real_fields, "Also writes the shapes of coupled modes without friction.");
     declarations.add("Animation frames", animation_frames, "none",
                      "Number of frames per period in the animation of an unstable mode; 0: no animation.", {0, 1000});
     declarations.add("Animation periods", animation_periods, "none", "Number of periods in an animation.", {1, 1000});
     declarations.add("Animation growth", animation_growth,
-                     "Scales the mode by its growth e^(R t), a factor of e in 1 / (2 pi divergence rate) periods: 16 periods at a "
-                     "divergence rate of 1 %.");
+                     "Scales the mode by e^(R t): by a factor of e in 1 / (2 pi divergence rate) periods, or 16 periods at a divergence "
+                     "rate of 1 %.");
     declarations.add(
       "Write matrices", write_matrices,
-      "Writes M, C (material damping), K, C_b (contact damping), P_n, P_t, P_b, K_n, T_c of the closed contact nodes in Matrix Market "
-      "format, and the node coordinates.");
+      "Writes the node coordinates and, in Matrix Market format, M, C (material damping) and K, and for the closed contact nodes C_b "
+      "(contact damping), P_n, P_t, P_b, K_n and T_c.");
     declarations.add(
       "Write system", write_system,
-      "Writes the coupled system to the folder system in the results, which the parameter System can read. `full`: all terms. `reduced`: the "
-      "reduced model of a sweep, accurate to Sweep/Tolerance between the first and the last value; of Study = robustness, accurate to "
-      "Robustness/Tolerance within the ranges of its samples; or of each basis of Study = reduction, at the given values.");
+      "Writes the coupled system to the folder system of the results, as input for the parameter System. `full`: all terms. `reduced`: "
+      "the reduced model of a sweep, accurate to Sweep/Tolerance between the first and the last value; of a robustness study, accurate to "
+      "Robustness/Tolerance within the ranges of the samples; or of each basis of Study = reduction.");
   }
 } // namespace Squeal

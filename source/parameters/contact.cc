@@ -38,7 +38,7 @@ namespace Squeal
         throw ParameterError(
                         what, where,
                         "write surface of the disc / surface of another body: friction factor, normal stiffness; ...; the numbers may be "
-                                      "omitted, as in disc_top / pad_outer; disc_bottom / pad_inner: 0.9");
+                                      "omitted, for example disc_top / pad_outer; disc_bottom / pad_inner: 0.9");
       };
       for (const std::string &entry : split_string_list(text, ';'))
         {
@@ -51,16 +51,16 @@ namespace Squeal
           const auto  numbers = halves.size() == 2 ? split_numbers(halves[1], "Contact/Pairs", where) : std::vector<std::string>{"1"};
           const auto  factor = parse_number(numbers[0]), stiffness = numbers.size() > 1 ? parse_number(numbers[1]) : std::optional(0.);
           if (numbers.size() > 2 || !factor || !(*factor > 0.))
-            refuse("the friction factor in " + in_quotes(entry) + " is not a positive number");
+            refuse(in_quotes(entry) + " does not give a positive friction factor, optionally followed by one normal stiffness");
           if (!stiffness || !(*stiffness >= 0.))
             refuse("the normal stiffness in " + in_quotes(entry) + " is not a number >= 0");
           pair.friction_factor  = *factor;
           pair.normal_stiffness = *stiffness;
           if (names[0] == names[1])
-            refuse(in_quotes(names[0]) + " is paired with itself");
+            throw ParameterError(in_quotes(names[0]) + " is paired with itself", where, "pair two different surfaces");
           for (const ContactPair &other : pairs)
             if (other.disc == names[0] && other.pin == names[1])
-              refuse(in_quotes(entry) + " is given twice");
+              throw ParameterError("the pair " + in_quotes(names[0] + " / " + names[1]) + " is given twice", where, "give each pair once");
           pairs.push_back(pair);
         }
       if (pairs.empty())
@@ -78,8 +78,8 @@ namespace Squeal
             continue;
           const auto names = split_string_list(entry, '/');
           if (names.size() != 2 || names[0].empty() || names[1].empty() || names[0] == names[1])
-            throw ParameterError(in_quotes(entry) + " is not a pair of surfaces", where_tied,
-                                 "write surface / other surface; ..., such as lining_back / backplate_front");
+            throw ParameterError(in_quotes(entry) + " is not a pair of different surfaces", where_tied,
+                                 "write surface / other surface; ..., for example lining_back / backplate_front");
           result.push_back({names[0], names[1]});
         }
       return result;
@@ -107,7 +107,8 @@ namespace Squeal
     declarations.add_text(
       "Tied",
       "Bonded surfaces, as a list `surface / other surface; ...`: the nodes of the first surface follow the second surface, and the "
-      "volumes become one body. The meshes need not match; the first surface should be the smaller, finer or softer one. Units: none.",
+      "volumes become one body. The meshes need not match; the first surface should be the smaller, finer or softer of the two. Units: "
+      "none.",
       [this] { return print_tied(tied); }, [this](const std::string &text) { tied = parse_tied(text); });
   }
 
@@ -118,12 +119,12 @@ namespace Squeal
         for (const ContactPair &pair : pairs)
           for (const std::string &surface : {one.slave, one.master})
             if (surface == pair.disc || surface == pair.pin)
-              throw ParameterError("surface " + in_quotes(surface) + " is tied, but also in Contact/Pairs", where_tied,
+              throw ParameterError("surface " + in_quotes(surface) + " is in both Contact/Tied and Contact/Pairs", where_tied,
                                    "remove it from one of the two lists");
         for (const TiedPair &other : tied)
           if (&one != &other && one.slave == other.slave)
-            throw ParameterError("surface " + in_quotes(one.slave) + " is the first of two ties", where_tied,
-                                 "tie each surface to one other surface");
+            throw ParameterError("surface " + in_quotes(one.slave) + " is the first surface of two ties", where_tied,
+                                 "use each surface as the first surface of only one tie");
       }
   }
 } // namespace Squeal

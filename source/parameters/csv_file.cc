@@ -18,7 +18,7 @@ namespace Squeal
 {
   namespace
   {
-    constexpr const char *as_csv_file = "save it as CSV, UTF-8, with commas between values and decimal points";
+    constexpr const char *as_csv_file = "save it as a CSV file in UTF-8, with commas between values and with decimal points";
 
     std::string where_in(const std::string &file, const std::size_t line)
     {
@@ -42,7 +42,7 @@ namespace Squeal
       return content.rfind(utf8_mark, 0) == 0 ? content.substr(3) : content;
     }
 
-    /// Rejects encodings and line ends that prevent reading line by line.
+    /// Rejects encodings and line endings that prevent reading line by line.
     void check_encoding(const std::string &content, const std::string &file)
     {
       const bool is_marked = content.rfind("\xFF\xFE", 0) == 0 || content.rfind("\xFE\xFF", 0) == 0;
@@ -50,27 +50,28 @@ namespace Squeal
         throw ParameterError("the file is not in UTF-8, but apparently in UTF-16", where_in(file, 1), as_csv_file);
       for (auto end = content.find('\r'); end != std::string::npos; end = content.find('\r', end + 1))
         if (end + 1 < content.size() && content[end + 1] != '\n')
-          throw ParameterError("a line ends with a carriage return alone, as in old files of the Macintosh",
+          throw ParameterError("the file contains a carriage return without a line feed, as in files of the classic Mac OS",
                                where_in(file, 1 + std::count(content.begin(), content.begin() + static_cast<std::ptrdiff_t>(end), '\n')),
-                               "end lines with a line feed; " + std::string(as_csv_file));
+                               "end each line with a line feed; " + std::string(as_csv_file));
     }
 
     /// Rejects a header line with separators other than commas.
     void check_separator(const std::string &names, const std::string &where)
     {
       if (names.rfind("sep=", 0) == 0)
-        throw ParameterError("the first line, " + in_quotes(names) + ", names a separator, not the columns", where,
+        throw ParameterError("the first line, " + in_quotes(names) + ", defines a separator instead of naming the columns", where,
                              "remove this line; " + std::string(as_csv_file));
       for (const auto &[separator, name] : {std::pair(';', "semicolons"), std::pair('\t', "tabs")})
         if (names.find(separator) != std::string::npos)
-          throw ParameterError(text("the names of the columns are separated by ", name, ", not by commas"), where, as_csv_file);
+          throw ParameterError(text("the line of column names contains ", name, ", but columns are separated by commas"), where,
+                               as_csv_file);
     }
 
     std::vector<std::string> fields_of(const std::string &line, const std::string &where, const std::string &row)
     {
       if (std::count(line.begin(), line.end(), '"') % 2 != 0)
         throw ParameterError("a quotation mark is not closed in this line", where,
-                             "write each " + row + " in one line, and quote the whole of a value that contains commas");
+                             "write each " + row + " on one line, and enclose the whole of a value that contains commas in quotes");
       using Separator = boost::escaped_list_separator<char>;
       std::vector<std::string> result;
       for (const std::string &field : boost::tokenizer<Separator>(line, Separator('\0', ',', '"')))
@@ -85,7 +86,7 @@ namespace Squeal
         return;
       const bool is_last = nameless + 1 == names.end();
       throw ParameterError(text("column ", nameless - names.begin() + 1, " has no name", is_last ? ": the line ends with a comma" : ""),
-                           where, is_last ? "remove the comma at the end of every line" : "name each column");
+                           where, is_last ? "remove the comma at the end of each line" : "name each column");
     }
 
     void check_number_of_values(const std::vector<std::string> &values,
@@ -96,13 +97,15 @@ namespace Squeal
       if (values.size() == n_names)
         return;
       const bool        is_comma_more = values.size() == n_names + 1 && values.back().empty();
-      const std::string separator     = line.find(';') != std::string::npos  ? ", separated by semicolons" :
-                                        line.find('\t') != std::string::npos ? ", separated by tabs" :
+      const std::string separator     = line.find(';') != std::string::npos  ? "; the line contains semicolons" :
+                                        line.find('\t') != std::string::npos ? "; the line contains tabs" :
                                                                                "";
       throw ParameterError(
-        text(values.size(), values.size() == 1 ? " value is" : " values are", " below ", n_names, n_names == 1 ? " name" : " names",
-             is_comma_more ? ": the line ends with a comma" : separator),
-        where, "give one value for each name, with decimal points; quote values that contain commas" + decimal_point_hint(line));
+        text("the line has ", values.size(), values.size() == 1 ? " value" : " values", ", but the table has ", n_names,
+             n_names == 1 ? " column" : " columns", is_comma_more ? "; the line ends with a comma" : separator),
+        where,
+        "give one value for each column, with decimal points and without a comma at the end; quote values that contain commas" +
+          decimal_point_hint(line));
     }
   } // namespace
 
@@ -117,7 +120,7 @@ namespace Squeal
     const auto         value = parse_number(cell);
     if (!value)
       throw ParameterError(in_quotes(cell) + " in column " + in_quotes(names[column]) + " is not a finite number", where[row],
-                           "write a number with a decimal point" + decimal_point_hint(cell));
+                           "write a finite number, with a decimal point if necessary" + decimal_point_hint(cell));
     return *value;
   }
 
@@ -125,7 +128,7 @@ namespace Squeal
   {
     for (std::size_t i = 0; i < names.size(); ++i)
       if (column(names[i]) < i)
-        throw ParameterError("column " + in_quotes(names[i]) + " occurs twice", where_names, "remove one of them");
+        throw ParameterError("column " + in_quotes(names[i]) + " occurs twice", where_names, "rename or remove one of these columns");
   }
 
   std::string input_path(const std::string &name, const std::string &parameter_directory)
@@ -166,9 +169,10 @@ namespace Squeal
       }
     if (result.names.empty())
       throw ParameterError("the file of " + row + "s is empty", "file " + path,
-                           "write names in the first line, then one " + row + " per line");
+                           "write column names in the first line, then one " + row + " per line");
     if (result.rows.empty())
-      throw ParameterError("the file has names, but no " + row, result.where_names, "write a " + row + " per line below the names");
+      throw ParameterError("the file has column names, but no " + row, result.where_names,
+                           "write one " + row + " per line below the column names");
     return result;
   }
 } // namespace Squeal

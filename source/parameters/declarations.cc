@@ -24,7 +24,7 @@ namespace Squeal
     {
       const std::string given = value.empty() ? "but is empty" : "not " + (parse_number(value) ? legible(value) : in_quotes(value));
       throw ParameterError(path + " must " + demand + ", " + given, "",
-                           "give " + accepted + decimal_point_hint(value) + "; squeal --print-parameters shows its meaning");
+                           "give " + accepted + decimal_point_hint(value) + "; squeal --print-parameters describes the parameter");
     }
 
     /// A type of number, and its description in messages.
@@ -38,7 +38,7 @@ namespace Squeal
 
       Range       range;
       bool        is_integer;
-      std::string unit; ///< unit after a blank; empty for a number without a unit, or with several
+      std::string unit; ///< unit after a blank; empty without a unit or with several units
 
       /// Bounds as text: "0 ... 10", ">= 0" or "<= 10"; empty if there are none.
       std::string bounds() const
@@ -62,7 +62,7 @@ namespace Squeal
         return noun + (in ? " in" : "") + (bounds().empty() ? "" : " ") + bounds() + unit;
       }
 
-      /// Parses a number. Rejects any other text, naming the parameter @p path.
+      /// Parses a number. Throws ParameterError naming @p path if the text or the value is invalid.
       double parse(const std::string &path, const std::string &text) const
       {
         constexpr int     largest_integer = std::numeric_limits<int>::max();
@@ -126,9 +126,9 @@ namespace Squeal
                         [&values, kind, path, accepted, most_numbers](const std::string &text) {
                           const auto parts = split_numbers(text, path, "");
                           if (parts.size() > most_numbers)
-                            throw ParameterError(path + " has " + std::to_string(parts.size()) + " values, but takes at most " +
+                            throw ParameterError(path + " has " + std::to_string(parts.size()) + " values, but accepts at most " +
                                                    std::to_string(most_numbers),
-                                                 "", "give " + accepted);
+                                                 "", "give at most " + std::to_string(most_numbers) + " " + accepted);
                           values.clear();
                           for (const std::string &part : parts)
                             values.push_back(kind.parse(path + ", value " + std::to_string(values.size() + 1) + ",", part));

@@ -28,13 +28,13 @@ namespace Squeal
     using dealii::Utilities::split_string_list;
     using dealii::Utilities::trim;
 
-    /// Maximum number of designs: a larger number is probably a typo, as full grids grow quickly.
+    /// Maximum number of designs: a larger number is probably a typo, because full grids grow quickly.
     constexpr std::size_t most_designs = 100000;
 
     constexpr const char *where_variables = "parameter Designs/Variables";
-    const std::string     how_to_write    = "write Section/Name = a, b, c; or Section/Name = a to b in n";
+    const std::string     how_to_write    = "write Section/Name = a, b, c or Section/Name = a to b in n";
 
-    /// A rounded value of a range: six digits, and more if the range is narrow, so that designs differ.
+    /// Value of a range, rounded to six digits, or to more digits if the range is narrow, so that designs differ.
     std::string rounded(const double value, const double first, const double last)
     {
       constexpr int      most_digits = 17;
@@ -57,7 +57,7 @@ namespace Squeal
       return *value;
     }
 
-    /// "0.03 to 0.05 in 5 by ratio"
+    /// Parses a range, for example "0.03 to 0.05 in 5 by ratio".
     void parse_range(const std::string &text, const std::string &entry, DesignVariable &variable)
     {
       std::string       rest  = single_spaced(text);
@@ -72,20 +72,22 @@ namespace Squeal
       variable.first    = number(rest.substr(0, to), entry);
       variable.last     = number(rest.substr(to + 4, in == std::string::npos ? in : in - to - 4), entry);
       if (!(variable.first < variable.last))
-        refuse("the range in " + in_quotes(entry) + " does not ascend");
+        refuse("the range in " + in_quotes(entry) + " does not ascend", "give a last value above the first");
       if (variable.by_ratio && !(variable.first > 0.))
-        refuse("the range in " + in_quotes(entry) + " begins at " + exact_text(variable.first) + ", which has no ratios",
-               "begin with a positive number, or leave out `by ratio`");
+        refuse("the range in " + in_quotes(entry) + " begins at " + exact_text(variable.first) +
+                 ", but `by ratio` requires positive values",
+               "begin with a positive number, or remove `by ratio`");
       if (in == std::string::npos)
         return;
       const double n = number(rest.substr(in + 4), entry);
       if (n != std::floor(n) || n < 2. || n > most_designs)
-        refuse("the number of levels in " + in_quotes(entry) + " is " + exact_text(n), "give two or more");
+        refuse("the number of levels in " + in_quotes(entry) + " is " + exact_text(n),
+               "give an integer from 2 to " + std::to_string(most_designs));
       for (int i = 0; i < static_cast<int>(n); ++i)
         variable.levels.push_back(i + 1 < n ? variable.at(i / (n - 1.)) : exact_text(variable.last));
     }
 
-    /// Path and number of "Section/Name[3]"; the number is zero without an index.
+    /// Path and index of "Section/Name[3]"; the index is zero if the name has none.
     std::pair<std::string, unsigned int> split_index(const std::string &name, const std::string &where = where_variables)
     {
       const auto bracket = name.find('[');
@@ -93,7 +95,7 @@ namespace Squeal
         return {name, 0};
       const auto number = parse_number(name.substr(bracket + 1, name.size() - bracket - 2));
       if (name.back() != ']' || !number || *number != std::floor(*number) || *number < 1. || *number > 1e6)
-        throw ParameterError(in_quotes(name) + " does not give the varied number", where, "write Section/Name[k] with k >= 1");
+        throw ParameterError(in_quotes(name) + " has an invalid index", where, "write Section/Name[k] with an integer k from 1 to 1000000");
       return {trim(name.substr(0, bracket)), static_cast<unsigned int>(*number)};
     }
 
@@ -117,12 +119,12 @@ namespace Squeal
               if (sets.first == path && (sets.second == k || sets.second == 0 || k == 0))
                 throw ParameterError(in_quotes(path) + " varies twice: in " + in_quotes(other) +
                                        (other == several ? "" : " and in " + in_quotes(several)),
-                                     where, "give each parameter once");
+                                     where, "vary each number of a parameter only once");
             known.push_back({several, {path, k}});
           }
     }
 
-    /// Normalised value, to detect equal ones: "1, 2" for "1.0,2".
+    /// Normalised value for comparisons: "1, 2" for "1.0,2".
     std::string plain(const std::string &value)
     {
       std::string result;
@@ -156,7 +158,7 @@ namespace Squeal
           DesignVariable    variable{single_spaced(entry.substr(0, equals)), {}};
           const std::string values = trim(entry.substr(equals + 1));
           if (variable.name.empty())
-            refuse(in_quotes(entry) + " names no parameter");
+            refuse(in_quotes(entry) + " has no parameter name before `=`");
           if ((' ' + single_spaced(values)).find(" to ") != std::string::npos)
             parse_range(values, entry, variable);
           else
@@ -165,13 +167,13 @@ namespace Squeal
                                                                         split_numbers(values, variable.name, where_variables);
               variable.levels.erase(std::remove(variable.levels.begin(), variable.levels.end(), ""), variable.levels.end());
               if (variable.levels.empty())
-                refuse(in_quotes(entry) + " has no values");
+                refuse(in_quotes(entry) + " has no values after `=`");
             }
           refuse_equal_levels(variable);
           result.push_back(variable);
         }
       if (result.empty())
-        refuse("no parameter varies");
+        refuse("no varied parameter is given");
       refuse_repeated(names_of(result), where_variables);
       return result;
     }
@@ -181,7 +183,7 @@ namespace Squeal
       for (const DesignVariable &variable : variables)
         if (variable.levels.empty())
           refuse("the range of " + in_quotes(variable.name) + " has no levels",
-                 "append `in n`; or set Designs/Plan = Latin hypercube or Sobol sequence, which sample ranges");
+                 "append `in n`, or set Designs/Plan = Latin hypercube or Sobol sequence to sample the range");
     }
 
     std::vector<std::vector<std::string>> full_grid(const std::vector<DesignVariable> &variables)
@@ -190,7 +192,8 @@ namespace Squeal
       for (const DesignVariable &variable : variables)
         n *= static_cast<double>(variable.levels.size());
       if (n > most_designs)
-        refuse(text("the full grid has ", n, " designs"), "use fewer levels, or a Latin hypercube");
+        refuse(text("the full grid has ", n, " designs, more than ", most_designs),
+               "use fewer levels, or set Designs/Plan = Latin hypercube");
       std::vector<std::vector<std::string>> result = {{}};
       for (const DesignVariable &variable : variables)
         {
@@ -263,8 +266,9 @@ namespace Squeal
             return {i, end - start};
           i += end - start;
         }
-      throw ParameterError(Squeal::text("the value ", in_quotes(text), " has ", n, n == 1 ? " number" : " numbers", ", not ", k),
-                           where_variables, "count the numbers from one");
+      throw ParameterError(
+        Squeal::text("the value ", in_quotes(text), " has ", n, n == 1 ? " number" : " numbers", ", but number ", k, " is varied"),
+        where_variables, "give an index up to the number of numbers, counted from 1");
     }
   } // namespace
 

@@ -16,11 +16,11 @@ namespace Squeal
     declarations.add(
       "Variables", variables,
       "Varied parameters and their values, as `Section/Name = values; ...`. Values are a list `a, b, c` (`a | b` if values contain "
-      "commas), or a range `a to b`, with `in n` for n levels, and with `by ratio` for levels with a constant ratio. `Section/Name[k]` is "
-      "the k-th number of a parameter that is a list; names joined by `+` take the same value.");
+      "commas), or a range `a to b`, with `in n` for n levels and `by ratio` for geometric instead of linear spacing. `Section/Name[k]` "
+      "is the k-th number of a parameter that is a list; names joined by `+` take the same value.");
     declarations.add(
       "File", file,
-      "CSV file of designs: names as in Variables in the first line, then one design per line. The program looks in the folder of the "
+      "CSV file of designs: names as in Variables in the first line, then one design per line. It is searched for in the folder of the "
       "parameter file, then in the current directory.");
     declarations.add("Number of designs", n_samples, "none", "Number of samples of a Latin hypercube or a Sobol sequence.", {1., 1e5});
     declarations.add("Seed", seed, "none", "Seed of the random numbers: equal seeds give equal designs.", {0., 2147483647.});
@@ -43,7 +43,7 @@ namespace Squeal
     declarations.add("Samples", n_samples, "none",
                      "Number of points of a Sobol sequence that are evaluated first; the method starts from the best of these points.",
                      {1., 1e5});
-    declarations.add("Evaluations", n_evaluations, "none", "Maximum number of solved designs, including samples.", {1., 1e5});
+    declarations.add("Evaluations", n_evaluations, "none", "Maximum number of solved designs, including the samples.", {1., 1e5});
     declarations.add("First step", first_step, "none", "First step of the method, as a fraction of each range.", {1e-6, 0.5});
     declarations.add("Smallest step", smallest_step, "none", "The method ends when its steps are smaller than this fraction of each range.",
                      {1e-9, 0.5});
@@ -52,10 +52,10 @@ namespace Squeal
   void SearchParameters::check() const
   {
     if (n_samples > n_evaluations)
-      throw ParameterError(text(n_samples, " samples exceed the ", n_evaluations, " allowed evaluations"), "parameter Search/Samples",
-                           "lower it, or raise Search/Evaluations");
+      throw ParameterError(text("the number of samples, ", n_samples, ", exceeds the number of evaluations, ", n_evaluations),
+                           "parameter Search/Samples", "lower it or raise Search/Evaluations");
     if (smallest_step > first_step)
-      throw ParameterError("the smallest step " + exact_text(smallest_step) + " is larger than the first, " + exact_text(first_step),
-                           "parameter Search/Smallest step", "give a smaller one");
+      throw ParameterError("the smallest step, " + exact_text(smallest_step) + ", is larger than the first step, " + exact_text(first_step),
+                           "parameter Search/Smallest step", "lower it or raise Search/First step");
   }
 } // namespace Squeal

@@ -21,16 +21,16 @@ namespace Squeal
       throw ParameterError(what, "Geometry/" + name, change);
     }
 
-    /// Minimum memory limit: more than twice the memory that Gmsh needs before it meshes [GB].
+    /// Minimum memory limit, more than twice the memory that Gmsh needs before meshing [GB].
     constexpr double least_memory_limit = 1.;
 
     void check_format(const std::string &file)
     {
       const std::string format = std::filesystem::path(file).extension().string();
       if (!is_script(file) && format != ".msh")
-        refuse("The format of Geometry/File = " + legible(file) +
+        refuse("the format of Geometry/File = " + legible(file) +
                  (format.empty() ? " is unknown" : ", " + legible(format) + ", is not supported"),
-               "File", "give a Gmsh geometry (.geo) or a Gmsh mesh (.msh) with named parts; Gmsh converts meshes of other formats to .msh");
+               "File", "give a Gmsh geometry (.geo) or a Gmsh mesh (.msh) with named parts; Gmsh converts other mesh formats to .msh");
     }
 
     void check_positive(const double value, const std::string &name)
@@ -47,9 +47,8 @@ namespace Squeal
         return;
       const bool is_below_nearest = nodes_per_pin_face < below || nodes_per_pin_face - below <= above - nodes_per_pin_face;
       refuse(text("Geometry/Nodes per pin face is ", nodes_per_pin_face,
-                  ", but a pin is filled by three blocks of k x k elements, which gives 3 k (k + 1) + 1 nodes: "
-                  "7, 19, 37, 61, ..."),
-             "Nodes per pin face", text("the nearest allowed value is ", is_below_nearest ? below : above));
+                  ", but three blocks of k x k elements give 3 k (k + 1) + 1 nodes: 7, 19, 37, 61, ..."),
+             "Nodes per pin face", text("set it to the nearest allowed value, ", is_below_nearest ? below : above));
     }
 
     /// Checks the pin positions of one side; @p side is "Top" or "Bottom".
@@ -58,23 +57,20 @@ namespace Squeal
       const std::string radii_name = side + " pin radii", angles_name = side + " pin angles";
       const double      pin_radius = parameters.pin_diameter / 2.;
 
-      // Pins must be inside the annulus
       for (std::size_t i = 0; i < layout.radii.size(); ++i)
         {
           const double inside  = parameters.disc_inner_radius - (layout.radii[i] - pin_radius);
           const double outside = layout.radii[i] + pin_radius - parameters.disc_outer_radius;
           if (inside >= 0. || outside >= 0.)
-            refuse(text("Geometry/", radii_name, ": pin ", i + 1, ", on radius ", exact_text(layout.radii[i]), " m with diameter ",
-                        exact_text(parameters.pin_diameter), " m, reaches ", std::max(inside, outside), " m beyond the ",
-                        inside >= outside ? "inner" : "outer", " radius of the disc (",
+            refuse(text("Geometry/", radii_name, ": pin ", i + 1, ", at radius ", exact_text(layout.radii[i]), " m with diameter ",
+                        exact_text(parameters.pin_diameter), " m, is not inside the disc: it extends ", std::max(inside, outside),
+                        " m beyond the ", inside >= outside ? "inner" : "outer", " radius of the disc (",
                         inside >= outside ? parameters.disc_inner_radius : parameters.disc_outer_radius, " m)"),
                    radii_name,
-                   text("a radius between ", parameters.disc_inner_radius + pin_radius, " m and ",
-                        parameters.disc_outer_radius - pin_radius,
-                        " m, both excluded, keeps the pin on the disc; or make the pin smaller"));
+                   text("give a radius between ", parameters.disc_inner_radius + pin_radius, " m and ",
+                        parameters.disc_outer_radius - pin_radius, " m, both excluded, or make the pin smaller"));
         }
 
-      // Pins must not overlap
       const double to_radians = std::acos(-1.) / 180.;
       for (std::size_t i = 0; i < layout.radii.size(); ++i)
         for (std::size_t j = i + 1; j < layout.radii.size(); ++j)
@@ -84,7 +80,7 @@ namespace Squeal
                                               4. * layout.radii[i] * layout.radii[j] * std::pow(std::sin(angle / 2.), 2));
             if (distance <= parameters.pin_diameter)
               refuse(text("Geometry/", angles_name, ": pins ", i + 1, " and ", j + 1, " of this side overlap by ",
-                          parameters.pin_diameter - distance, " m: their axes are ", distance, " m apart, their diameter is ",
+                          parameters.pin_diameter - distance, " m: their axes are ", distance, " m apart, and their diameter is ",
                           exact_text(parameters.pin_diameter), " m"),
                      angles_name, text("move one of them in angle or radius (", radii_name, "), or make the pins smaller"));
           }
@@ -94,17 +90,17 @@ namespace Squeal
     {
       const std::string &name = variable.declaration.name;
       declarations.add_text(
-        name, "Variable of the geometry; empty: the value in the geometry, " + variable.declaration.value + ". Units: as in the geometry.",
+        name, "Variable of the geometry file; empty: the value in the file, " + variable.declaration.value + ". Units: as in the geometry.",
         [&variable] { return variable.value ? exact_text(*variable.value) : ""; },
         [&variable, name](const std::string &text) {
           variable.value = parse_number(text);
           if (!variable.value && !text.empty())
             refuse("Geometry/" + name + " is " + in_quotes(text) + ", which is not a finite number", name,
-                   "give a number, or leave it empty for the value in the geometry" + decimal_point_hint(text));
+                   "give a number, or leave it empty for the value in the geometry file" + decimal_point_hint(text));
         });
     }
 
-    /// True if a Gmsh mesh has physical volumes. Their names are stored as text in binary files as well.
+    /// True if a Gmsh mesh has physical volumes, whose names are stored as text even in binary files.
     bool has_volumes(const std::string &mesh)
     {
       std::ifstream stream(mesh, std::ios::binary);
@@ -191,10 +187,10 @@ namespace Squeal
     declarations.enter("Geometry");
     declarations.add(
       "File", file,
-      "Geometry or mesh of disc and pins: a Gmsh script (.geo) or a Gmsh mesh (.msh). The program looks in the folder of the parameter "
-      "file, in the current directory, then among the supplied geometries. A file with physical volumes is a solid model and is used "
-      "unchanged. A file with only physical surfaces and curves is a plan: a planar geometry that is meshed and extruded. A .geo can use "
-      "every parameter below as a variable, and its own variables (DefineConstant, DefineNumber) become parameters of this section.");
+      "Geometry or mesh of disc and pins: a Gmsh script (.geo) or a Gmsh mesh (.msh). The file is searched for in the folder of the "
+      "parameter file, in the current directory, then among the supplied geometries. A file with physical volumes is a solid model and is "
+      "used unchanged. A file with only physical surfaces and curves is a plan: a planar geometry that is meshed and extruded. A .geo can "
+      "use every parameter below as a variable, and its own variables (DefineConstant, DefineNumber) become parameters of this section.");
     declarations.add("Disc inner radius", disc_inner_radius, "m", "Radius of the bore of the disc.", {0.});
     declarations.add("Disc outer radius", disc_outer_radius, "m", "Radius of the rim of the disc.", {0.});
     declarations.add("Disc thickness", disc_thickness, "m", "Thickness of the disc, which is symmetric about z = 0.", {0.});
@@ -238,7 +234,7 @@ namespace Squeal
     declarations.add(
       "Allow shell commands", allow_shell_commands,
       "Allows a .geo to start programs, to create, write and remove files, and to use the network. If the operating system cannot forbid "
-      "these actions, a note is printed. Set to true only for files in which you trust every line.");
+      "these actions, a note is printed. Set it to true only if you trust every line.");
     declarations.add("Meshing time limit", meshing_time_limit, "s", "Time limit for Gmsh.", {0.});
     declarations.add("Meshing memory limit", meshing_memory_limit, "GB", "Memory limit for Gmsh.", {0.});
     for (Variable &variable : variables)
@@ -247,9 +243,8 @@ namespace Squeal
 
   void GeometryParameters::check() const
   {
-    // Sizes and counts
     if (file.empty())
-      refuse("Geometry/File is empty", "File", "name a .geo or .msh, or remove the line for disc_pins.geo");
+      refuse("Geometry/File is empty", "File", "name a .geo or .msh file, or remove the line to use disc_pins.geo");
     check_format(file);
     check_positive(disc_inner_radius, "Disc inner radius");
     check_positive(disc_outer_radius, "Disc outer radius");
@@ -260,7 +255,7 @@ namespace Squeal
     check_positive(pairing_tolerance, "Pairing tolerance");
     check_positive(meshing_time_limit, "Meshing time limit");
     if (!(meshing_memory_limit >= least_memory_limit))
-      refuse(text("Geometry/Meshing memory limit is ", exact_text(meshing_memory_limit), " GB, not enough to start Gmsh"),
+      refuse(text("Geometry/Meshing memory limit is ", exact_text(meshing_memory_limit), " GB, which is not enough for Gmsh"),
              "Meshing memory limit", text("set it to at least ", exact_text(least_memory_limit), " GB"));
     check_positive(pin_layers, "Pin layers");
     check_positive(disc_layers, "Disc layers");
@@ -268,18 +263,20 @@ namespace Squeal
 
     const auto check_lengths = [](const PinLayout &layout, const char *side) {
       if (layout.radii.size() != layout.angles.size())
-        refuse(text("Geometry/", side, " pin radii has ", layout.radii.size(), " values, ", side, " pin angles has ", layout.angles.size()),
+        refuse(text("Geometry/", side, " pin radii has ", layout.radii.size(), " values, but Geometry/", side, " pin angles has ",
+                    layout.angles.size()),
                text(side, " pin angles"), "give every pin one radius and one angle");
     };
     check_lengths(top, "Top");
     check_lengths(bottom, "Bottom");
 
-    // Pairs must be unambiguous: neighbours on a contact face are at least one element apart
+    // Keep pairs unambiguous: the tolerance must be less than half the distance between neighbouring nodes
     if (pairing_tolerance >= element_size / 2.)
-      refuse(text("Geometry/Pairing tolerance is ", exact_text(pairing_tolerance), " m with elements of ", exact_text(element_size), " m"),
-             "Pairing tolerance", "set it far below the element size; 1e-6 m suits most geometries");
+      refuse(text("Geometry/Pairing tolerance is ", exact_text(pairing_tolerance), " m, not less than half the element size, ",
+                  exact_text(element_size / 2.), " m"),
+             "Pairing tolerance", "set it to a small fraction of the element size; 1e-6 m suits most geometries");
 
-    // For the built-in plan only; user geometries need not use these parameters
+    // Check the built-in plan only: custom geometries need not use these parameters
     if (std::filesystem::path(file).filename() != "disc_pins.geo")
       return;
     if (disc_inner_radius >= disc_outer_radius)
@@ -288,22 +285,21 @@ namespace Squeal
              "Disc inner radius", "set it below the outer radius");
     const double width = disc_outer_radius - disc_inner_radius;
     if (element_size > width / 2.)
-      refuse(text("Geometry/Element size is ", exact_text(element_size), " m, but the disc is only ", width, " m wide between its radii"),
-             "Element size", text("set it to at most ", width / 2., " m, better a fraction of that"));
+      refuse(text("Geometry/Element size is ", exact_text(element_size), " m, but the annulus of the disc is only ", width, " m wide"),
+             "Element size", text("set it to at most ", width / 2., " m, preferably much less"));
     if (element_size > disc_inner_radius)
       refuse(text("Geometry/Element size is ", exact_text(element_size), " m, but the bore has a radius of only ",
                   exact_text(disc_inner_radius), " m"),
-             "Element size", text("set it to at most ", exact_text(disc_inner_radius), " m, better a fraction of that"));
+             "Element size", text("set it to at most ", exact_text(disc_inner_radius), " m, preferably much less"));
     if (top.radii.empty() && bottom.radii.empty())
-      refuse("Geometry/Top pin radii and Geometry/Bottom pin radii are both empty, so there is no contact", "Top pin radii",
-             "place at least one pin");
+      refuse("Geometry/Top pin radii and Geometry/Bottom pin radii are both empty", "Top pin radii",
+             "give the radius and the angle of at least one pin");
     check_layout(top, "Top", *this);
     check_layout(bottom, "Bottom", *this);
   }
 
   namespace
   {
-    /// The number times the factor, rounded, but at least one.
     unsigned int scaled(const double number, const double factor)
     {
       return std::max(1L, std::lround(number * factor));
@@ -317,10 +313,11 @@ namespace Squeal
                                               std::make_pair("pin_layers", "Pin layers")})
       if (used.count(variable) == 0)
         throw ParameterError(
-          text("the mesh of Geometry/File = ", in_quotes(geometry.file), " cannot be refined: it does not use Geometry/", parameter),
+          text("the mesh density of Geometry/File = ", in_quotes(geometry.file), " cannot be changed: the file does not use Geometry/",
+               parameter),
           "parameter Geometry/File",
-          text("give a plan to be extruded, or a script (.geo) that uses the variables element_size, "
-               "disc_layers and pin_layers; or do not use other mesh sizes"));
+          text("give a script (.geo) that uses element_size, disc_layers and pin_layers (in a plan, only element_size); or set Accuracy = "
+               "as given and a Study other than accuracy"));
   }
 
   GeometryParameters refined(const GeometryParameters &geometry, const double factor)

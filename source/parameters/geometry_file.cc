@@ -42,7 +42,6 @@ namespace Squeal
       });
     }
 
-    /// Nesting depth of brackets, and whether the position is in a string.
     struct Nesting
     {
       int  depth     = 0;
@@ -56,7 +55,7 @@ namespace Squeal
       }
     };
 
-    /// Text between a bracket and its counterpart; empty if there is none.
+    /// Text between a bracket and its counterpart; empty if the bracket is not closed.
     std::string inside_brackets(const std::string &text, const std::size_t open)
     {
       Nesting nesting;
@@ -87,7 +86,7 @@ namespace Squeal
       return result;
     }
 
-    /// Text of the option Name "..." of a number.
+    /// Value of the option Name "..." of DefineNumber; empty if it is missing.
     std::string onelab_name(const std::vector<std::string> &options)
     {
       const Pattern name = Pattern::compile(R"re(Name\s*"([^"]*)".*)re");
@@ -132,7 +131,7 @@ namespace Squeal
           return candidate.lexically_normal().string();
         searched += (searched.empty() ? "" : ", ") + candidate.lexically_normal().parent_path().string();
       }
-    throw MeshError("There is no geometry '" + legible(name) + "'", searched, "set Geometry/File to an existing .geo or .msh");
+    throw MeshError("there is no geometry '" + legible(name) + "'", searched, "set Geometry/File to an existing .geo or .msh file");
   }
 
   bool is_supplied(const std::string &geometry)

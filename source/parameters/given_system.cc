@@ -32,9 +32,9 @@ namespace Squeal
   {
     declarations.add(
       "System", file,
-      "Folder with a system.json and its matrices, or path of the system.json: the run uses this system instead of a mesh. Available for "
-      "stability, reduction, sweep, sensitivity, geometry (designs), search (with uncertain parameters), robustness and updating. Empty: "
-      "the system is computed from the geometry.");
+      "Folder that contains system.json and its matrices, or path of system.json. The run uses this system instead of a mesh. Available "
+      "for stability, reduction, sweep, sensitivity, geometry (designs), search (with uncertain parameters), robustness and updating. "
+      "Empty: the system is computed from the geometry.");
     declarations.add_text(
       "System values", "Parameter values that replace the values in the system file, for example mu = 0.3, omega = 12.6.",
       [this] {
@@ -52,8 +52,8 @@ namespace Squeal
             const auto sides = trimmed_parts(part, "=");
             const auto value = sides.size() == 2 ? parse_number(sides[1]) : std::nullopt;
             if (!value || sides[0].empty() || !values.emplace(sides[0], *value).second)
-              throw ParameterError(in_quotes(part) + " does not assign one value to one parameter", "parameter System values",
-                                   "write name = number, separated by commas");
+              throw ParameterError(in_quotes(part) + " is not of the form name = number, or its parameter is set twice",
+                                   "parameter System values", "write name = number, separated by commas, and give each name once");
           }
       });
   }
@@ -62,15 +62,15 @@ namespace Squeal
   {
     const auto parts  = trimmed_parts(given, ",");
     const auto refuse = [&](const std::string &what) {
-      throw ParameterError(what, where, "write name, first value, last value, number of values: omega, 6.28, 25.1, 31");
+      throw ParameterError(what, where, "write name, first value, last value and number of values, for example omega, 6.28, 25.1, 31");
     };
     if (parts.size() != 4 || parts[0].empty())
       refuse(in_quotes(given) + " is not a range of a parameter");
     const auto first = parse_number(parts[1]), last = parse_number(parts[2]), number = parse_number(parts[3]);
     if (!first || !last || !(*first < *last))
-      refuse(text("the values ", in_quotes(parts[1]), " and ", in_quotes(parts[2]), " do not ascend"));
+      refuse(text(in_quotes(parts[1]), " and ", in_quotes(parts[2]), " are not two ascending numbers"));
     if (!number || *number != static_cast<unsigned int>(*number) || *number < 2 || *number > 100000)
-      refuse(in_quotes(parts[3]) + " is not a number of values from 2 to 100000");
+      refuse("the number of values, " + in_quotes(parts[3]) + ", is not an integer from 2 to 100000");
     return {parts[0], {*first, *last, static_cast<unsigned int>(*number)}};
   }
 } // namespace Squeal

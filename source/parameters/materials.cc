@@ -21,7 +21,7 @@ namespace Squeal
                                    {3}};
 
     const ListFormat dashpot_list = {"Mounts/Dashpots",
-                                     "not a list of dashpots",
+                                     "not a dashpot",
                                      "surface: radial, tangential, axial; surface: ... [N s/m^3]",
                                      "surface",
                                      {3}};
@@ -44,13 +44,13 @@ namespace Squeal
 
     const ListFormat axes_list = {"Materials/Axes",
                                   "not the axes of a volume",
-                                  "volume: x, y, z of a vector along axis 1, x, y, z of a second one in the plane of axes 1 and 2; "
-                                  "volume: ...",
+                                  "volume: x, y, z, x, y, z; volume: ..., with a vector along axis 1 and a second vector in the plane of "
+                                  "axes 1 and 2",
                                   "volume",
                                   {6}};
 
-    /// Smallest determinant of the compliance relative to the product of its diagonal; 4.5e-4 for an isotropic material with ν = 0.4999
-    /// [-].
+    /// Smallest determinant of the compliance relative to the product of its diagonal [-]; 4.5e-4 for an isotropic material with ν =
+    /// 0.4999.
     constexpr double least_determinant = 4e-4;
 
     /// Sine of the angle between two vectors below which they count as parallel.
@@ -68,7 +68,7 @@ namespace Squeal
                        {0.});
       declarations.add(
         "Rayleigh beta", material.rayleigh_beta, "s",
-        "Coefficient beta of stiffness-proportional damping of the material, without mounts: the damping ratio of a mode with circular "
+        "Coefficient beta of stiffness-proportional damping of the material, excluding mounts: the damping ratio of a mode with circular "
         "frequency omega is beta omega / 2.",
         {0.});
     }
@@ -81,14 +81,14 @@ namespace Squeal
       const auto        refuse = [&](const std::string &what, const std::string &change) { throw ParameterError(what, where, change); };
       for (const auto &[name, value] : {std::pair("E1", E1), {"E2", o.E2}, {"E3", o.E3}, {"G12", o.G12}, {"G13", o.G13}, {"G23", o.G23}})
         if (!(value > 0.))
-          refuse(text(name, " is ", exact_text(value), " Pa"), "give positive moduli");
-      const std::string convention  = "nu12 = -eps2/eps1 under stress along axis 1, so that nu12/E1 = nu21/E2: exchange nu_ij and nu_ji "
-                                      "if yours follow the other convention";
+          refuse(text(name, " is ", exact_text(value), " Pa, but must be positive"), "give positive moduli");
+      const std::string convention  = "exchange nu_ij and nu_ji if your constants do not follow the convention nu12 = -eps2/eps1 under "
+                                      "stress along axis 1 (nu12/E1 = nu21/E2)";
       const auto        check_ratio = [&](const char *axes, const double nu, const double E_i, const double E_j) {
         if (!(nu * nu < E_i / E_j))
           refuse(text("the strain energy is not positive: nu", axes, "^2 is ", nu * nu, ", not below E", axes[0], "/E", axes[1], " = ",
                              E_i / E_j),
-                        convention);
+                        "give a Poisson's ratio of smaller magnitude; " + convention);
       };
       check_ratio("12", nu12, E1, o.E2);
       check_ratio("13", o.nu13, E1, o.E3);
@@ -98,8 +98,8 @@ namespace Squeal
       if (!(determinant >= least_determinant))
         refuse(text("the strain energy is not positive, or the material is almost incompressible: 1 - nu12^2 E2/E1 - nu13^2 E3/E1 - nu23^2 "
                     "E3/E2 - 2 nu12 nu13 nu23 E3/E1 is ",
-                    determinant, ", not at least ", least_determinant),
-               "give smaller Poisson's ratios; " + convention);
+                    determinant, ", but must be at least ", least_determinant),
+               "give Poisson's ratios of smaller magnitude; " + convention);
     }
 
     void check_axes(const MaterialAxes &axes)
@@ -109,9 +109,10 @@ namespace Squeal
       const double      sizes = std::hypot(v[0], v[1], v[2]) * std::hypot(v[3], v[4], v[5]);
       const std::string where = "parameter Materials/Axes, volume " + legible(axes.volume);
       if (!(sizes > 0.))
-        throw ParameterError("a vector is zero", where, "give two nonzero vectors");
+        throw ParameterError("a vector of the axes is zero", where, "give two nonzero vectors");
       if (!(cross > least_sine * sizes))
-        throw ParameterError("the two vectors are parallel", where, "give two vectors that span the plane of axes 1 and 2");
+        throw ParameterError("the two vectors are parallel or nearly parallel", where,
+                             "give two vectors that span the plane of axes 1 and 2");
     }
 
     std::function<double &(VolumeMaterial &)> orthotropic_number(double Orthotropy::*number)
@@ -131,12 +132,13 @@ namespace Squeal
       };
       if (material.orthotropy)
         check_constants("parameter " + section, material);
-      require(material.young_modulus > 0., "Young's modulus is " + exact_text(material.young_modulus) + " Pa", "Young modulus",
-              "give a positive value");
+      require(material.young_modulus > 0., "Young's modulus is " + exact_text(material.young_modulus) + " Pa, but must be positive",
+              "Young modulus", "give a positive value");
       require(material.orthotropy || (material.poisson_ratio > -1. && material.poisson_ratio <= 0.4999),
               "Poisson's ratio is " + exact_text(material.poisson_ratio), "Poisson ratio",
-              "give a value above -1 and up to 0.4999 (the stiffness of an incompressible material is infinite)");
-      require(material.density > 0., "the density is " + exact_text(material.density) + " kg/m^3", "Density", "give a positive value");
+              "give a value above -1 and up to 0.4999; the bulk modulus of an incompressible material (0.5) is infinite");
+      require(material.density > 0., "the density is " + exact_text(material.density) + " kg/m^3, but must be positive", "Density",
+              "give a positive value");
       require(material.rayleigh_alpha >= 0. && std::isfinite(material.rayleigh_alpha),
               "the mass-proportional damping is " + exact_text(material.rayleigh_alpha) + " 1/s", "Rayleigh alpha",
               "give a finite value >= 0");
@@ -231,13 +233,13 @@ namespace Squeal
     const auto names = [](const std::string &volume) { return [volume](const auto &entry) { return entry.volume == volume; }; };
     for (const VolumeMaterial &own : orthotropic)
       if (std::any_of(volumes.begin(), volumes.end(), names(own.volume)))
-        throw ParameterError("volume " + in_quotes(own.volume) + " has two materials", "parameter Materials/Orthotropic",
-                             "name it here or in Materials/Volumes");
+        throw ParameterError("volume " + in_quotes(own.volume) + " has two materials, in Materials/Volumes and Materials/Orthotropic",
+                             "parameter Materials/Orthotropic", "remove the volume from one of the two lists");
     for (const MaterialAxes &entry : axes)
       {
         if (std::none_of(orthotropic.begin(), orthotropic.end(), names(entry.volume)))
           throw ParameterError("volume " + in_quotes(entry.volume) + " has axes, but no orthotropic material", "parameter Materials/Axes",
-                               "give its constants in Materials/Orthotropic, or remove its axes");
+                               "give its constants in Materials/Orthotropic or remove its axes");
         check_axes(entry);
       }
     const auto check_mounts = [](const std::vector<Mount> &list, const std::string &name, const std::string &quantity, const char *unit) {
@@ -386,9 +388,9 @@ namespace Squeal
         if (!(entry.ratio >= 0. && entry.ratio < 1.))
           throw ParameterError("the damping ratio " + exact_text(entry.ratio) + " at " + exact_text(entry.frequency) +
                                  " Hz is not in [0, 1)",
-                               where, "give a fraction of critical damping, 0.01 for one per cent");
+                               where, "give a fraction of critical damping, for example 0.01 for 1 %");
         if (&entry != &modal_ratios.front() && !(entry.frequency > (&entry - 1)->frequency))
-          throw ParameterError("the frequency " + exact_text(entry.frequency) + " Hz does not exceed the previous one, " +
+          throw ParameterError("the frequency " + exact_text(entry.frequency) + " Hz does not exceed the previous frequency, " +
                                  exact_text((&entry - 1)->frequency) + " Hz",
                                where, "give each frequency once, in ascending order");
       }

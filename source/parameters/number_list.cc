@@ -16,10 +16,10 @@ namespace Squeal
 
   namespace
   {
-    /// Two groups of digits joined by a single comma: "0,4", also in "pin: 0,4; ..."; not in "1,2,3".
+    /// Two groups of digits joined by a single comma: "0,4", also in "pin: 0,4; ...", but not "1,2,3".
     struct JoinedDigits
     {
-      std::string before, after; ///< digits before and after the comma
+      std::string before, after;
 
       bool is_fraction() const
       {
@@ -40,15 +40,14 @@ namespace Squeal
       return result;
     }
 
-    /// Number of commas with a blank before or after.
     std::ptrdiff_t n_spaced_commas(const std::string &text)
     {
       static const std::regex spaced(R"(\s,|,\s)");
       return std::distance(std::sregex_iterator(text.begin(), text.end(), spaced), std::sregex_iterator());
     }
 
-    /// True if commas look like decimal commas: if digits after a comma begin with zero, if semicolons separate the numbers, or if commas
-    /// with and without blanks are mixed, and those without blanks occur more than once or after a zero.
+    /// True if commas look like decimal commas. This applies if digits after a comma begin with zero, if semicolons separate the numbers,
+    /// or if commas with and without blanks are mixed and commas without blanks occur more than once or after a zero.
     bool has_decimal_commas(const std::string &list, const std::vector<JoinedDigits> &joined)
     {
       if (joined.empty())
@@ -65,8 +64,8 @@ namespace Squeal
   {
     if (const auto joined = joined_digits(list); has_decimal_commas(list, joined))
       throw ParameterError(what + " has commas that look like decimal commas: " + in_quotes(list), where,
-                           "write decimal points, " + joined.front().before + "." + joined.front().after +
-                             "; in a list of integers put a blank after every comma");
+                           "write decimal points, for example " + joined.front().before + "." + joined.front().after +
+                             "; in a list of integers, put a blank after every comma");
     return split_string_list(list, ',');
   }
 

@@ -47,9 +47,10 @@ namespace Squeal
   void OperationParameters::check() const
   {
     if (!SlidingVelocity(*this).turns_about_z() && rotating_disc)
-      throw ParameterError("gyroscopic forces require a disc that turns about the z axis, but the disc moves along " + sliding_direction,
+      throw ParameterError("gyroscopic forces require a disc that turns about the z axis, but Operation/Sliding direction is " +
+                             sliding_direction,
                            "parameters Operation/Gyroscopic forces and Sliding direction",
-                           "set Operation/Gyroscopic forces = false, or leave Operation/Sliding direction at -y, x, 0");
+                           "set Operation/Gyroscopic forces = false, or Operation/Sliding direction = -y, x, 0");
   }
 
   bool OperationParameters::has_contact_damping() const

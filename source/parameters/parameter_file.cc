@@ -24,7 +24,7 @@ namespace Squeal
 
     constexpr const char *blanks = " \t\r\n\v\f";
 
-    // Limits far above the needs of a run: devices have no end, and nested includes multiply
+    // Limits far above the needs of a run, which stop endless device files and multiplying includes
     constexpr std::streamsize largest_file       = 1 << 24; // [byte]
     constexpr unsigned int    most_files         = 1000;
     constexpr std::size_t     most_open_sections = 100;
@@ -34,7 +34,7 @@ namespace Squeal
       return "file " + legible(file) + ", line " + std::to_string(line);
     }
 
-    /// Text of a file without its byte order mark; @p where is its name in messages.
+    /// Text of a file without its byte order mark; @p where describes it in messages.
     std::string read_text(const std::string &file, const std::string &where)
     {
       std::error_code ignored;
@@ -46,15 +46,16 @@ namespace Squeal
       std::string text(largest_file + 1, '\0');
       stream.read(text.data(), largest_file + 1);
       if (stream.bad())
-        throw FileError("the parameter file cannot be read completely", where, "check the disk that it is on");
+        throw FileError("the parameter file cannot be read completely", where, "check the drive or network on which it is stored");
       if (stream.gcount() > largest_file)
-        throw FileError("the parameter file is larger than " + std::to_string(largest_file) + " bytes", where, "name a parameter file");
+        throw FileError("the parameter file is larger than " + std::to_string(largest_file) + " bytes", where,
+                        "check its name; parameter files are much smaller");
       text.resize(stream.gcount());
 
       if (starts_with(text, "\xFF\xFE") || starts_with(text, "\xFE\xFF"))
         throw ParameterError("the parameter file is encoded as UTF-16", where, "save it as UTF-8");
       if (const auto zero = text.find('\0'); zero != std::string::npos)
-        throw ParameterError("the parameter file is not a text: it contains a zero byte",
+        throw ParameterError("the parameter file is not a text file: it contains a zero byte",
                              place(file, 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(zero), '\n')),
                              "give a text file in UTF-8");
       constexpr const char *byte_order_mark = "\xEF\xBB\xBF";
@@ -62,9 +63,9 @@ namespace Squeal
     }
 
     constexpr const char *how_to_quote =
-      R"(write it between double quotes, with \" for a quote in it, \\ for a backslash, \n for a line break)";
+      R"(enclose it in double quotes; inside, write \" for a quote, \\ for a backslash and \n for a line break)";
 
-    /// Position of the closing quote of a text that begins with one; the end of the text if there is none.
+    /// Position of the closing quote in a text that begins with a quote; the end of the text if the quote is not closed.
     std::size_t closing_quote(const std::string &text)
     {
       std::size_t i = 1;
@@ -73,31 +74,31 @@ namespace Squeal
       return std::min(i, text.size());
     }
 
-    /// Value on a line, up to the first `#` outside quotes.
+    /// Value on a line before the first `#` outside quotes.
     std::string value_before_comment(const std::string &text, const std::string &where)
     {
       const std::string whole   = trim_copy(text);
       const std::size_t comment = whole.find('#', starts_with(whole, "\"") ? closing_quote(whole) : 0);
       const auto        is_word = [&](const std::size_t i) { return i < whole.size() && std::strchr(blanks, whole[i]) == nullptr; };
       if (comment != std::string::npos && comment > 0 && whole[0] != '"' && is_word(comment - 1) && is_word(comment + 1))
-        throw ParameterError("`#` begins a comment and truncates the value " + in_quotes(whole) + " ", where,
-                             "put the value between double quotes, or a blank before the comment");
+        throw ParameterError("`#` begins a comment and truncates the value " + in_quotes(whole), where,
+                             "enclose the value in double quotes, or insert a blank before the comment");
       return read_value(whole.substr(0, comment), where);
     }
 
-    /// Reads a file and its includes.
+    /// Reader of a parameter file and the files that it includes.
     class Reader
     {
     public:
       std::vector<ParameterStatement> statements;
 
-      /// @p where is the file, or the line that includes it.
+      /// @p where names the file or the line that includes it.
       void read(const std::string &file, const std::string &where)
       {
         refuse_cycle(file, where);
         if (++n_files > most_files)
-          throw ParameterError("parameter files include one another more than " + std::to_string(most_files) + " times", where,
-                               "include every file once");
+          throw ParameterError("more than " + std::to_string(most_files) + " parameter files are included", where,
+                               "remove repeated includes");
         open_files.push_back(file);
         const std::size_t outer_depth = sections.size();
 
@@ -163,21 +164,21 @@ namespace Squeal
           {
             if (sections.size() == most_open_sections)
               throw ParameterError("more than " + std::to_string(most_open_sections) + " sections are nested", where,
-                                   "close each section by a line `end`");
+                                   "close each section with a line `end`");
             sections.push_back({single_spaced(rest), where});
             statements.push_back({path(""), "", where});
           }
         else if ((key == "end" || key == "END") && rest.empty())
           {
             if (sections.size() == outer_depth)
-              throw ParameterError("`end` closes no section", where, "remove it, or add the matching `subsection`");
+              throw ParameterError("`end` closes no section of this file", where, "remove it, or add the matching `subsection`");
             sections.pop_back();
           }
         else if (key == "set" || key == "SET")
           {
             const auto equal = rest.find('=');
             if (equal == std::string::npos)
-              throw ParameterError(in_quotes(text) + " has no `=`", where, "write set NAME = VALUE");
+              throw ParameterError(in_quotes(text) + " has no `=`", where, "write `set NAME = VALUE`");
             const std::string value = value_before_comment(line.substr(line.find('=') + 1), where);
             statements.push_back({path(single_spaced(rest.substr(0, equal))), value, where});
           }

@@ -20,10 +20,10 @@ namespace Squeal
 {
   namespace
   {
-    /// Smallest 1/β, relative to the radius of the band, at which the eigenvalues accumulated near −1/β do not affect the search [-].
+    /// Smallest 1/β, relative to the radius of the band, at which the eigenvalues that accumulate near −1/β do not affect the search [-].
     constexpr double clear_of_accumulation = 1.2;
 
-    /// Number of characters of an unknown name that are compared; all known names are shorter.
+    /// Maximum number of compared characters of an unknown name; all known names are shorter.
     constexpr std::size_t longest_name = 200;
 
     /// Largest α, relative to the radius of the band, at which overdamped waves far above the band have no eigenvalue in it [-].
@@ -49,7 +49,7 @@ namespace Squeal
       return row[b.size()];
     }
 
-    /// Edit distance between two names, word by word with the best match: omitting, exchanging or abbreviating a word counts as one edit.
+    /// Edit distance between two names, compared word by word in any order; an omitted or abbreviated word counts as one edit.
     unsigned int word_distance(const std::string &written, const std::string &name)
     {
       using dealii::Utilities::split_string_list;
@@ -69,7 +69,7 @@ namespace Squeal
       return sum;
     }
 
-    /// Edit distance between two paths; a wrong section counts little, so that the right name in the wrong section is found.
+    /// Edit distance between two paths; the section has little weight, so that a correct name in a wrong section is found.
     unsigned int path_distance(const std::string &written, const std::string &candidate)
     {
       const auto split = [](const std::string &path) {
@@ -84,7 +84,6 @@ namespace Squeal
       return wrong_section * distance(written_name, candidate_name) + std::min(distance(written_section, candidate_section), wrong_section);
     }
 
-    /// Rejects an undeclared name.
     void check_name(const ParameterStatement &statement, const std::vector<std::string> &known)
     {
       if (std::find(known.begin(), known.end(), statement.path) != known.end())
@@ -102,7 +101,7 @@ namespace Squeal
               nearest  = candidate;
             }
       throw ParameterError(std::string("unknown ") + (is_section ? "section " : "parameter ") + in_quotes(statement.path), statement.where,
-                           "the nearest known name is `" + nearest + "`; squeal --print-parameters lists all");
+                           "the nearest known name is `" + nearest + "`; squeal --print-parameters lists all names");
     }
 
     /// Paths of all parameters and their sections.
@@ -119,7 +118,7 @@ namespace Squeal
       return names;
     }
 
-    /// Sets a parameter from a statement.
+    /// Sets a parameter from a statement; errors name the file and line of the statement.
     void assign(const DeclaredParameter &parameter, const ParameterStatement &statement)
     {
       try
@@ -132,17 +131,16 @@ namespace Squeal
         }
     }
 
-    /// An override "Section/Name=value".
+    /// Statement of an override "Section/Name=value".
     ParameterStatement parse_override(const std::string &text)
     {
       const auto        equal = text.find('=');
       const std::string where = "--set \"" + legible(text) + "\"";
       if (equal == std::string::npos)
-        throw ParameterError("an override has no `=`", where, "write --set \"Section/Name=value\"");
+        throw ParameterError("the override has no `=`", where, "write --set \"Section/Name=value\"");
       return {single_spaced(text.substr(0, equal)), read_value(text.substr(equal + 1), where), where};
     }
 
-    /// Declares the parameter that selects the study.
     void declare_study(Declarations &declarations, const Study *&study)
     {
       std::vector<std::string> names;
@@ -238,7 +236,7 @@ namespace Squeal
     check_name({path, "", where}, known_names(declarations));
     const DeclaredParameter *parameter = declarations.find(path);
     if (parameter == nullptr)
-      throw ParameterError(in_quotes(path) + " is a section", where, "name a parameter in it");
+      throw ParameterError(in_quotes(path) + " is a section", where, "name a parameter of this section");
     const std::string value = new_value(parameter->print());
     if (path == "Geometry/File")
       geometry.set_file(value, geometry.directory);
@@ -300,47 +298,45 @@ namespace Squeal
     if (is_steady)
       sliding.check_steady();
     if (uses_load_per_side() && !(operation.load_per_side > 0.))
-      throw ParameterError("contact damping and steady sliding need a contact force, but the load is zero",
+      throw ParameterError("contact damping and steady sliding require a positive load, but the load is zero",
                            "parameter Operation/Load per side",
-                           "give a positive load; or set Operation/Radial dissipation = none, Operation/Friction slope = 0 and "
-                           "Steady sliding/Contact state = equal load");
+                           "give a positive load, or set Operation/Radial dissipation = none, Operation/Friction slope = 0 and Steady "
+                           "sliding/Contact state = equal load");
     if ((is_steady || has_contact_damping()) && !(operation.rotation_speed > 0.))
-      throw ParameterError("the disc does not turn: steady sliding and contact damping need a sliding speed",
+      throw ParameterError("contact damping and steady sliding require a sliding speed, but the disc does not turn",
                            "parameter Operation/Rotation speed",
-                           "give a positive speed; or set Operation/Radial dissipation = none, Operation/Friction slope = 0 and "
-                           "Steady sliding/Contact state = equal load");
+                           "give a positive speed, or set Operation/Radial dissipation = none, Operation/Friction slope = 0 and Steady "
+                           "sliding/Contact state = equal load");
   }
 
   void Parameters::check_damping_in_band() const
   {
-    // Waves with β ω > 2 are overdamped, and one of their two real λ tends to −1/β for fast waves: the finer the mesh, the more eigenvalues
-    // accumulate there. The search radius must end before −1/β
+    // Keep −1/β outside the search radius: one real λ of each overdamped wave (β ω > 2) approaches −1/β as ω increases
     const double radius = clear_of_accumulation * discretization.band().radius();
     for (const auto &[section, material] : materials.all())
       if (const double beta = material.rayleigh_beta; beta * radius >= 1.)
-        throw ParameterError("the stiffness-proportional damping, " + exact_text(beta) +
-                               " s, makes the real eigenvalues of all overdamped waves accumulate at -1/beta = " + exact_text(-1. / beta) +
-                               " 1/s, within reach of the band",
+        throw ParameterError("stiffness-proportional damping of " + exact_text(beta) +
+                               " s makes real eigenvalues of overdamped waves accumulate at -1/beta = " + exact_text(-1. / beta) +
+                               " 1/s, too close to the band",
                              "parameter " + section + "/Rayleigh beta",
-                             text("give less than ", 1. / radius, " s, lower the end of the band below ",
+                             text("give less than ", 1. / radius, " s; or lower Band/Maximum frequency below ",
                                   hertz(circular_frequency(discretization.maximum_frequency) / (beta * radius)),
-                                  " Hz, or give Damping/Modal damping ratio instead"));
+                                  " Hz, and Band/Maximum rate by the same factor; or set Damping/Modal damping ratio instead"));
 
-    // Waves with α > 2 ω are overdamped, and one of their two real λ is about −ω²/α: strong damping moves eigenvalues of fast waves, which
-    // the mesh does not resolve, into the band
+    // Keep real λ of overdamped waves (α > 2 ω), about −ω²/α, out of the band if the mesh does not resolve these waves
     for (const auto &[section, material] : materials.all())
       if (const double alpha = material.rayleigh_alpha; alpha > most_damping_by_mass * radius)
-        throw ParameterError("the mass-proportional damping, " + exact_text(alpha) +
-                               " 1/s, moves real eigenvalues -omega^2/alpha of waves far above the band into it",
+        throw ParameterError("mass-proportional damping of " + exact_text(alpha) +
+                               " 1/s moves real eigenvalues -omega^2/alpha of waves far above the band into the band",
                              "parameter " + section + "/Rayleigh alpha",
-                             text("give at most ", most_damping_by_mass * radius, " 1/s, or give Damping/Modal damping ratio instead"));
+                             text("give at most ", most_damping_by_mass * radius, " 1/s, or set Damping/Modal damping ratio instead"));
   }
 
   void Parameters::check() const
   {
     if (output.write_system != SystemOutput::none && !study->has("Output/Write system"))
-      throw ParameterError(text("Study = ", study->name, " solves several systems and writes none"), "parameter Output/Write system",
-                           "set it to none, and to full in a run of one of the models with Study = stability");
+      throw ParameterError(text("Study = ", study->name, " does not write a system"), "parameter Output/Write system",
+                           "set it to none; to write the system of one model, run this model with Study = stability");
     if (output.write_system == SystemOutput::reduced && !study->has_reduced_model)
       throw ParameterError(text("Study = ", study->name, " has no reduced model to write"), "parameter Output/Write system",
                            "set it to full, or set Study = sweep, robustness or reduction");
@@ -348,10 +344,11 @@ namespace Squeal
       {
         if (study->run_of_system == nullptr)
           throw ParameterError(
-            text("Study = ", study->name, " needs a mesh"), "parameter System",
+            text("Study = ", study->name, " requires a mesh"), "parameter System",
             "set Study = stability, reduction, sweep, sensitivity, geometry, search, robustness or updating, or leave System empty");
         if (goal != AccuracyGoal::as_given)
-          throw ParameterError("Accuracy chooses a mesh, but the system comes from a file", "parameter Accuracy", "set it to as given");
+          throw ParameterError("Accuracy selects a mesh, but the parameter System replaces the mesh", "parameter Accuracy",
+                               "set it to as given");
         discretization.check();
         reduction.check_of_system();
         sweep.check_of_system();

@@ -27,7 +27,7 @@ namespace Squeal
         return {entry.numbers[0], 0, 0, 0};
       for (const double number : entry.numbers)
         if (number != std::floor(number) || number < 0. || number > 1e6)
-          truncation_list.refuse(in_quotes(entry.text) + " has a number of modes that is not a count");
+          truncation_list.refuse(in_quotes(entry.text) + " contains a number of modes that is not an integer from 0 to 1000000");
       return {0., static_cast<int>(entry.numbers[0]), static_cast<int>(entry.numbers[1]), static_cast<int>(entry.numbers[2])};
     }
   } // namespace
@@ -94,12 +94,13 @@ namespace Squeal
       truncation_list.refuse("no truncation of the component modes is given");
     for (const ModeTruncation &truncation : truncations)
       if (!(truncation.frequency > 0.) && (truncation.disc < 1 || (truncation.pins_free < 1 && truncation.pins_sliding < 1)))
-        throw ParameterError("the truncation `" + truncation.text() + "` leaves no modes", "parameter Reduction/Component modes",
-                             "give a positive frequency, or at least one mode of the disc and one of the pins");
+        throw ParameterError("the truncation `" + truncation.text() + "` leaves no modes of the disc or of the pins",
+                             "parameter Reduction/Component modes",
+                             "give a positive frequency, or at least one mode of the disc and one mode of the pins");
     for (const double mu : snapshots)
       if (!(mu >= 0. && mu <= 10.))
         throw ParameterError("the friction coefficient " + exact_text(mu) + " is not between 0 and 10", "parameter Reduction/Snapshots",
-                             "give friction coefficients near that of the operation");
+                             "give values from 0 to 10 near Operation/Friction coefficient");
     check_of_system();
   }
 
@@ -107,13 +108,13 @@ namespace Squeal
   {
     if (coupled_frequencies.empty())
       throw ParameterError("the list of upper frequencies of real coupled modes is empty", "parameter Reduction/Coupled frequency",
-                           "give at least one; 0 means the end of the band");
+                           "give at least one frequency; 0 means the end of the band");
     check_distinct(coupled_frequencies, "Reduction/Coupled frequency");
     check_distinct(grown_tolerances, "Reduction/Grown tolerances");
     check_distinct(snapshots, "Reduction/Snapshots");
     for (const double tolerance : grown_tolerances)
       if (!(tolerance >= 1e-11 && tolerance <= 1e-1))
-        throw ParameterError("the tolerance " + exact_text(tolerance) + " is outside the useful range",
+        throw ParameterError("the tolerance " + exact_text(tolerance) + " is not between 1e-11 and 0.1",
                              "parameter Reduction/Grown tolerances", "give values between 1e-11 and 0.1");
   }
 } // namespace Squeal

@@ -15,9 +15,9 @@ namespace Squeal
     constexpr const char *where_distributions = "parameter Robustness/Distributions",
                          *where_correlations  = "parameter Robustness/Correlations";
 
-    const std::string how_to_distribute = "write Section/Name = uniform A to B; normal MEAN, DEVIATION; normal MEAN, DEVIATION in A to B; "
-                                          "lognormal MEAN, DEVIATION; or table A, B, C; with % for percent of the nominal value, and "
-                                          "`for each pin` at the end for independent values";
+    const std::string how_to_distribute = "write Section/Name = DISTRIBUTION with `uniform A to B`, `normal MEAN, DEVIATION`, `normal "
+                                          "MEAN, DEVIATION in A to B`, `lognormal MEAN, DEVIATION` or `table A, B, C`; append % to all "
+                                          "numbers for percent of the nominal value, and `for each pin` for independent values";
 
     [[noreturn]] void refuse_distribution(const std::string &what, const std::string &change = how_to_distribute)
     {
@@ -38,7 +38,7 @@ namespace Squeal
           const auto        equals = line.find('=');
           const std::string name   = boost::trim_copy(line.substr(0, equals));
           if (equals == std::string::npos || name.empty())
-            throw ParameterError(in_quotes(line) + " is not `name = ...`", where, change);
+            throw ParameterError(in_quotes(line) + " is not of the form `name = ...`", where, change);
           result.emplace_back(name, boost::trim_copy(line.substr(equals + 1)));
         }
       return result;
@@ -67,7 +67,7 @@ namespace Squeal
           result.push_back(*number);
         }
       if (n_percent != 0 && n_percent != result.size())
-        refuse_distribution("some numbers in " + in_quotes(entry) + " are percent and others are not",
+        refuse_distribution("some numbers in " + in_quotes(entry) + " have a percent sign and others do not",
                             "write % after all numbers or after none");
       is_relative = n_percent > 0;
       return result;
@@ -81,15 +81,16 @@ namespace Squeal
         {
           case DistributionKind::uniform:
             if (n_numbers != 2 || !(x[0] < x[1]))
-              refuse_distribution(in_quotes(entry) + " needs a lower and a larger upper limit");
+              refuse_distribution(in_quotes(entry) + " does not give a lower limit and a higher upper limit");
             return;
           case DistributionKind::normal:
             if (n_numbers == 4 && !(x[2] < x[3]))
-              refuse_distribution("the lower limit in " + in_quotes(entry) + " is not below the upper one");
+              refuse_distribution("the lower limit in " + in_quotes(entry) + " is not below the upper limit");
             if ((n_numbers != 2 && n_numbers != 4) || !(x[1] > 0.))
               refuse_distribution(in_quotes(entry) + " does not give a mean and a positive standard deviation");
             if (n_numbers == 4 && (x[2] > x[0] + 8. * x[1] || x[3] < x[0] - 8. * x[1]))
-              refuse_distribution("the limits in " + in_quotes(entry) + " are more than 8 deviations from the mean");
+              refuse_distribution("the interval in " + in_quotes(entry) + " is more than 8 standard deviations from the mean",
+                                  "give limits that enclose the mean");
             return;
           case DistributionKind::lognormal:
             if (n_numbers != 2 || !(x[0] > 0.) || !(x[1] > 0.))
@@ -97,7 +98,7 @@ namespace Squeal
             return;
           case DistributionKind::table:
             if (n_numbers < 2)
-              refuse_distribution(in_quotes(entry) + " is a table of one value");
+              refuse_distribution(in_quotes(entry) + " is a table of only one value", "give two or more values");
         }
     }
   } // namespace
@@ -146,7 +147,7 @@ namespace Squeal
         UncertainParameter parameter{name, {enum_value<DistributionKind>(parts[1]), {}}};
         parameter.for_each_pin = parts[4].matched;
         if (parts[3].matched && parameter.distribution.kind != DistributionKind::normal)
-          refuse_distribution("only a normal distribution is truncated by `in`, not " + in_quotes(given));
+          refuse_distribution("`in A to B` truncates normal distributions only, not " + in_quotes(given));
         parameter.distribution.numbers =
           numbers_of(parts[2].str() + (parts[3].matched ? "," + parts[3].str() : ""), given, parameter.is_relative);
         check_numbers(parameter.distribution, given);
@@ -156,7 +157,7 @@ namespace Squeal
         result.push_back(std::move(parameter));
       }
     if (result.empty())
-      refuse_distribution("no parameter is uncertain");
+      refuse_distribution("no uncertain parameter is given");
     return result;
   }
 
@@ -174,19 +175,22 @@ namespace Squeal
           boost::trim(name);
         const auto value = parse_number(given);
         if (names.size() != 2 || names.front() == names.back() || !value || !(std::abs(*value) < 1.))
-          refuse(in_quotes(pair + " = " + given) + " is not a correlation of two parameters");
+          refuse(in_quotes(pair + " = " + given) + " is not a correlation between -1 and 1 of two different parameters");
         for (const std::string &name : names)
           {
             const auto found = std::find_if(known.begin(), known.end(), [&](const UncertainParameter &p) { return p.name == name; });
             if (found == known.end())
-              refuse(in_quotes(name) + " has no distribution");
+              throw ParameterError(in_quotes(name) + " has no distribution", where_correlations,
+                                   "give its distribution in Robustness/Distributions, or remove the correlation");
             if (found->for_each_pin)
-              refuse(in_quotes(name) + " is independent for each pin");
+              throw ParameterError(in_quotes(name) + " is independent for each pin", where_correlations,
+                                   "remove the correlation, or `for each pin` in Robustness/Distributions");
           }
         for (const Correlation &other : result)
           if ((other.first == names.front() && other.second == names.back()) ||
               (other.first == names.back() && other.second == names.front()))
-            refuse(in_quotes(names.front() + ", " + names.back()) + " has two correlations");
+            throw ParameterError("the pair " + in_quotes(names.front() + ", " + names.back()) + " has two correlations", where_correlations,
+                                 "give each pair once");
         result.push_back({names.front(), names.back(), *value});
       }
     return result;

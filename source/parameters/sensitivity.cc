@@ -43,11 +43,11 @@ namespace Squeal
 
   void IngredientsParameters::check() const
   {
-    // Zero would reject all models, because they differ by rounding
+    // Reject zero, because rounding errors alone would exceed it
     for (const auto &[name, value, unit] : {std::tuple{"Frequency tolerance", frequency_tolerance, " %"},
                                             std::tuple{"Divergence tolerance", divergence_tolerance, " percentage points"}})
       if (!(value > 0.))
-        throw ParameterError("the required accuracy is " + exact_text(value) + unit, std::string("parameter Ingredients/") + name,
-                             "give a positive change that is still acceptable");
+        throw ParameterError("the tolerance is " + exact_text(value) + unit + ", but must be positive",
+                             std::string("parameter Ingredients/") + name, "give the largest acceptable change");
   }
 } // namespace Squeal

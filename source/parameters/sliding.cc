@@ -16,11 +16,11 @@ namespace Squeal
   namespace
   {
     const ListFormat gap_list  = {"Steady sliding/Gaps",
-                                  "not an entry of the list",
+                                  "not the gap of a pin",
                                   "pin: gap; pin: gap, sliding taper, radial taper; ... [m, -, -]",
                                   "pin",
                                   {1, 3}};
-    const ListFormat load_list = {"Steady sliding/Loads", "not an entry of the list", "pin: load; pin: load; ... [N]", "pin", {1}};
+    const ListFormat load_list = {"Steady sliding/Loads", "not the load of a pin", "pin: load; pin: load; ... [N]", "pin", {1}};
   } // namespace
 
   void SlidingParameters::declare(Declarations &declarations)
@@ -39,7 +39,7 @@ namespace Squeal
     declarations.add(
       "Displacement", displacement, "m",
       "For Control = displacement: travel of each backplate towards the disc along the axis (for a shoe on a rim, along its mean contact "
-      "normal), from the position in which a pin without gap touches the disc.",
+      "normal), from the position in which a pin without a gap touches the disc.",
       {0.});
     declare_list(
       declarations, "Loads", pin_loads,
@@ -56,7 +56,7 @@ namespace Squeal
     declare_list(
       declarations, "Gaps", gaps,
       "Initial gaps of pins (height tolerance, wear), as a list `pin: gap; pin: gap, sliding taper, radial taper; ...`. A gap is measured "
-      "along the travel of the backplate and is positive if the pin does not touch. The tapers are the increase of the gap per distance "
+      "along the travel of the backplate and is positive if the pin does not touch. The tapers are the increases of the gap per distance "
       "from the centre of the face, along the sliding direction and radially outwards (for a shoe on a rim, along the axis; if the disc "
       "does not rotate about z, along b). Units: m, none, none.",
       gap_list, {&PinGap::gap, &PinGap::sliding_taper, &PinGap::radial_taper}, &PinGap::pin);
@@ -66,23 +66,28 @@ namespace Squeal
   {
     for (const PinLoad &entry : pin_loads)
       if (!(entry.load > 0.))
-        throw ParameterError("the load is " + exact_text(entry.load) + " N", "parameter Steady sliding/Loads, pin " + entry.pin,
-                             "give a positive force; for a pin without contact, give a gap and no load");
+        throw ParameterError("the load is " + exact_text(entry.load) + " N, but must be positive",
+                             "parameter Steady sliding/Loads, pin " + entry.pin,
+                             "give a positive force, or remove the pin from the list for an equal share of Operation/Load per side");
     if (control == BackplateControl::displacement && !(displacement > 0.) && gaps.empty())
-      throw ParameterError("the backplates do not move", "parameter Steady sliding/Displacement",
+      throw ParameterError("the displacement of the backplates is zero, and no pin has an initial gap",
+                           "parameter Steady sliding/Displacement",
                            "give a positive travel, or set Steady sliding/Control = load per side");
     if ((control == BackplateControl::pressure) == pressed_faces.empty())
-      throw ParameterError(
-        pressed_faces.empty() ? "no face is pressed" : "pressed faces are given, but `" + to_string(control) + "` is prescribed",
-        "parameter Steady sliding/Pressed faces", "name the backs of the bodies and set Steady sliding/Control = pressure, or neither");
+      throw ParameterError(pressed_faces.empty() ? "no face is pressed" :
+                                                   "pressed faces are given, but `" + to_string(control) + "` is prescribed",
+                           "parameter Steady sliding/Pressed faces",
+                           "name the faces if Steady sliding/Control = pressure, and leave the list empty "
+                           "otherwise");
     for (const std::string &face : pressed_faces)
       if (std::count(pressed_faces.begin(), pressed_faces.end(), face) > 1)
         throw ParameterError("the surface " + face + " is named twice", "parameter Steady sliding/Pressed faces", "name each face once");
     if (control != BackplateControl::load_per_pin && !pin_loads.empty())
-      throw ParameterError("loads of single pins are given, but `" + to_string(control) + "` is prescribed",
+      throw ParameterError("loads of individual pins are given, but `" + to_string(control) + "` is prescribed",
                            "parameter Steady sliding/Loads", "set Steady sliding/Control = load per pin, or remove the loads");
     if (control != BackplateControl::displacement && displacement != 0.)
       throw ParameterError("a displacement is given, but `" + to_string(control) + "` is prescribed",
-                           "parameter Steady sliding/Displacement", "set Steady sliding/Control = displacement, or remove it");
+                           "parameter Steady sliding/Displacement",
+                           "set Steady sliding/Control = displacement, or remove the displacement");
   }
 } // namespace Squeal

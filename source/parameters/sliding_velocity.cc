@@ -35,7 +35,7 @@ namespace Squeal
       return parts;
     }
 
-    /// Parsed function of three valid expressions; null if they are invalid.
+    /// Function of three expressions; null if an expression is invalid or their number is not three.
     std::shared_ptr<const dealii::FunctionParser<3>> parsed(const std::string &expressions)
     {
       const std::vector<std::string> parts = outer_parts(expressions);
@@ -44,7 +44,7 @@ namespace Squeal
       auto                              function = std::make_shared<dealii::FunctionParser<3>>(3);
       static std::mutex                 one_stream; // std::cerr is shared by all threads
       const std::lock_guard<std::mutex> lock(one_stream);
-      std::ostringstream                unread; // discards the exceptions that deal.II prints
+      std::ostringstream                unread; // discards exception texts, which deal.II prints
       std::streambuf                   *shown = std::cerr.rdbuf(unread.rdbuf());
       try
         {
@@ -66,9 +66,10 @@ namespace Squeal
     , sign(rotation == Rotation::negative ? -1. : 1.)
   {
     if (!function)
-      throw ParameterError(in_quotes(expressions) + " are not three expressions in x, y, z", "parameter Operation/Sliding direction",
-                           "give the components of the velocity of the disc for a rotation speed of 1, such as -y, x, 0 for a disc that "
-                           "turns about the z axis, or 1, 0, 0 for a rail along x");
+      throw ParameterError(in_quotes(expressions) + " is not a list of three valid expressions in x, y, z",
+                           "parameter Operation/Sliding direction",
+                           "give the components of the velocity of the disc for a rotation speed of 1 rad/s, for example -y, x, 0 for a "
+                           "disc that turns about the z axis, or 1, 0, 0 for a rail along x");
   }
 
   SlidingVelocity::SlidingVelocity(const OperationParameters &operation)

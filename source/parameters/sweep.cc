@@ -25,11 +25,11 @@ namespace Squeal
     void check_range(const ValueRange &range, const std::string &what, const std::string &parameters)
     {
       if (range.number == 0)
-        throw ParameterError("no " + what + " is given", "parameters " + parameters, "give at least one");
+        throw ParameterError("the number of " + what + " is zero", "parameters " + parameters, "give a number of at least 1");
       if (range.number > 1 && !(range.first < range.last))
         throw ParameterError("the range of the " + what + " from " + exact_text(range.first) + " to " + exact_text(range.last) +
                                " does not ascend",
-                             "parameters " + parameters, "give a last value above the first, or one value only");
+                             "parameters " + parameters, "give a last value above the first, or a single value");
     }
 
     void check_inside(const std::vector<double> &values, const ValueRange &range, const char *name)
@@ -37,7 +37,8 @@ namespace Squeal
       for (const double value : values)
         if (value < range.first || value > (range.number > 1 ? range.last : range.first))
           throw ParameterError("the value " + exact_text(value) + " is outside the sweep", std::string("parameter Sweep/") + name,
-                               "give values from " + exact_text(range.first) + " to " + exact_text(range.last) + ", with decimal points");
+                               "give values from " + exact_text(range.first) + " to " +
+                                 exact_text(range.number > 1 ? range.last : range.first) + ", with decimal points");
     }
   } // namespace
 
@@ -122,8 +123,8 @@ namespace Squeal
                 parameter.empty() ? "Sweep/First friction coefficient, Last friction coefficient and Number of friction coefficients" :
                                     "Sweep/Parameter");
     if (const auto second = second_varied_parameter(); second && second->name == varied.name)
-      throw ParameterError(in_quotes(second->name) + " is used for both parameters of the map", "parameter Sweep/Second parameter",
-                           "name another parameter");
+      throw ParameterError(in_quotes(second->name) + " is both the first and the second parameter of the map",
+                           "parameter Sweep/Second parameter", "name a different parameter");
     check_distinct(planes, "Sweep/Complex plane at");
     check_distinct(counts, "Sweep/Count modes at");
     check_inside(planes, varied.values, "Complex plane at");
@@ -144,8 +145,9 @@ namespace Squeal
       return;
     check_range(map_values, "map values", "Sweep/First map value, Last map value and Number of map values");
     if (!(map_values.first > 0.))
-      throw ParameterError("the map begins at zero", "parameter Sweep/First map value", "give a positive load or speed");
-    // Check again: for a single value, the check above does not require an ascending range
+      throw ParameterError("the map begins at zero, but its values have a constant ratio", "parameter Sweep/First map value",
+                           "give a positive load or speed");
+    // Check the range again, because a sweep with a single value need not ascend
     check_range({friction_coefficients.first, friction_coefficients.last, map_friction_coefficients}, "friction coefficients of the map",
                 "Sweep/First friction coefficient, Last friction coefficient and Map friction coefficients");
   }

@@ -9,19 +9,18 @@ namespace Squeal
     declarations.enter("Updating");
     declarations.add(
       "Measured modes", measured_modes,
-      "CSV file of measured modes, to which the parameters in Designs/Variables are fitted within their ranges. Columns `state` "
+      "CSV file of measured modes, to which the parameters in Designs/Variables are fitted within their ranges. Columns: `state` "
       "(component: free disc, or pins with sliding contact; coupled: without friction; complex: at Operation/Friction coefficient), "
-      "`label`, `frequency [Hz]`; optional `member`, `deviation [Hz]`, `damping ratio [%]`, `damping deviation [%]`. The program looks "
-      "in the folder of the parameter file, then in the current directory. Empty: the measured modes of the system file.");
+      "`label` and `frequency [Hz]`; optional: `member`, `deviation [Hz]`, `damping ratio [%]`, `damping deviation [%]`. The file is "
+      "searched for in the folder of the parameter file, then in the current directory. Empty: the measured modes of the system file.");
     declarations.add(
       "Sensors", sensors,
-      "CSV file of sensors and measured shapes; modes are then paired by shapes instead of labels. Columns `x [m]`, `y [m]`, `z [m]`, "
+      "CSV file of sensors and measured shapes; modes are then paired by shapes instead of labels. Columns: `x [m]`, `y [m]`, `z [m]`, "
       "`direction x`, `direction y`, `direction z`, and a column for each shape, whose name is the label of the mode in the file of "
-      "measured modes (for an imaginary part, the label followed by ` imaginary`). The program looks in the same folders as for the "
-      "measured modes.");
+      "measured modes (for an imaginary part, the label followed by ` imaginary`). The file is searched for in the same folders.");
     declarations.add("Least MAC", least_overlap, "-",
                      "Minimum modal assurance criterion (MAC) of a measured shape and its computed counterpart. If the MAC with every "
-                     "computed mode is smaller, the shape has no counterpart, which is an error.",
+                     "computed mode is smaller, the shape has no counterpart, and the run fails.",
                      {0., 1.});
     declarations.add("Tolerance", tolerance, "none", "The fit ends when its steps are smaller than this fraction of the ranges.",
                      {1e-12, 1e-3});

@@ -101,7 +101,7 @@ namespace Squeal
         // Restore orthonormality to the last digits: V (3 I − VᵀMV) / 2
         V = 1.5 * V - 0.5 * V * (V.transpose() * mass() * V).eval();
         Modal result{std::move(squares), V, restricted(V)};
-        // Set exact values; computed ones contain rounding errors
+        // Set exact values, because computed values contain rounding errors
         result.model.mass_matrix      = DenseMatrix::Identity(size(), size());
         result.model.stiffness_matrix = as_column(result.squares).asDiagonal();
         modes                         = std::make_shared<const Modal>(std::move(result));

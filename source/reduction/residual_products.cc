@@ -15,8 +15,8 @@ namespace Squeal
   {
     using Complex = std::complex<double>;
 
-    /// Number s of random vectors. New basis vectors are selected with another s vectors: the first set would miss the residuals that it
-    /// underestimates.
+    /// Number s of random vectors. New basis vectors are selected with another s vectors, because the first set would miss the residuals
+    /// that it underestimates.
     constexpr int size_of_sketch = 128;
 
     /// Diagonal of Xᴴ Y for matrices stored as real parts, then imaginary parts; negative rounding errors are set to zero.
@@ -50,7 +50,7 @@ namespace Squeal
   {
     const ParameterValues with_friction = system.at(1., values);
     for (std::size_t k = 0; k < system.terms.size(); ++k)
-      // Keep terms that vanish only at these values, unless their weights vanish: the caller guarantees that these remain zero
+      // Keep terms that vanish only at these values, unless their weights vanish; the caller guarantees that such weights remain zero
       if (const Term &term = system.terms[k]; term.vanishes(with_friction) && (!term.weights.empty() || term.coefficient.is_constant()))
         continue;
       else if (term.matrix)
@@ -216,7 +216,7 @@ namespace Squeal
     if (is_prepared)
       return;
     find_blocks();
-    // Columns of W from a low-rank factor F are F C: their products follow from Fᵀ S⁻¹ F
+    // Columns of W from a low-rank factor F are F C, so that their products follow from Fᵀ S⁻¹ F
     const auto gram_of = [&](const Factor &f, const Factor &g) {
       return factor_gram.block(f.first, g.first, f.factor->rank(), g.factor->rank());
     };
@@ -224,7 +224,7 @@ namespace Squeal
       return block.term != nullptr ? DenseMatrix(rows * motions.at(&block.term->source(!block.in_right))) : DenseMatrix(rows);
     };
 
-    // Tᵀ W; scale every vector by its energy: motions of light bodies may exceed modes of the band by many orders of magnitude
+    // Scale every vector of Tᵀ W by its energy, because motions of light bodies may exceed modes of the band by many orders of magnitude
     DenseMatrix H(r, n_columns);
     for (const Block &b : blocks)
       H.middleCols(b.first, b.n) =
@@ -403,7 +403,7 @@ namespace Squeal
       for (Eigen::Index i = first[g]; i < first[g + 1]; ++i)
         rows_of_D.push_back(i);
 
-    // The bracket is symmetric and larger than the processor's cache: read only half of it, once
+    // Read only half of the symmetric bracket, once, because it is larger than the processor's cache
     DenseMatrix small(first.back(), first.back());
     for (std::size_t g = 0; g < all.size(); ++g)
       for (std::size_t h = 0; h <= g; ++h)

@@ -22,7 +22,7 @@ namespace Squeal
   TermProducts::TermProducts(const std::vector<Term> &terms, const Eigentriples &modes)
     : lambda(modes.lambda)
   {
-    std::map<const SparseMatrix *, ComplexDenseMatrix> of_matrices; // terms may share a matrix, such as stiffness and damping of a body
+    std::map<const SparseMatrix *, ComplexDenseMatrix> of_matrices; // terms may share a matrix, for example stiffness and damping of a body
     for (const Term &term : terms)
       {
         Product product{{term.name, term.power, term.coefficient, {}, term.symmetry, {}, {}, term.weights}, {}, {}, {}};

@@ -142,7 +142,7 @@ namespace Squeal
     };
     // Factor that falls linearly from 1 on the face of the pins to 0 on the opposite face
     const auto through_disc = [&](const PinPlace &pin, const Point &x) { return std::clamp(0.5 + pin.side * x[2] / t, 0., 1.); };
-    // In-plane velocity caused by the motion of a pin: at the nodes of this pin, and at those of the disc
+    // In-plane velocity of the nodes of a pin and of the disc that is caused by the motion of this pin
     const auto taken_along = [&](const PinPlace &pin, const Point &x, const unsigned int k, const auto &inside) {
       if (k != 0 && k != pin.component)
         return Point();
@@ -172,7 +172,7 @@ namespace Squeal
       for (const PinPlace &pin : pins)
         sum += taken_along(pin, x, k,
                            [&](const PinPlace &p, const Point &at) {
-                             // Outside the pin, the velocity is at most that of the outline
+                             // Limit the velocity outside the pin to the velocity of the outline
                              const double s = std::hypot(at[0] - p.x, at[1] - p.y), slow = s > p.radius ? p.radius / s : 1.;
                              return Point(slow * (at[0] - p.x) / d, slow * (at[1] - p.y) / d, 0.);
                            }) -

@@ -65,7 +65,7 @@ namespace Squeal
     if (n_damped > 0 && n_damped < n)
       if (const double last = std::sqrt(modes.eigenvalues[n_damped - 1]), next = std::sqrt(modes.eigenvalues[n_damped]);
           next - last <= equal_frequencies * next)
-        throw SolverError(text("the band ends between modes of equal frequency, ", hertz(last), " Hz, of which one is damped"),
+        throw SolverError(text("the band ends between two modes of equal frequency, ", hertz(last), " Hz, and only one of them is damped"),
                           "derivatives of modal damping", "change Band/Maximum frequency slightly");
     const auto divided_difference = [&](const int i, const int j) {
       const double a = std::sqrt(modes.eigenvalues[i]), b = std::sqrt(modes.eigenvalues[j]), mean = 0.5 * (a + b);
@@ -86,7 +86,7 @@ namespace Squeal
 
   std::vector<double> ModalDampingDerivatives::rates_of_ratio(const int number) const
   {
-    // 2 ζ ω is linear in the ratios: evaluate it for one ratio of 1 and the other ratios 0
+    // Evaluate 2 ζ ω, which is linear in the ratios, for one ratio of 1 and the other ratios 0
     DampingParameters unit = damping;
     for (int i = 0; i < static_cast<int>(unit.modal_ratios.size()); ++i)
       unit.modal_ratios[i].ratio = i == number ? 1. : 0.;

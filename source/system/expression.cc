@@ -19,11 +19,10 @@ namespace Squeal
 {
   namespace
   {
-    /// Number of difference steps, each a tenth of the previous one, and relative difference at which two results agree.
+    /// Number of step sizes, each a tenth of the previous size, and relative difference below which two results agree.
     constexpr int    n_steps              = 10;
     constexpr double largest_disagreement = 1e-6;
 
-    /// An expression of muParser.
     class Expression : public ParameterFunction
     {
     public:
@@ -36,15 +35,15 @@ namespace Squeal
         int n_results = 0;
         parser.Eval(n_results);
         if (n_results != 1)
-          throw ParameterError(Squeal::text(in_quotes(expression), " are ", n_results, " expressions"), "",
-                               "write one, with decimal points");
+          throw ParameterError(Squeal::text(in_quotes(expression), " contains ", n_results, " expressions"), "",
+                               "write one expression, with decimal points");
         for (const auto &[name, place] : parser.GetUsedVar())
           used.push_back(name);
       }
 
       double at(const ParameterValues &values) const override
       {
-        // The parser reads these variables, and several threads may evaluate
+        // Allow only one evaluation at a time, because all threads share these variables
         const std::lock_guard guard(mutex);
         for (const std::string &name : used)
           variables.at(name) = values.at(name).front();
@@ -58,7 +57,7 @@ namespace Squeal
         ParameterValues others = values;
         double         &value  = others.at(parameter).front();
         const double    x = value, largest = x == 0. ? 1. : std::abs(x);
-        // Use the two successive steps that agree best: the length scale of the expression is unknown
+        // Use the two successive steps that agree best, because the length scale of the expression is unknown
         double best = 0., disagreement = std::numeric_limits<double>::infinity(), before = std::numeric_limits<double>::quiet_NaN();
         for (int k = 0; k < n_steps; ++k)
           {
@@ -107,7 +106,7 @@ namespace Squeal
       mutable std::mutex                    mutex;
     };
 
-    /// The same expression if it is a product of numbers and integer powers of parameters.
+    /// The expression as a monomial; no value unless it is a product of numbers and integer powers of parameters.
     std::optional<Coefficient> monomial(const std::string &expression, const std::vector<std::string> &parameters)
     {
       static const std::regex factor_pattern(
@@ -141,10 +140,11 @@ namespace Squeal
 
   Coefficient parsed_coefficient(const std::string &expression, const std::vector<std::string> &parameters)
   {
-    // muParser would perform an assignment
+    // Reject assignments, which muParser would perform
     static const std::regex assignment(R"((^|[^<>=!])=([^=]|$))");
     if (std::regex_search(expression, assignment))
-      throw ParameterError(text("the expression ", in_quotes(expression), " assigns a value"), "", "write == to compare");
+      throw ParameterError(text("the expression ", in_quotes(expression), " assigns a value"), "",
+                           "write == for a comparison, or an expression without an assignment");
     try
       {
         const auto parsed = std::make_shared<Expression>(expression, parameters);
@@ -153,7 +153,7 @@ namespace Squeal
     catch (const mu::Parser::exception_type &error)
       {
         throw ParameterError(text("the expression ", in_quotes(expression), " cannot be parsed: ", error.GetMsg()), "",
-                             "write an expression in the parameters, such as mu*omega^2");
+                             "write an expression in the parameters, for example mu*omega^2");
       }
   }
 

@@ -53,7 +53,7 @@ namespace Squeal
       JsonEntry operator[](const std::string &key) const
       {
         if (!json.is_object() || !json.contains(key))
-          refuse("`" + key + "` is missing", "add it; the page on system files shows an example");
+          refuse("`" + key + "` is missing", "add this key; doc/systems.md shows an example");
         return {json[key], file, place.empty() ? key : place + "." + key};
       }
 
@@ -73,7 +73,7 @@ namespace Squeal
       int integer() const
       {
         if (!json.is_number_integer() || json.get<double>() < 0. || json.get<double>() > std::numeric_limits<int>::max())
-          refuse(in_quotes(json.dump()) + " is not an integer", "write an integer");
+          refuse(in_quotes(json.dump()) + " is not an integer from 0 to 2147483647", "write such an integer");
         return json.get<int>();
       }
 
@@ -87,14 +87,15 @@ namespace Squeal
 
       std::string text_or(const char *key, const std::string &otherwise) const
       {
-        return has(key) ? (*this)[key].as<std::string>("a text") : otherwise;
+        return has(key) ? (*this)[key].as<std::string>("a string") : otherwise;
       }
 
       /// Elements of a list, or members of an object with their names.
       std::vector<std::pair<std::string, JsonEntry>> members(const bool named) const
       {
         if (named ? !json.is_object() : !json.is_array())
-          refuse(named ? "not an object with named members" : "not a list", named ? "write {\"name\": ...}" : "write [...]");
+          refuse(named ? "the entry is not an object with named members" : "the entry is not a list",
+                 named ? "write {\"name\": ...}" : "write [...]");
         std::vector<std::pair<std::string, JsonEntry>> result;
         std::size_t                                    i = 0;
         for (const auto &[key, value] : json.items())
@@ -105,18 +106,18 @@ namespace Squeal
         return result;
       }
 
-      /// Throws for unknown keys: a misspelt key would be ignored.
+      /// Throws FileError for unknown keys, so that misspelt keys are not ignored.
       void check_keys(const std::set<std::string> &known) const
       {
         if (!json.is_object())
-          refuse("not an object", "write {...}");
+          refuse("the entry is not an object", "write {...}");
         for (const auto &[key, value] : json.items())
           if (known.count(key) == 0)
             {
               std::string names;
               for (const std::string &name : known)
                 names += (names.empty() ? "" : ", ") + name;
-              refuse(text("unknown key ", in_quotes(key)), "known are " + names);
+              refuse(text("unknown key ", in_quotes(key)), "use one of the known keys: " + names);
             }
       }
 
@@ -125,7 +126,7 @@ namespace Squeal
       std::string file, place;
     };
 
-    /// Rejects duplicate keys in an object, of which only one would be used.
+    /// Parses JSON text, and rejects duplicate keys in an object because only one of them would be used.
     Json parsed(std::istream &stream, const std::string &file)
     {
       std::vector<std::set<std::string>> keys; // keys of the objects that are still open
@@ -136,7 +137,7 @@ namespace Squeal
           keys.pop_back();
         else if (event == Json::parse_event_t::key && !keys.back().insert(value.get<std::string>()).second)
           throw FileError(text("an object contains the key ", in_quotes(value.get<std::string>()), " twice"), "file " + file,
-                          "remove one of them");
+                          "remove one of the two entries");
         return true;
       });
     }
@@ -148,7 +149,7 @@ namespace Squeal
         {
           entry.check_keys({"value", "lower", "upper", "unit", "description"});
           if (!is_parameter_name(name))
-            entry.refuse(in_quotes(name) + " cannot be the name of a parameter", "use letters, digits and _, a letter first");
+            entry.refuse(in_quotes(name) + " cannot be the name of a parameter", "begin with a letter and use only letters, digits and _");
           FileParameter parameter{name, entry["value"].number()};
           parameter.lower       = entry.has("lower") ? entry["lower"].number() : parameter.value;
           parameter.upper       = entry.has("upper") ? entry["upper"].number() : parameter.value;
@@ -163,7 +164,7 @@ namespace Squeal
       return result;
     }
 
-    /// Reads terms; matrices that several terms share are read once.
+    /// Reader of terms; matrices that several terms share are read once.
     class TermReader
     {
     public:
@@ -180,20 +181,21 @@ namespace Squeal
       {
         entry.check_keys({"name", "power", "coefficient", "matrix", "symmetry", "left", "right", "weights", "kind"});
         Term term;
-        term.name  = entry.has("name") ? entry["name"].as<std::string>("a text") :
-                                         entry[entry.has("matrix") ? "matrix" : "left"].as<std::string>("a text");
+        term.name  = entry.has("name") ? entry["name"].as<std::string>("a string") :
+                                         entry[entry.has("matrix") ? "matrix" : "left"].as<std::string>("a string");
         term.power = entry["power"].integer();
         if (term.power < 0 || term.power > 2)
-          entry["power"].refuse("the power of lambda is " + std::to_string(term.power), "write 0, 1 or 2");
+          entry["power"].refuse("the power of lambda is " + std::to_string(term.power) + ", not 0, 1 or 2", "write 0, 1 or 2");
         const std::string kind = entry.text_or("kind", "body");
         if (const auto kinds = enum_names<TermKind>(); std::find(kinds.begin(), kinds.end(), kind) == kinds.end())
-          entry["kind"].refuse("unknown kind " + in_quotes(kind), "remove it");
+          entry["kind"].refuse("unknown kind " + in_quotes(kind), "remove this key");
         term.kind        = enum_value<TermKind>(kind);
         term.coefficient = coefficient(entry);
         if (entry.has("matrix"))
           for (const char *of_factors : {"left", "right", "weights"})
             if (entry.has(of_factors))
-              entry[of_factors].refuse("a term has a matrix or factors, not both", "remove one of them");
+              entry[of_factors].refuse("the term has both a matrix and low-rank factors or weights",
+                                       "remove either the matrix or left, right and weights");
         if (entry.has("matrix"))
           read_matrix(entry, term);
         else
@@ -207,10 +209,10 @@ namespace Squeal
         const SparseRows positions = read_matrix_file(entry);
         const int        n_points = static_cast<int>(positions.rows()), n = system.map.n();
         if (positions.cols() != 3 || n_points == 0)
-          entry.refuse(text("the positions are ", n_points, " x ", positions.cols(), ", not n x 3"),
+          entry.refuse(text("the matrix of positions is ", n_points, " x ", positions.cols(), ", not n x 3 with n > 0"),
                        "give a row with x, y and z for each point");
         if (!root.has("displacements") && 3 * n_points != n)
-          entry.refuse(text(n_points, " points have ", 3 * n_points, " displacements, the system has ", n, " dofs"),
+          entry.refuse(text(n_points, " points have ", 3 * n_points, " displacements, but the system has ", n, " dofs"),
                        "give `displacements`, the matrix from dofs to displacements of the points");
         ShapePoints  result{positions, nullptr};
         const RowMap rows = ShapePoints::rows_of(n_points, communicator);
@@ -223,7 +225,8 @@ namespace Squeal
                           "give rows for x, y and z of each point, and a column for each dof");
             result.displacements = std::make_shared<SparseMatrix>(rows, system.map, SparseRows(T.middleRows(rows.first(), rows.n_local())));
             if (!(max_norm(*result.displacements) > 0.))
-              file.refuse("no dof moves a point: all entries are zero", "correct the matrix, or remove `positions` and `displacements`");
+              file.refuse("all entries are zero, so that no dof moves a point",
+                          "correct the matrix, or remove `positions` and `displacements`");
           }
         else
           result.displacements = std::make_shared<SparseMatrix>(
@@ -252,8 +255,8 @@ namespace Squeal
           for (const std::string &name : names)
             if (result.contains(name))
               at += text(at.empty() ? "" : ", ", name, " = ", values.at(name).front());
-          entry["coefficient"].refuse(text(in_quotes(expression), " is not finite at ", at),
-                                      "change the ranges of the parameters, or the expression");
+          entry["coefficient"].refuse(text(in_quotes(expression), " is not finite", at.empty() ? "" : " at ", at),
+                                      "change the values or ranges of the parameters, or correct the expression");
         };
         const ParameterValues values = system.values();
         check(values);
@@ -280,7 +283,7 @@ namespace Squeal
         const std::string           name = entry.as<std::string>("the name of a file");
         const std::filesystem::path path = folder / name;
         if (!std::filesystem::is_regular_file(path))
-          entry.refuse("there is no file " + in_quotes(path.string()), "write the matrix there, or change the name");
+          entry.refuse("there is no file " + in_quotes(path.string()), "write the matrix to this file, or correct the name");
         return read_matrix_market(path.string());
       }
 
@@ -297,8 +300,8 @@ namespace Squeal
             size_from  = name;
           }
         if (result.rows() != system.map.n())
-          file.refuse(text(in_quotes(name), " has ", result.rows(), " rows, ", in_quotes(size_from), " has ", system.map.n()),
-                      "give all matrices the same dofs");
+          file.refuse(text(in_quotes(name), " has ", result.rows(), " rows, but ", in_quotes(size_from), " has ", system.map.n()),
+                      "give all matrices the same number of rows");
         return result;
       }
 
@@ -323,8 +326,8 @@ namespace Squeal
             if (claim == "none" || claim == to_string(part.symmetry))
               system.terms.push_back(std::move(part));
             else if (defect > symmetry_tolerance * size)
-              entry["symmetry"].refuse(text("the matrix is not ", claim, ": it has a ", to_string(part.symmetry),
-                                            " part with entries up to ", defect, ", the largest of all is ", size),
+              entry["symmetry"].refuse(text("the matrix is not ", claim, ": the entries of its ", to_string(part.symmetry), " part reach ",
+                                            defect, ", and its largest entry is ", size),
                                        "correct the matrix, or write none");
           }
       }
@@ -346,8 +349,8 @@ namespace Squeal
         term.left  = factor(left);
         term.right = factor(right);
         if (term.left->rank() != term.right->rank())
-          right.refuse(text("the factor has ", term.right->rank(), " columns, the left one ", term.left->rank()),
-                       "give both the same number of columns");
+          right.refuse(text("the right factor has ", term.right->rank(), " columns, but the left factor has ", term.left->rank()),
+                       "give both factors the same number of columns");
         if (entry.has("weights"))
           {
             const JsonEntry   file = entry["weights"];
@@ -355,7 +358,7 @@ namespace Squeal
             const SparseRows  d    = read_matrix_file(file);
             if (d.rows() != term.left->rank() || d.cols() != 1)
               file.refuse(text("the weights are ", d.rows(), " x ", d.cols(), ", not ", term.left->rank(), " x 1"),
-                          "give one for each column of the factors");
+                          "give one weight for each column of the factors");
             term.weights  = "weights " + name;
             auto &weights = system.weights[term.weights];
             weights.assign(d.rows(), 0.);
@@ -387,7 +390,7 @@ namespace Squeal
               for (const auto &[place, end] : range.members(false))
                 ends.push_back(end.integer());
               if (ends.size() != 2 || ends[0] < 1 || ends[0] > ends[1] || ends[1] > n)
-                range.refuse(text("not a range of dofs from 1 to ", n), "write [first, last]");
+                range.refuse(text("the entry is not a range of dofs from 1 to ", n), "write [first, last] with first <= last");
               for (int dof = ends[0] - 1; dof < ends[1]; ++dof)
                 {
                   if (is_known[dof])
@@ -397,12 +400,12 @@ namespace Squeal
               result.back().ranges.emplace_back(ends[0] - 1, ends[1] - 1);
             }
           if (result.back().ranges.empty())
-            entry.refuse("a group without dofs", "give ranges of dofs, [[first, last], ...]");
+            entry.refuse("the group has no dofs", "give ranges of dofs, [[first, last], ...]");
         }
       return result;
     }
 
-    /// Throws if a dof has no entry in any matrix, or if there is no mass.
+    /// Throws FileError if a dof has no nonzero entry in any matrix, or if there is no mass.
     void check_terms(const SystemFile &system, const JsonEntry &terms)
     {
       DenseMatrix sizes = DenseMatrix::Zero(system.map.n_local(), 1);
@@ -431,14 +434,14 @@ namespace Squeal
             mass = std::max(mass, largest);
         }
       if (!(mass > 0.))
-        terms.refuse("there is no mass: no term with power 2 has entries", "add the mass matrix as a term with power 2");
+        terms.refuse("there is no mass: no term with power 2 has nonzero entries", "add the mass matrix as a term with power 2");
       int empty = system.map.n();
       for (int i = system.map.n_local() - 1; i >= 0; --i)
         if (sizes(i, 0) == 0.)
           empty = system.map.number(i);
       empty = -static_cast<int>(largest_of_processes(system.map.communicator(), -empty));
       if (empty < system.map.n())
-        terms.refuse(text("dof ", empty + 1, " has no entry in any matrix: det Q(lambda) vanishes for all lambda"),
+        terms.refuse(text("dof ", empty + 1, " has no nonzero entry in any matrix: det Q(lambda) vanishes for all lambda"),
                      "remove its row and column from all matrices");
     }
   } // namespace
@@ -466,7 +469,7 @@ namespace Squeal
             for (const FileParameter &one : parameters)
               known += (known.empty() ? "" : ", ") + one.name;
             throw ParameterError("the system has no parameter " + in_quotes(name), "file " + path,
-                                 known.empty() ? "it has none" : "it has " + known);
+                                 known.empty() ? "remove this parameter; the system has none" : "use a parameter of the system: " + known);
           }
         if (!(parameter->lower <= value && value <= parameter->upper))
           throw ParameterError(text(name, " = ", exact_text(value), " is outside its range from ", exact_text(parameter->lower), " to ",
@@ -497,7 +500,8 @@ namespace Squeal
     const auto    file = std::filesystem::is_directory(path) ? std::filesystem::path(path) / "system.json" : std::filesystem::path(path);
     std::ifstream stream(file);
     if (!stream)
-      throw FileError("there is no system file " + in_quotes(file.string()), "parameter System", "name a folder with a system.json");
+      throw FileError("the system file " + in_quotes(file.string()) + " cannot be opened", "parameter System",
+                      "name a folder that contains system.json, or the path of this file");
     Json json;
     try
       {
@@ -505,13 +509,13 @@ namespace Squeal
       }
     catch (const nlohmann::json::exception &error)
       {
-        throw FileError(text("not JSON: ", error.what()), "file " + file.string(), "correct the file at this position");
+        throw FileError(text("the file is not valid JSON: ", error.what()), "file " + file.string(), "correct the file at this position");
       }
     const JsonEntry root(json, file.string(), "");
     root.check_keys(
       {"format", "version", "description", "parameters", "terms", "groups", "positions", "displacements", "measured modes", "reduction"});
-    if (root["format"].as<std::string>("a text") != system_format || root["version"].integer() != system_format_version)
-      root.refuse("not a system file of this version",
+    if (root["format"].as<std::string>("a string") != system_format || root["version"].integer() != system_format_version)
+      root.refuse("the file is not a system file of this version",
                   text("write \"format\": \"", system_format, "\", \"version\": ", system_format_version));
 
     SystemFile system;
@@ -529,7 +533,7 @@ namespace Squeal
     if (root.has("positions"))
       system.points = reader.read_points(root);
     else if (root.has("displacements"))
-      root["displacements"].refuse("the positions of the displacements are not given", "also give `positions`");
+      root["displacements"].refuse("`displacements` are given without `positions`", "add `positions`, or remove `displacements`");
     if (root.has("measured modes"))
       system.measured_modes = (file.parent_path() / root["measured modes"].as<std::string>("a file name")).string();
     return system;

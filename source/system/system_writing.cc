@@ -19,7 +19,6 @@ namespace Squeal
     using Json = nlohmann::ordered_json;
   }
 
-  /// A dense matrix in Matrix Market form.
   static std::string matrix_market_array(const DenseMatrix &A)
   {
     std::ostringstream content;
@@ -46,7 +45,7 @@ namespace Squeal
     const auto write_text = [&](const std::string &name, const std::string &content) {
       write(name, [&content](std::ostream &stream) { stream << content; });
     };
-    std::map<const void *, std::string> names; // file names by the object written to them
+    std::map<const void *, std::string> names; // file names of the objects written so far
     const auto                          factor_file = [&](const LowRankFactor &factor) {
       std::string &name = names[&factor];
       if (name.empty())

@@ -17,7 +17,6 @@ namespace Squeal
   {
     using Matrix = std::shared_ptr<const SparseMatrix>;
 
-    /// L diag(d) Rᵀ as a sparse matrix.
     Matrix product(const Term &term, const ParameterValues &values)
     {
       const SparseMatrix &R = *term.right->sparse_transpose(), &L = *term.left->sparse_transpose();
@@ -33,7 +32,7 @@ namespace Squeal
   {
     if (summands.empty())
       return nullptr;
-    // A single unscaled matrix need not be copied
+    // Share a single unscaled matrix instead of copying it
     if (summands.size() == 1 && summands.front().first == 1.)
       return summands.front().second;
     std::vector<std::pair<double, const SparseMatrix *>> parts;
@@ -44,7 +43,6 @@ namespace Squeal
 
   namespace
   {
-    /// A number times powers of parameters.
     class Monomial : public ParameterFunction
     {
     public:
@@ -279,7 +277,7 @@ namespace Squeal
 
   namespace
   {
-    /// A as a sparse matrix, also if it has low rank.
+    /// A as a sparse matrix, even if it has low rank.
     Matrix sparse_form(const Term &term, const ParameterValues &values)
     {
       if (!term.is_sparse())
@@ -367,7 +365,7 @@ namespace Squeal
 
   namespace
   {
-    /// Relative difference below which scales count as equal; they are products of the same parameters [-].
+    /// Relative difference below which scales count as equal [-].
     constexpr double same_scale = 1e-13;
 
     /// Terms whose coefficients have the same ratio to their mean in all members.

@@ -112,7 +112,7 @@ TEST(SlidingVelocity, Refusals)
 {
   for (const char *velocity : {"", "1, 0", "-y, x, 0, 0", "-y, x, w", "-y, x,", "-y, (x, 0"})
     expect_refusal<ParameterError>([&] { moving(velocity).check(); },
-                                   {"are not three expressions in x, y, z", "parameter Operation/Sliding direction"});
+                                   {"is not a list of three valid expressions in x, y, z", "parameter Operation/Sliding direction"});
   OperationParameters rail = moving("1, 0, 0");
   EXPECT_NO_THROW(rail.check());
   rail.rotating_disc = true;

@@ -41,5 +41,5 @@ TEST(GeometryParameters, NodesPerPinFaceNamesTheNearest)
 {
   for (const auto &[given, nearest] : {std::pair(1, 7), {14, 19}, {50, 61}})
     expect_mentions(message<ParameterError>([n = given] { with([n](auto &p) { p.nodes_per_pin_face = n; }).check(); }),
-                    {"Geometry/Nodes per pin face is " + std::to_string(given), "nearest allowed value is " + std::to_string(nearest)});
+                    {"Geometry/Nodes per pin face is " + std::to_string(given), "nearest allowed value, " + std::to_string(nearest)});
 }

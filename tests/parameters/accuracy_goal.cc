@@ -129,7 +129,7 @@ TEST(MeshFamily, RefusesMeshesThatDoNotFollow)
   for (const std::string &file : {mesh.string(), solid.string()})
     {
       expect_mentions(message<ParameterError>([&] { refined(of_file(file), 2.); }),
-                      {file, "cannot be refined", "Geometry/Element size", "element_size"});
+                      {file, "cannot be changed", "Geometry/Element size", "element_size"});
       EXPECT_EQ(refined(of_file(file), 1.).element_size, GeometryParameters().element_size);
     }
   EXPECT_THROW(refined(of_file("missing.geo"), 2.), MeshError);

@@ -125,15 +125,15 @@ TEST(DesignPlan, SobolSequenceFillsTheRanges)
 TEST(DesignPlan, RefusesWhatItDoesNotUnderstandOrVariesTwiceOrIsEqual)
 {
   for (const auto &[variables, reason] :
-       std::vector<std::pair<std::string, std::string>>{{"", "no parameter varies"},
+       std::vector<std::pair<std::string, std::string>>{{"", "no varied parameter is given"},
                                                         {"Geometry/Pin height", "has no `=`"},
                                                         {"Geometry/Pin height = ", "has no values"},
-                                                        {"= 1, 2", "names no parameter"},
+                                                        {"= 1, 2", "has no parameter name"},
                                                         {"Geometry/Pin height = 1 to 2", "has no levels"},
                                                         {"Geometry/Pin height = 2 to 1 in 3", "does not ascend"},
                                                         {"Geometry/Pin height = 1 to x in 3", "`x` in"},
                                                         {"Geometry/Pin height = 1 to 2 in 1", "number of levels"},
-                                                        {"Geometry/Pin height = -1 to 2 in 3 by ratio", "no ratios"},
+                                                        {"Geometry/Pin height = -1 to 2 in 3 by ratio", "requires positive values"},
                                                         {"Geometry/Pin height = 1; Geometry/Pin height = 2", "varies twice"},
                                                         {"A/a = 0 to 1 in 1000; A/b = 0 to 1 in 1000", "1e+06 designs"},
                                                         {"A/x = 1, 2; A/x + B/y = 3, 4", "`A/x` varies twice"},

@@ -87,7 +87,7 @@ TEST(ParameterFiles, OverridesComeLast)
   EXPECT_EQ(p.operation.friction_coefficient, 0.35);
   EXPECT_EQ(p.discretization.maximum_frequency, 1234.);
 
-  expect_mentions(refusal("", {"Operation/Friction coefficient"}), {"an override has no `=`"});
+  expect_mentions(refusal("", {"Operation/Friction coefficient"}), {"the override has no `=`"});
   expect_mentions(refusal("", {"Operation/Friction coeficient=0.3"}),
                   {"unknown parameter `Operation/Friction coeficient`", "`Operation/Friction coefficient`", "--set"});
 }
@@ -128,7 +128,7 @@ TEST(ParameterFiles, RefusedValuesAreAnsweredWithWhatIsAccepted)
   std::string many = "0";
   for (unsigned int i = 0; i < 1000; ++i)
     many += ", 0";
-  expect_refused({{"Sweep/Count modes at=" + many, {"has 1001 values, but takes at most 1000"}}});
+  expect_refused({{"Sweep/Count modes at=" + many, {"has 1001 values, but accepts at most 1000"}}});
 }
 
 TEST(ParameterFiles, LongValuesAreCut)
@@ -253,7 +253,7 @@ TEST(ParameterChecks, RefuseWithNameAndReason)
   const std::string pins = "Materials/Volumes", orthotropic = "Materials/Orthotropic", mounts = "Mounts/Elastic mounts",
                     ratios = "Damping/Modal damping ratio";
   expect_refused({{"Band/Maximum frequency=0", {"give a positive frequency"}},
-                  {"Band/Maximum rate=1e6", {"does not fit the end of the band, 31415.9", "from 0.0314", "to 3.142e+05"}},
+                  {"Band/Maximum rate=1e6", {"for a band that ends at 31415.9", "from 0.0314", "to 3.142e+05"}},
                   {"Output/Animation frames=-1", {"-1"}},
                   {"Disc material/Young modulus=0", {"positive"}},
                   {"Pin material/Poisson ratio=0.5", {"incompressible"}},
@@ -271,13 +271,13 @@ TEST(ParameterChecks, RefuseWithNameAndReason)
                   {orthotropic + "=pad: 1e9, 1e9, 1e9, 0.2, 0.2, 0.2, 1e9, 1e9, 1e9, 0", {"the density is 0"}},
                   {"Materials/Axes=pad: 1, 0, 0, 0, 1, 0", {"`pad` has axes, but no orthotropic material"}},
                   {"Contact/Pairs=disc_top", {"`disc_top` is not a pair of surfaces"}},
-                  {"Contact/Pairs=top / pad: 0", {"is not a positive number"}},
+                  {"Contact/Pairs=top / pad: 0", {"does not give a positive friction factor"}},
                   {"Contact/Pairs=top / top", {"is paired with itself"}},
                   {"Contact/Pairs=top / pad; top / pad: 2", {"is given twice"}},
                   {"Contact/Pairs=", {"the list of contact pairs is empty"}},
                   {"Contact/Tied=back / back", {"`back / back` is not a pair of surfaces"}},
                   {"Contact/Tied=back / disc_contact", {"`disc_contact` is tied"}},
-                  {"Contact/Tied=back / front; back / side", {"`back` is the first of two ties"}},
+                  {"Contact/Tied=back / front; back / side", {"`back` is the first surface of two ties"}},
                   {mounts + "=disc_bore: 1, 2", {"is not an elastic mount"}},
                   {mounts + "=disc_bore: 1, two, 3", {"surface disc_bore", "`two` is not a finite number"}},
                   {mounts + "=disc_bore: 1, -2, 3", {"not a finite value >= 0"}},

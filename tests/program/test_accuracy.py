@@ -128,8 +128,8 @@ class Refusals(ProgramTest):
                 (["Accuracy study/Mesh factors", "two or more"], *STUDY, "Accuracy study/Mesh factors=1"),
                 (["`cubic`", "incompatible modes"], *STUDY, "Accuracy study/Elements=cubic"),
                 (["there is no basis `best`"], *STUDY, "Accuracy study/Bases=best"),
-                (["bodies.msh", "cannot be refined"], *STUDY, "Geometry/File=bodies.msh"),
-                (["cannot be refined"], "Accuracy=1 %", "Geometry/File=bodies.msh"),
+                (["bodies.msh", "cannot be changed"], *STUDY, "Geometry/File=bodies.msh"),
+                (["cannot be changed"], "Accuracy=1 %", "Geometry/File=bodies.msh"),
                 (["`Element size`", "NAME = VALUE", "Discretization/Coarser mesh"], "Discretization/Coarser mesh=Pin layers = 1, Element size"),
                 (["`Geometry/disk_size`", "Discretization/Coarser mesh"], "Discretization/Coarser mesh=disk_size = 0.1"),
                 (["extrapolation requires two solved meshes", "Largest number of dofs"], *STUDY, "Accuracy study/Largest number of dofs=10")):

@@ -131,7 +131,7 @@ class Refusals(ProgramTest):
         for mentions, *overrides in (
                 (["no basis `reel`", "Reduction/Bases", "real + 1st-ord."], "Reduction/Bases=reel"),
                 (["leaves no modes", "Reduction/Component modes"], "Reduction/Component modes=0, 3, 3"),
-                (["is outside the useful range"], "Reduction/Grown tolerances=1e-20"),
+                (["is not between 1e-11 and 0.1"], "Reduction/Grown tolerances=1e-20"),
                 (["needs damping"], "Reduction/Bases=real + 1st-ord. two-sided + damping"),
                 (["requires friction"], "Reduction/Problem=frictionless", "Reduction/Bases=real + 1st-ord."),
                 (["given twice", "Reduction/Coupled frequency"], "Reduction/Coupled frequency=0, 9000, 9000"),

@@ -74,7 +74,7 @@ class Refusals(ProgramTest):
     def test_gaps(self):
         gaps = "Steady sliding/Gaps"
         for entry, mentions in (("pin_top_1: 1e-6; pin_top_2: 0.032", ["0.032 m", "height of the pin", "pin_top_2", "metres"]),
-                                ("pin_top_1 1e-6", ["`pin_top_1 1e-6` is not an entry", "pin: gap, sliding taper, radial taper"]),
+                                ("pin_top_1 1e-6", ["`pin_top_1 1e-6` is not the gap of a pin", "pin: gap, sliding taper, radial taper"]),
                                 ("pin_top_1: nan", ["`nan` is not a finite number", "pin pin_top_1"]),
                                 ("pin_top_1: 1e-6; pin_top_1: 0", ["`pin_top_1` is given twice"])):
             with self.subTest(entry):
@@ -101,8 +101,8 @@ class Refusals(ProgramTest):
 
     def test_displacement(self):
         control, displacement = "Steady sliding/Control=displacement", "Steady sliding/Displacement"
-        self.sliding_refused(["do not move", displacement, "positive"], control)
-        self.sliding_refused(["1e-06 m does not close", "2e-06 m", displacement, "Gaps"], control, f"{displacement}=1e-6",
+        self.sliding_refused(["displacement of the backplates is zero", displacement, "positive"], control)
+        self.sliding_refused(["1e-06 m closes no gap", "2e-06 m", displacement, "Gaps"], control, f"{displacement}=1e-6",
                              "Steady sliding/Gaps=pin_top_1: 1e-5; pin_top_2: 2e-6")
 
     def test_disc_that_nothing_holds(self):

@@ -128,7 +128,7 @@ class Flutter(SystemTest):
         cases = [([mass, stiffness, (0, "1", [[1.]], "none")], ["1 rows", "A2.mtx", "terms[3].matrix"]),
                  ([mass, stiffness, (0, "1", [[1., 2., 3.], [1., 2., 3.]], "none")], ["2 x 3", "terms[3].matrix"]),
                  ([mass, (0, "1", [[1., math.nan], [0., 1.]], "none")], ["row 1 and column 2", "A1.mtx"]),
-                 ([mass, stiffness, (0, "1", friction[2], "symmetric")], ["terms[3].symmetry", "skew part with entries up to 30"]),
+                 ([mass, stiffness, (0, "1", friction[2], "symmetric")], ["terms[3].symmetry", "skew part reach 30"]),
                  ([mass, stiffness, (0, "mu*", friction[2], "none")], ["terms[3].coefficient", "`mu*`"]),
                  ([mass, stiffness, (0, "nu", friction[2], "none")], ["terms[3].coefficient", "nu"]),
                  ([mass, stiffness, (0, "1/mu", friction[2], "none")], ["not finite at mu = 0"]),
@@ -151,7 +151,7 @@ class Flutter(SystemTest):
                                           ("sweep", "Sweep/Parameter=mu, 0, 2, 5", ["range"]), ("stability", "System=nothing", ["nothing"]),
                                           ("reduction", "Reduction/Bases=real, free", ["`free`", "contact nodes"]),
                                           ("reduction", "Reduction/Bases=real + 1st-ord. two-sided + damping", ["needs damping"]),
-                                          ("ingredients", "System=system", ["needs a mesh"]), ("sweep", "Sweep/Parameter=mu", ["range of a parameter"])):
+                                          ("ingredients", "System=system", ["requires a mesh"]), ("sweep", "Sweep/Parameter=mu", ["range of a parameter"])):
             self.write("study.prm", STUDY.format(study=study, band=BAND))
             self.assert_message(self.call("study.prm", "--output", "refused", "--set", override), mentions)
 
@@ -329,7 +329,7 @@ class Flutter(SystemTest):
                                  ({"positions": "infinite.mtx"}, ["infinite.mtx", "row 1 and column 2"]), ({"positions": 1}, ["entry positions"]),
                                  ({"positions": "one_point.mtx", "displacements": "A0.mtx"}, ["displacements", "2 x 2, not 3 x 2"]),
                                  ({"positions": "one_point.mtx", "displacements": "no_motion.mtx"}, ["displacements", "zero"]),
-                                 ({"positions": "missing.mtx"}, ["missing.mtx"]), ({"displacements": "A0.mtx"}, ["give `positions`"])):
+                                 ({"positions": "missing.mtx"}, ["missing.mtx"]), ({"displacements": "A0.mtx"}, ["add `positions`"])):
             self.write("system/system.json", json.dumps({**good, **change}))
             self.assert_message(self.call("study.prm", "--output", "refused"), mentions)
         self.write("system/system.json", json.dumps(good).replace('"power"', '"power": 1, "power"', 1))

@@ -6,7 +6,7 @@
 
 namespace Squeal
 {
-  /// Solvers of symmetric modes.
+  /// Eigensolvers for symmetric matrices.
   enum class RealSolver
   {
     lanczos, ///< block Lanczos
@@ -45,7 +45,6 @@ namespace Squeal
                                                               {Element::incompatible_modes, "incompatible modes"},
                                                               {Element::quadratic, "quadratic"}};
 
-  /// Polynomial degree of the nodal displacements.
   constexpr unsigned int degree_of(const Element element)
   {
     return element == Element::quadratic ? 2 : 1;

@@ -8,7 +8,6 @@
 
 namespace Squeal
 {
-  /// Command-line arguments of the program.
   struct CommandLine
   {
     std::string                parameter_file; ///< empty: none

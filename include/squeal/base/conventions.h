@@ -45,7 +45,7 @@ namespace Squeal
     }
   };
 
-  /// Real eigenvalues below this fraction of the band's end are creep motions and are not listed [-].
+  /// Fraction of the end of the band below which real eigenvalues are creep motions and are not listed [-].
   inline constexpr double zero_frequency = 1e-4;
 
   /// Circular frequency [rad/s] of a frequency in Hz.
@@ -73,7 +73,7 @@ namespace Squeal
   inline ModalQuantities modal_quantities(const std::complex<double> &lambda)
   {
     const double R = lambda.real(), omega = lambda.imag();
-    // ξ is undefined for rigid-body and overdamped modes, ω = 0: report zero
+    // Report zero for rigid-body and overdamped modes (ω = 0), for which ξ is undefined
     const double xi = omega > 0. ? R / omega : 0.;
     return {hertz(omega), R, xi, -2. * xi};
   }

@@ -17,11 +17,10 @@ namespace Squeal
     std::string_view name;
   };
 
-  /// Names of an enumeration for parsing, printing and documentation: specialised next to each enum as an array of EnumName.
+  /// Names of an enumeration for parsing, printing and documentation; specialised next to each enum as an array of EnumName.
   template <typename Enum>
   inline constexpr std::nullptr_t enum_table = nullptr;
 
-  /// Name of @p value.
   template <typename Enum>
   std::string to_string(const Enum value)
   {
@@ -31,7 +30,6 @@ namespace Squeal
     return "?";
   }
 
-  /// All names, in the order of the enumeration.
   template <typename Enum>
   std::vector<std::string> enum_names()
   {

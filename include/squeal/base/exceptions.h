@@ -23,7 +23,7 @@ namespace Squeal
       , change(change)
     {}
 
-    const std::string reason, where, change; ///< the three parts of the message
+    const std::string reason, where, change;
   };
 
   /// An error in the parameter file or on the command line.
@@ -32,7 +32,6 @@ namespace Squeal
     using Error::Error;
   };
 
-  /// An error in a geometry or mesh.
   struct MeshError : Error
   {
     using Error::Error;
@@ -44,7 +43,6 @@ namespace Squeal
     using Error::Error;
   };
 
-  /// An error while reading or writing files.
   struct FileError : Error
   {
     using Error::Error;

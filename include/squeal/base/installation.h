@@ -6,14 +6,13 @@
 
 namespace Squeal
 {
-  /// Paths of installed files, relative to the executable as laid out by `cmake --install`, so that an installation can be moved; paths in
-  /// the source and build trees if not installed.
+  /// Paths relative to the executable, as laid out by `cmake --install`, so that an installation can be moved; paths in the source and
+  /// build trees if the program is not installed.
   struct Installation
   {
     std::filesystem::path geometries; ///< folder of the geometries supplied with the program
     std::filesystem::path mesher;     ///< executable that runs Gmsh
   };
 
-  /// Installation of this process.
   const Installation &installation();
 } // namespace Squeal

@@ -20,7 +20,7 @@ namespace Squeal
   /// Available memory of all machines of the communicator [byte]. Collective.
   double available_memory(MPI_Comm communicator);
 
-  /// Largest fraction of the available memory for attachment modes, one vector per contact node, which can be recomputed [-].
+  /// Largest fraction of the available memory for stored attachment modes, which are one vector per contact node and can be recomputed [-].
   constexpr double largest_part_of_attachment_modes = 0.125;
 
   /// Resident memory of this process [byte]; 0 if the system does not report it.
@@ -30,13 +30,12 @@ namespace Squeal
   double peak_resident_memory();
 
   /// Returns freed memory at the end of the heap to the system if it exceeds 256 MB. Call once at the start of main(). SuperLU_dist, which
-  /// deal.II packages link, configures the allocator to keep all freed memory, so that memory would accumulate over the steps of a run.
-  /// Large blocks are not mapped individually: clearing the pages of each temporary vector would take a tenth of the time of a large run.
+  /// deal.II packages link, configures the allocator to keep all freed memory. Large blocks are not mapped individually: clearing the pages
+  /// of each temporary vector would take a tenth of the time of a large run.
   void return_freed_blocks();
 
-  /// Returns all freed memory to the system.
   void return_freed_memory();
 
-  /// Returns freed memory and resets the peak; false if the system does not allow it.
+  /// Returns freed memory to the system and resets the peak; returns false if the system does not allow the reset.
   bool reset_peak_memory();
 } // namespace Squeal

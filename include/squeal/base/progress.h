@@ -13,7 +13,7 @@
 
 namespace Squeal
 {
-  /// Time and memory used on this process.
+  /// Time and memory used by this process.
   struct Cost
   {
     double seconds     = 0.; ///< wall time [s]
@@ -43,7 +43,7 @@ namespace Squeal
 
   /**
    * Progress messages: one line per step with its elapsed time, and on a terminal a live counter, which a separate thread updates while
-   * libraries compute. Silent on all processes except the one with a stream.
+   * libraries compute. Only the process with a stream prints.
    */
   class Progress
   {
@@ -59,7 +59,7 @@ namespace Squeal
     Progress(const Progress &)            = delete;
     Progress &operator=(const Progress &) = delete;
 
-    /// Begins a step, after finishing the current one.
+    /// Ends the current step and begins a new step.
     void begin(const std::string &name);
 
     /// Sets the text that the live counter shows for the current step.
@@ -71,13 +71,11 @@ namespace Squeal
     /// Prints a line that belongs to no step.
     void note(const std::string &text);
 
-    /// All finished steps.
     const std::vector<StepRecord> &steps() const
     {
       return records;
     }
 
-    /// Seconds since construction.
     double elapsed() const
     {
       return run.cost().seconds;

@@ -10,7 +10,7 @@
 
 namespace Squeal
 {
-  /// Concatenates the parts; numbers have four digits.
+  /// Concatenates the parts; floating-point numbers have four significant digits.
   template <typename... Parts>
   std::string text(const Parts &...parts)
   {
@@ -26,10 +26,10 @@ namespace Squeal
   /// Several numbers, separated by ", ".
   std::string exact_text(const std::vector<double> &values);
 
-  /// A number for a sentence: at least @p n_digits significant digits, all digits before the point, no exponent.
+  /// A number without an exponent: all digits before the point, and at least @p n_digits significant digits.
   std::string decimal_text(double value, int n_digits = 4);
 
-  /// A finite number with optional surrounding blanks; nothing for any other text. Zero has no sign.
+  /// A finite number with optional surrounding blanks; no value for any other text. Zero has no sign.
   std::optional<double> parse_number(const std::string &text);
 
   /// Words of a text, separated by single blanks.
@@ -44,6 +44,6 @@ namespace Squeal
   /// A command line in POSIX shell syntax, with words quoted if necessary.
   std::string shell_command(const std::vector<std::string> &words);
 
-  /// First pair of lines in which two texts differ, for a message: "`a = 1` there, `a = 2` here", or "nothing" if one text ends.
+  /// First pair of lines in which two texts differ, for a message: "`a = 1` there, `a = 2` here", with "nothing" for a text that has ended.
   std::string first_difference(const std::string &there, const std::string &here);
 } // namespace Squeal

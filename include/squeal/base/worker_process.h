@@ -24,7 +24,7 @@ namespace Squeal
      *
      * @param arguments command-line arguments without the name of the program
      * @param log       file for its output
-     * @param n_threads sets OMP_NUM_THREADS unless the user has set it, so that there are not more threads than cores
+     * @param n_threads value of OMP_NUM_THREADS, unless the user has set it, to limit the threads to the number of cores
      *
      * Throws FileError if it cannot be started.
      */
@@ -36,7 +36,7 @@ namespace Squeal
     WorkerProcess(const WorkerProcess &)            = delete;
     WorkerProcess &operator=(const WorkerProcess &) = delete;
 
-    /// How the process ended: "" for success, "exit status 1", "killed by SIGSEGV"; nothing while it runs.
+    /// Result of the process: "" for success, "exit status 1", "killed by SIGSEGV"; no value while it runs.
     std::optional<std::string> end();
 
   private:

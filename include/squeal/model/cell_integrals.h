@@ -13,8 +13,7 @@
 
 namespace Squeal
 {
-  /// Adds an element integral to the matrix of a cell or face; the dofs of node i are 3 i, 3 i + 1, 3 i + 2. Several threads may call it at
-  /// the same time.
+  /// Thread-safe function that adds an element integral to the matrix of a cell or face; the dofs of node i are 3 i, 3 i + 1, 3 i + 2.
   using ElementIntegral = std::function<void(const ElementValues &, dealii::FullMatrix<double> &)>;
 
   /// Assembles one matrix on the free dofs for each integral over the given elements of this process.
@@ -22,7 +21,7 @@ namespace Squeal
                                                             const std::vector<const NodalElement *> &elements,
                                                             const std::vector<ElementIntegral>      &integrals);
 
-  /// Adds ∫ integrand(i, j, q) for shape functions of the same direction.
+  /// Adds ∫ integrand(i, j, q) to the entries that couple equal directions of nodes i and j.
   template <typename Integrand>
   void add_in_each_direction(const ElementValues &values, dealii::FullMatrix<double> &matrix, const Integrand &integrand)
   {

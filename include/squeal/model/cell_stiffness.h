@@ -17,9 +17,9 @@ namespace Squeal
    *
    *   K = K_uu − K_uα K_αα⁻¹ K_αu.
    *
-   * This avoids shear locking in bending. Their gradients use the Jacobian J₀ at the centre of the cell, ∇(1 − ξ_a²) := (det J₀ / det J)
-   * J₀⁻ᵀ ∇_ξ (1 − ξ_a²). The mean of these gradients over the cell vanishes, so that constant strains are exact in hexahedra of any shape.
-   * The incompatible modes have no mass. Other cell shapes have no incompatible modes.
+   * These modes avoid shear locking in bending. Their gradients use the Jacobian J₀ at the centre of the cell, ∇(1 − ξ_a²) := (det J₀ / det
+   * J) J₀⁻ᵀ ∇_ξ (1 − ξ_a²). The mean of these gradients over the cell vanishes, so that constant strains are exact in hexahedra of any
+   * shape. Incompatible modes have no mass. Other cell shapes have no incompatible modes.
    */
   void add_stiffness(const ElementValues &values, Element element, const ElasticLaw &law, dealii::FullMatrix<double> &stiffness);
 } // namespace Squeal

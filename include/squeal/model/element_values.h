@@ -44,7 +44,7 @@ namespace Squeal
       return gradients[q * now->n_nodes + i];
     }
 
-    /// Volume or area element times quadrature weight [m³ or m²]; not positive in an inverted cell.
+    /// Volume or area element times quadrature weight [m³ or m²]; not positive where a cell is inverted.
     double JxW(const unsigned int q) const
     {
       return weights[q];
@@ -95,7 +95,7 @@ namespace Squeal
     const Table &table(Shape shape);
 
     const Model                      &model;
-    unsigned int                      degree; ///< degree of the quadrature rule
+    unsigned int                      degree;
     std::array<Table, 6>              tables;
     const Table                      *now     = nullptr;
     const NodalElement               *current = nullptr;

@@ -79,7 +79,7 @@ namespace Squeal
     unsigned int volume; ///< index into volume_names()
   };
 
-  /// A face of only one cell, outwards by the right-hand rule.
+  /// A face of only one cell, whose normal points outwards by the right-hand rule.
   struct Face : NodalElement
   {
     std::vector<unsigned int> surfaces; ///< indices of the named surfaces that contain the face
@@ -107,7 +107,6 @@ namespace Squeal
       return element_type;
     }
 
-    /// Polynomial degree of the nodal displacements.
     unsigned int degree() const
     {
       return degree_of(element_type);
@@ -124,13 +123,11 @@ namespace Squeal
       return components;
     }
 
-    /// Names of all volumes.
     const std::vector<std::string> &volume_names() const
     {
       return volumes;
     }
 
-    /// Indices of the volumes of a body.
     std::vector<unsigned int> volumes_of(unsigned int component) const;
 
     /// Nodes of the cells of this process, in the order of the cells.

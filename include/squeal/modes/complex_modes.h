@@ -17,15 +17,15 @@ namespace Squeal
   /// with coupled displacements φ_c, φᴴ M_c φ = 1, and the real eigenvalues within the radius of the band.
   struct ComplexModes
   {
-    std::vector<std::complex<double>> lambda;                    ///< λ of the complex modes [rad/s]
-    std::shared_ptr<MultiVector>      real_part, imaginary_part; ///< φ_c, n × k
-    std::shared_ptr<MultiVector> left_real_part, left_imaginary_part; ///< ψ, ψᵀQ(λ) = 0, ψᴴM_cψ = 1; null if the method does not compute it
-    std::vector<double>          residuals;                           ///< ‖Q(λ)φ‖ / ‖Kφ‖ [-]
-    std::vector<double>          energy_residuals;                    ///< ε_res, eq. (16) of the paper [-]
-    std::vector<double>          estimated_errors;                    ///< |δλ| / |λ| [-]; empty if the method does not estimate errors
-    int                          n_rigid_body = 0;                    ///< number of rigid-body modes, λ = 0
-    std::vector<double>          real_values;                         ///< real λ ≠ 0, |λ| ≤ the band's radius, ascending [1/s]
-    std::string                  summary;                             ///< method and its cost, for messages
+    std::vector<std::complex<double>> lambda;                              ///< λ of the complex modes [rad/s]
+    std::shared_ptr<MultiVector>      real_part, imaginary_part;           ///< φ_c, n × k
+    std::shared_ptr<MultiVector>      left_real_part, left_imaginary_part; ///< ψ, ψᵀQ(λ) = 0, ψᴴM_cψ = 1; null if not computed
+    std::vector<double>               residuals;                           ///< ‖Q(λ)φ‖ / ‖Kφ‖ [-]
+    std::vector<double>               energy_residuals;                    ///< ε_res, eq. (16) of the paper [-]
+    std::vector<double>               estimated_errors; ///< |δλ| / |λ| [-]; empty if the method does not estimate errors
+    int                               n_rigid_body = 0; ///< number of rigid-body modes, λ = 0
+    std::vector<double>               real_values;      ///< real λ ≠ 0, |λ| ≤ the band's radius, ascending [1/s]
+    std::string                       summary;          ///< method and its cost, for messages
   };
 
   /// Re xᴴy of each pair of complex vectors; columns 0 ... k-1 are real parts, k ... 2k-1 imaginary parts.
@@ -49,7 +49,7 @@ namespace Squeal
    */
   void finish_modes(const CoupledSystem &system, const ParameterValues &values, const UpdatedInverse &inverse, ComplexModes &modes);
 
-  /// Verdict on the growth of a mode. Tables list a neutral mode as stable.
+  /// Verdict on the growth of a mode.
   enum class Verdict
   {
     stable, ///< the mode decays
@@ -67,7 +67,7 @@ namespace Squeal
   /// Divergence rates |ξ| up to this limit are rounding errors of neutral modes [-].
   inline constexpr double negligible_divergence = 1e-8;
 
-  /// Safety factor: an estimated error of λ may be too small by this factor [-].
+  /// Safety factor for estimated errors of λ, which may be too small [-].
   inline constexpr double error_safety = 3.;
 
   /**
@@ -79,8 +79,8 @@ namespace Squeal
    *
    * An error of zero, as for branches of a sweep, allows only for rounding errors: R = ± ε ω is still neutral.
    *
-   * @param growth_needs_coalescence true without damping if no coalescence is possible within the errors: −λ̄ is an eigenvalue as well as
-   * λ, so that R = 0 is exact for any error of ω unless two modes coalesce. In this case, u is not applied to R ≤ ε ω.
+   * @param growth_needs_coalescence true without damping if no coalescence is possible within the errors. Then −λ̄ is also an eigenvalue,
+   * R = 0 is exact for any error of ω, and u is not applied to R ≤ ε ω.
    */
   Verdict verdict_of(const std::complex<double> &lambda, double error = 0., bool growth_needs_coalescence = false);
 } // namespace Squeal

@@ -34,8 +34,8 @@ namespace Squeal
    *   S⁻¹ = Φ D⁻¹ Φᵀ + S_⊥⁻¹,   S_⊥⁻¹ = Σ_k c_k T_k(2 w H − I) P (K_c + s M_c)⁻¹
    *   c_k = (2 − δ_k0) ((1 − r) / (1 + r))ᵏ / r,   r = √((ω_d² + λ²) / w),   Re r > 0
    *
-   * The determinant is thus a product of det N_⊥, which varies little in the band, and det W, where W is a small matrix with poles at the
-   * real modes, λ = ±iω_j:
+   * det N is the product of det N_⊥, which varies little in the band, and det W, where W is a small matrix with poles at the real modes, λ
+   * = ±iω_j:
    *
    *   det N = det N_⊥ det W,   N_⊥ = I + G S_⊥⁻¹ E,   W = I + D⁻¹ Φᵀ E N_⊥⁻¹ G Φ
    *
@@ -87,10 +87,10 @@ namespace Squeal
     struct Block
     {
       const Term              *term;
-      int                      first_row; ///< row index in N
-      DenseMatrix              on_modes;  ///< RᵀΦ
-      std::vector<DenseMatrix> moments;   ///< Rᵀ T_k P (K + s M)⁻¹ E
-      double                   norm;      ///< norm of diag(d) Rᵀ (K + s M)^−½ on the complement
+      int                      first_row;
+      DenseMatrix              on_modes; ///< RᵀΦ
+      std::vector<DenseMatrix> moments;  ///< Rᵀ T_k P (K + s M)⁻¹ E
+      double                   norm;     ///< norm of diag(d) Rᵀ (K + s M)^−½ on the complement
     };
 
     const CoupledSystem &system;

@@ -23,10 +23,10 @@ namespace Squeal
   inline constexpr EnumName<ContourMethod> enum_table<ContourMethod>[] = {{ContourMethod::condensed, "condensed"},
                                                                           {ContourMethod::sparse_lu, "sparse LU"}};
 
-  /// Method for a system: condensed if all terms except K_c and M_c have low rank.
+  /// Method for a system; condensed if all terms except K_c and M_c have low rank.
   ContourMethod contour_method(const CoupledSystem &system);
 
-  /// True if the modes of the system can be counted with the current number of processes: sparse LU requires a single process.
+  /// True if the modes of the system can be counted with the current number of processes; sparse LU requires a single process.
   bool is_countable(const CoupledSystem &system);
 
   /// The rectangle −a ≤ Re λ ≤ a, ω_low ≤ Im λ ≤ ω_high, and options for its boundary.
@@ -51,7 +51,6 @@ namespace Squeal
   /// Rectangle of a band; its lower edge is at 0.001 of the band's end.
   ContourOptions contour_of_band(const Band &band);
 
-  /// Number of the given eigenvalues in the rectangle.
   int n_in_rectangle(const std::vector<std::complex<double>> &lambda, const ContourOptions &contour);
 
   /// Throws SolverError unless exactly @p n_counted of the given eigenvalues are in the rectangle.
@@ -69,9 +68,9 @@ namespace Squeal
   };
 
   /**
-   * Counts the complex modes of the system inside the rectangle at each of the friction coefficients @p mu, without computing them: by the
-   * argument principle, the number is the winding number of the entire function det Q(λ) about zero along the boundary. Modes with |Re λ| >
-   * a are not counted.
+   * Counts the complex modes of the system inside the rectangle at each friction coefficient in @p mu without computing the modes. By the
+   * argument principle, their number is the winding number of the entire function det Q(λ) about zero along the boundary. Modes with |Re λ|
+   * > a are not counted.
    *
    * Condensed: det Q = det S det N_⊥ det W. The zeros of det S are the real modes, counted by inertia; the winding numbers of det N_⊥ and
    * det W are added. Between points, each matrix changes to A' = A (I + F) with
@@ -85,11 +84,11 @@ namespace Squeal
    * Sparse LU: the winding number of det Q is computed directly. A step is reduced until |Δ ln det Q| of both halves (modulus and phase) is
    * below the largest phase step, so that close zeros cannot be missed.
    *
-   * Without damping det Q(−λ̄) is the conjugate of det Q(λ), and only half of the contour is followed.
+   * Without damping, det Q(−λ̄) is the conjugate of det Q(λ), and only half of the contour is followed.
    *
-   * Throws a SolverError with the point if a zero or a real mode lies on the contour to working precision, or if more points would be
-   * needed than allowed. Also throws SolverError if the bodies are damped (condensed), if there is modal damping (sparse LU), and with
-   * several processes (sparse LU).
+   * Throws a SolverError with the point if a zero or a real mode lies on the contour to working precision, or if more points are needed
+   * than allowed. Also throws SolverError if the bodies are damped (condensed), if there is modal damping (sparse LU), and with several
+   * processes (sparse LU).
    */
   std::vector<ContourCount> count_by_contour(const CoupledSystem       &system,
                                              const std::vector<double> &mu,

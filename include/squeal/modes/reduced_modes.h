@@ -14,8 +14,8 @@ namespace Squeal
   /// Oscillating modes of a reduced model, eq. (12) of the paper, right and left, in the coordinates of its basis.
   struct ReducedModes
   {
-    ParameterValues values;          ///< parameter values of the system
-    ReducedPencil   pencil;          ///< reduced pencil at these values
+    ParameterValues values;
+    ReducedPencil   pencil;
     DenseMatrix     mass, stiffness; ///< TᵀM_cT and TᵀK_cT, for the norms
 
     std::vector<std::complex<double>> lambda; ///< Im λ > 0, ascending by Im, then Re [rad/s]
@@ -37,7 +37,7 @@ namespace Squeal
   /// by thresholds relative to @p largest_circular_frequency [rad/s], the end of the band.
   ReducedModes reduced_modes(const ReducedModel &model, double mu, double largest_circular_frequency, BandEnd end = BandEnd::cut);
 
-  /// Modes at any parameter values, on this process only: vectors of a multiple eigenvalue may differ between processes.
+  /// Modes at any parameter values, on this process only; vectors of a multiple eigenvalue may differ between processes.
   ReducedModes local_reduced_modes(const ReducedModel    &model,
                                    const ParameterValues &values,
                                    double                 largest_circular_frequency,
@@ -49,7 +49,7 @@ namespace Squeal
                                          double                 largest_circular_frequency,
                                          BandEnd                end = BandEnd::cut);
 
-  /// Modes of the band, with vectors and matrices in the coordinates of ReducedModel::modal(); nothing if the band cannot be separated.
+  /// Modes of the band, with vectors and matrices in the coordinates of ReducedModel::modal(); no value if the band cannot be separated.
   std::optional<ReducedModes> modal_modes_of_band(const ReducedModel    &model,
                                                   const ParameterValues &values,
                                                   double                 largest_circular_frequency);

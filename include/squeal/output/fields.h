@@ -38,7 +38,7 @@ namespace Squeal
     std::string              name;         ///< name of its file, without extension
     std::string              title;        ///< text that describes the mode in its file
     std::vector<double>      displacement; ///< u on the free dofs, rows of this process
-    std::optional<Component> component;    ///< bodies that are written; nothing: all
+    std::optional<Component> component;    ///< bodies that are written; no value: all bodies
   };
 
   /// An entry of a list of mode files for ParaView.
@@ -48,7 +48,6 @@ namespace Squeal
     double      frequency; ///< [Hz]
   };
 
-  /// Options of the animation of a mode.
   struct AnimationOptions
   {
     unsigned int frames_per_period = 16;
@@ -115,7 +114,7 @@ namespace Squeal
     void write_contact_state(const ContactField &state);
 
   private:
-    /// A mesh with the part that all its files have in common.
+    /// A mesh, and the part of the VTK files that is common to all files of this mesh.
     struct Stage
     {
       explicit Stage(FieldMesh given);
@@ -140,8 +139,8 @@ namespace Squeal
     std::vector<double>                                        areas;  ///< areas of the pairs of contact nodes [m²]
     std::vector<double>                                        closed; ///< 1 for pairs in contact
     std::map<std::optional<Component>, Stage>                  stages;
-    std::optional<Stage>                                       surface; ///< surface for animations
+    std::optional<Stage>                                       surface;
     const Stage                                                contact_faces;
-    std::vector<int>                                           pairs; ///< pair of each vertex; -1: no pair, the face overhangs the disc
+    std::vector<int> pairs; ///< pair of each vertex; -1: no pair, because the face overhangs the disc
   };
 } // namespace Squeal

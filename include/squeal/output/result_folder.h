@@ -22,30 +22,28 @@ namespace Squeal
   /// Metadata for repeating a run and comparing its cost.
   struct RunRecord
   {
-    std::string                                 command;     ///< shell command that repeats the run
-    int                                         n_processes; ///< number of MPI processes
+    std::string                                 command; ///< shell command that repeats the run
+    int                                         n_processes;
     unsigned int                                n_threads;
     int                                         blas_threads;
-    std::vector<std::pair<std::string, long>>   counts;               ///< numbers of elements, dofs, contact nodes, modes, ...
-    std::vector<std::pair<std::string, double>> quantities;           ///< worst element quality, ...
-    std::vector<std::string>                    warnings;             ///< warnings about questionable input
+    std::vector<std::pair<std::string, long>>   counts;     ///< numbers of elements, dofs, contact nodes, modes, ...
+    std::vector<std::pair<std::string, double>> quantities; ///< worst element quality, ...
+    std::vector<std::string>                    warnings;
     FileSizes                                   files    = {};        ///< files written by the run, except the record
     std::string                                 revision = "unknown"; ///< revision of the program's sources
   };
 
-  /// Names and versions of the libraries in this build.
   std::vector<std::pair<std::string, std::string>> library_versions();
 
   /// Writes versions, revision, machine, counts, time and peak memory of each step, and files, as JSON.
   void write_run_record(std::ostream &stream, const RunRecord &record, const Progress &progress);
 
-  /// Files listed in a record; nothing if the record lists no files or cannot be read.
+  /// Files listed in a record; no value if the record lists no files or cannot be read.
   std::optional<FileSizes> read_file_list(const std::filesystem::path &record);
 
   /**
    * Result folder of a run. Files are written to its subfolder `.unfinished` and moved to the folder when the run is complete, the run
-   * record last. A failed run does not change former results; after a killed run, the next run clears `.unfinished`. The folder is locked
-   * against concurrent runs.
+   * record last. A failed run does not change former results. The folder is locked against concurrent runs.
    *
    * Former results that the record lists are replaced or removed; the user's own files are kept. The program never writes to a folder that
    * contains other files but no record.
@@ -96,13 +94,13 @@ namespace Squeal
     std::vector<std::string> put_in_place() const;
     void                     remove_traces();
 
-    const std::string     shown; ///< name as given by the user
+    const std::string     shown;
     const bool            is_root;
     std::filesystem::path place, unfinished;
     bool                  is_new   = false; ///< true if this run has created the folder
     bool                  is_stuck = false; ///< true if the results are complete but could not be moved
     int                   lock     = -1;    ///< descriptor of the locked folder
 
-    mutable FileSizes written; ///< files written so far
+    mutable FileSizes written;
   };
 } // namespace Squeal

@@ -49,7 +49,7 @@ namespace Squeal
     std::string                       name;
     std::string                       unit; ///< unit; "-" for a number without unit, "" for text
     std::function<Entry(const Row &)> value;
-    int                               digits     = 3; ///< on the screen: after the point, or significant digits in scientific notation
+    int                               digits     = 3; ///< digits after the point on the screen
     bool                              scientific = false;
   };
 
@@ -74,7 +74,6 @@ namespace Squeal
         }
     }
 
-    /// Writes comma-separated values with a header line.
     void write_csv(std::ostream &stream) const;
 
     /// Prints aligned columns; texts are aligned to the left, numbers to the right.
@@ -93,6 +92,6 @@ namespace Squeal
     Entry checked(const Entry &cell) const;
 
     std::vector<Head>               heads;
-    std::vector<std::vector<Entry>> cells; ///< entries of each column
+    std::vector<std::vector<Entry>> cells;
   };
 } // namespace Squeal

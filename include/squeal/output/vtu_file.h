@@ -17,7 +17,7 @@ namespace Squeal
   /// into linear cells. Normals of faces point out of the body.
   struct FieldMesh
   {
-    std::vector<Node>         nodes;      ///< vertices of the mesh
+    std::vector<Node>         nodes;
     std::vector<std::uint8_t> types;      ///< VTK cell type of each cell
     std::vector<std::int32_t> corners;    ///< vertex indices, cell by cell in VTK order
     std::vector<std::int32_t> ends;       ///< for each cell, the end of its range in corners
@@ -28,7 +28,6 @@ namespace Squeal
   /// Mesh of all bodies, or of one component.
   FieldMesh body_mesh(const Model &model, const std::optional<Component> &component);
 
-  /// Surface mesh of all bodies.
   FieldMesh surface_mesh(const Model &model);
 
   /// Mesh of the contact faces of the pins.
@@ -46,7 +45,7 @@ namespace Squeal
   };
 
   /// Piece of a VTK file (.vtu) on this process: mesh, cell field `component` (also `volume` if a body has several volumes) and vertex
-  /// fields, compressed by zlib. To compress the mesh of several files only once, copy a piece without fields.
+  /// fields, compressed by zlib. Copy a piece without fields to compress the mesh of several files only once.
   class VtuPiece
   {
   public:
@@ -59,7 +58,6 @@ namespace Squeal
     void write(const ResultFolder &folder, const std::string &name, const std::string &title, MPI_Comm communicator) const;
 
   private:
-    /// An array of the file.
     struct Array
     {
       std::string  place; ///< PointData, CellData, Points or Cells

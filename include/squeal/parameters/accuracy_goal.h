@@ -58,19 +58,19 @@ namespace Squeal
   /// Limits of a goal other than as_given.
   AccuracyLimits limits_of(AccuracyGoal goal);
 
-  /// Estimated error on the mesh of a goal, divided by the difference from its coarser mesh [-]. Slightly larger than observed for the
-  /// default model (doc/accuracy.md): 2/3 for elements with eight nodes, 1/3 for quadratic elements; 1 without a goal.
+  /// Ratio of the estimated error on the mesh of a goal to the difference from the coarser mesh of the goal [-]: 2/3 for elements with
+  /// eight nodes, 1/3 for quadratic elements, 1 without a goal. The ratios are slightly larger than observed for the default model
+  /// (doc/accuracy.md).
   double error_by_difference(AccuracyGoal goal);
 
   /**
-   * Parameters in which the element, mesh, solver and tolerances are replaced by those of the accuracy goal. doc/accuracy.md shows their
-   * cost and accuracy for the default model. Element sizes of the disc are a fraction of the shorter of the bending and shear wavelengths
-   * at the end of the band, layers are no thicker than this, and tall pins have proportionally more layers. Without a goal, the parameters
-   * are unchanged.
+   * Parameters with the element, mesh, solver and tolerances of the accuracy goal; unchanged without a goal. doc/accuracy.md lists cost and
+   * accuracy for the default model. The element size of the disc is a fraction of the shorter of the bending and Rayleigh wavelengths at
+   * the end of the band. Layers of the disc have about this thickness or less, and tall pins have proportionally more layers.
    */
   Parameters with_goal(const Parameters &given);
 
   /// The same model on the coarser mesh of a goal or, without a goal, on the coarser mesh from the parameters. The band is slightly wider,
-  /// because coarse meshes have higher frequencies. Throws ParameterError if there is neither a goal nor a coarser mesh.
+  /// because coarse meshes have higher frequencies. Throws ParameterError if Discretization/Coarser mesh is invalid.
   Parameters with_coarser_mesh(const Parameters &given);
 } // namespace Squeal

@@ -18,7 +18,8 @@ namespace Squeal
     double  maximum_frequency = 5000.; ///< upper end of the band [Hz]
     double  maximum_rate      = 0.;    ///< largest |Re λ| [1/s]; 0: see Band
 
-    /// Coarser mesh: values of `Geometry` parameters, "disc_size = 0.012, ...", or the name of a mesh file; empty: no coarser mesh.
+    /// Coarser mesh: values of `Geometry` parameters, "disc_size = 0.012, ...", or the name of a geometry or mesh file; empty: no coarser
+    /// mesh.
     std::string coarser_mesh;
 
     Band band() const
@@ -90,12 +91,12 @@ namespace Squeal
                                                                             {FieldSelection::unstable, "unstable"},
                                                                             {FieldSelection::all, "all"}};
 
-  /// System that is written to the results, in the format that the parameter `System` reads.
+  /// Form of the system that is written to the results, as input for the parameter `System`.
   enum class SystemOutput
   {
     none,
     full,   ///< all terms of the system
-    reduced ///< the reduced model of a sweep or of samples; each basis of a study of bases
+    reduced ///< the reduced model of a sweep or of samples; one system for each basis of Study = reduction
   };
 
   template <>

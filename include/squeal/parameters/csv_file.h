@@ -7,7 +7,7 @@
 
 namespace Squeal
 {
-  /// A table of texts from a spreadsheet.
+  /// Table of texts from a CSV file.
   struct CsvFile
   {
     std::vector<std::string>              names;       ///< column names
@@ -18,23 +18,23 @@ namespace Squeal
     /// Index of a column; names.size() if it is missing.
     std::size_t column(const std::string &name) const;
 
-    /// Number in a cell. Throws ParameterError with the line unless it is a finite number.
+    /// Number in a cell. Throws ParameterError, naming the line, unless the cell is a finite number.
     double number(std::size_t row, std::size_t column) const;
 
     /// Throws ParameterError if two columns have the same name.
     void check_repeated_columns() const;
   };
 
-  /// Path of an input file: in the folder of the parameter file or, if it is not there, in the current directory.
+  /// Path of an input file: in the folder of the parameter file, unless the file exists only in the current directory.
   std::string input_path(const std::string &name, const std::string &parameter_directory);
 
   /**
    * Reads comma-separated values: column names in the first line, then one row per line. Empty lines are skipped.
    *
-   * @param parameter that names the file, "Section/Name", for messages
+   * @param parameter "Section/Name" of the parameter that names the file, for messages
    * @param row       meaning of a row, for messages: "design"
    *
-   * Throws FileError if the file cannot be read, ParameterError with the line if it is not comma-separated UTF-8 text.
+   * Throws FileError if the file cannot be read, and ParameterError, naming the line, if it is not comma-separated UTF-8 text.
    */
   CsvFile read_csv(const std::string &path, const std::string &parameter, const std::string &row);
 } // namespace Squeal

@@ -29,7 +29,7 @@ namespace Squeal
 
     std::function<std::string()> print; ///< value as text that parse() reads back unchanged
 
-    /// Sets the value; throws ParameterError, "Operation/Friction coefficient must lie in 0 ... 10, not -0.1".
+    /// Sets the value. Throws ParameterError, for example "Operation/Friction coefficient must lie in 0 ... 10, not -0.1".
     std::function<void(const std::string &)> parse;
   };
 
@@ -40,7 +40,7 @@ namespace Squeal
     /// Begins a section for the following declarations.
     void enter(const std::string &section);
 
-    /// A number with its unit, or "none".
+    /// A number; @p unit is "none" for a number without a unit.
     void add(const std::string &name, double &value, const std::string &unit, const std::string &documentation, const Range &range = {});
     void add(const std::string &name,
              unsigned int      &value,
@@ -58,7 +58,6 @@ namespace Squeal
              const Range         &range        = {},
              std::size_t          most_numbers = std::numeric_limits<std::size_t>::max());
 
-    /// A value of an enumeration, by name.
     template <typename Enum>
     void add(const std::string &name, Enum &value, const std::string &documentation)
     {

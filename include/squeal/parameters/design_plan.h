@@ -12,7 +12,7 @@ namespace Squeal
   /// Designs, defined by the values of their variables.
   struct DesignPlan
   {
-    std::vector<std::string>              names;   ///< names of the variables: "Section/Name", "Section/Name[k]", several joined by "+"
+    std::vector<std::string>              names;   ///< variables: "Section/Name" or "Section/Name[k]", or several of them joined by "+"
     std::vector<std::vector<std::string>> designs; ///< values of the variables for each design; an empty text means unchanged
 
     std::string              where_names; ///< source of the names for messages: parameter, or file and line
@@ -24,7 +24,7 @@ namespace Squeal
   {
     std::string              name;
     std::vector<std::string> levels;
-    double                   first = 0., last = 0.; ///< ends of the range
+    double                   first = 0., last = 0.;
     bool                     is_range = false, by_ratio = false;
 
     /// Value at the fraction t in [0, 1] of the range or list.
@@ -38,21 +38,21 @@ namespace Squeal
   std::vector<std::vector<double>> sobol_points(std::size_t n, std::size_t dimension, unsigned int seed);
 
   /**
-   * Designs from the section `Designs`. The same on every process and machine for the same parameters.
+   * Designs from the section `Designs`, identical on every process and machine.
    *
    * Latin hypercube (M. D. McKay, R. J. Beckman, W. J. Conover 1979): each of n equal parts of every range contains one sample at a random
    * position. Sobol sequence (I. M. Sobol 1967), with all samples shifted by one random vector modulo 1 (R. Cranley, T. N. L. Patterson
    * 1976) unless the seed is 0. A list of n values is treated as a range of n equal parts.
    *
-   * Throws ParameterError if variables or file are invalid or set a number twice, FileError if the file cannot be read.
+   * Throws ParameterError if the variables or the file are invalid or set a number twice, and FileError if the file cannot be read.
    */
   DesignPlan design_plan(const Parameters &parameters);
 
   /// The plan as a CSV file for Designs/Plan = file.
   std::string as_csv(const DesignPlan &plan);
 
-  /// @p parameters with the values of a design, unchecked. Throws ParameterError for an unknown parameter, suggesting the nearest known
-  /// name, or for a value that the parameter rejects.
+  /// @p parameters with the values of a design, without a check of combinations. Throws ParameterError for an unknown parameter, suggesting
+  /// the nearest known name, and for an invalid value.
   Parameters with_design(const Parameters &parameters, const std::vector<std::string> &names, const std::vector<std::string> &values);
 
   /// Current value of the first parameter of a variable. Throws ParameterError as with_design() does.
@@ -61,15 +61,14 @@ namespace Squeal
   /// The k-th number in @p text, counted from one; digits in names do not count. Throws ParameterError if there are fewer numbers.
   std::string number_of(const std::string &text, unsigned int k);
 
-  /// @p text with its k-th number replaced, counted from one; digits in names do not count. Throws ParameterError if there are fewer
-  /// numbers.
+  /// @p text with the number from number_of() replaced. Throws ParameterError if there are fewer numbers.
   std::string with_number(const std::string &text, unsigned int k, const std::string &value);
 
   /// Path of the file of designs: in the folder of the parameter file, or in the current directory; empty if the designs do not come from a
   /// file.
   std::string designs_file(const Parameters &parameters);
 
-  /// Designs from the CSV file Designs/File: names of the variables in the first line, then one design per line. Throws FileError if the
-  /// file cannot be read, ParameterError with the line if it is not comma-separated UTF-8 text.
+  /// Designs from the CSV file Designs/File: names of the variables in the first line, then one design per line. Throws the errors of
+  /// read_csv().
   DesignPlan read_design_file(const Parameters &parameters);
 } // namespace Squeal

@@ -9,10 +9,9 @@
 
 namespace Squeal
 {
-  /// Choice of the designs of a study.
   enum class DesignChoice
   {
-    full_grid,       ///< all combinations of all levels
+    full_grid,
     one_at_a_time,   ///< the given model, then every level of each variable with the other variables unchanged
     latin_hypercube, ///< one sample in each of n equal parts of every range
     sobol,           ///< Sobol sequence (I. M. Sobol), randomly shifted
@@ -30,8 +29,8 @@ namespace Squeal
   struct DesignParameters
   {
     DesignChoice choice = DesignChoice::full_grid;
-    std::string  variables;        ///< parameters and their values, not yet parsed
-    std::string  file;             ///< name of a CSV file with designs
+    std::string  variables; ///< parameters and their values, not yet parsed
+    std::string  file;
     unsigned int n_samples   = 20; ///< number of samples of a Latin hypercube or a Sobol sequence
     unsigned int seed        = 1;
     unsigned int n_processes = 0; ///< concurrent solutions of designs; 0: one per core
@@ -44,7 +43,6 @@ namespace Squeal
     void declare(Declarations &declarations);
   };
 
-  /// Objective of a search for designs.
   enum class SearchGoal
   {
     onset,           ///< maximise the smallest μ at which a divergence rate exceeds weak_divergence
@@ -72,16 +70,16 @@ namespace Squeal
                                                                         {SearchMethod::cobyla, "COBYLA"},
                                                                         {SearchMethod::bobyqa, "BOBYQA"}};
 
-  /// A search for a quiet design (section `Search`), in the ranges of Designs/Variables.
+  /// Search for a quiet design within the ranges of Designs/Variables (section `Search`).
   struct SearchParameters
   {
     SearchGoal   goal          = SearchGoal::divergence_rate;
     SearchMethod method        = SearchMethod::subplex;
-    unsigned int n_samples     = 10;    ///< samples of the Sobol sequence; the methods start from the best one
+    unsigned int n_samples     = 10;    ///< samples of the Sobol sequence; the method starts from the best of them
     unsigned int n_evaluations = 40;    ///< maximum number of evaluations, including these samples
     double       quantile      = 0.95;  ///< level of the quantile for the goal quantile [-]
-    double       first_step    = 0.15;  ///< initial step of the methods, as a fraction of each range [-]
-    double       smallest_step = 0.002; ///< step at which the methods stop, as a fraction of each range [-]
+    double       first_step    = 0.15;  ///< initial step of the method, as a fraction of each range [-]
+    double       smallest_step = 0.002; ///< step at which the method stops, as a fraction of each range [-]
 
     void declare(Declarations &declarations);
 

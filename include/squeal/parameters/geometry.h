@@ -15,11 +15,11 @@
 
 namespace Squeal
 {
-  /// Approximation of circles by polygons of straight edges.
+  /// Approximation of circles by polygons.
   enum class Outlines
   {
     inscribed, ///< nodes on the circle
-    true_area  ///< nodes moved outwards so that area and moments of area are those of the circle
+    true_area  ///< nodes moved outwards so that area and moments of area agree with the circle
   };
 
   template <>
@@ -35,7 +35,7 @@ namespace Squeal
   /// Shape and mesh of disc and pins (section `Geometry`).
   struct GeometryParameters
   {
-    std::string  file                 = "disc_pins.geo"; ///< plan to extrude (.geo) or solid mesh (.geo, .msh)
+    std::string  file                 = "disc_pins.geo"; ///< plan to be extruded or solid model (.geo, .msh)
     double       disc_inner_radius    = 0.1505;          ///< [m]
     double       disc_outer_radius    = 0.3155;          ///< [m]
     double       disc_thickness       = 0.0463;          ///< [m]
@@ -55,7 +55,7 @@ namespace Squeal
     double       meshing_time_limit   = 600.;  ///< [s]
     double       meshing_memory_limit = 8.;    ///< [GB]
 
-    /// A numeric variable of the user's script; value: from the parameter file, if given there.
+    /// A numeric variable of a custom script, with its value from the parameter file, if given.
     struct Variable
     {
       GeometryVariable      declaration;
@@ -68,11 +68,11 @@ namespace Squeal
     /// Sets file and directory, and the variables of the file if it is an existing script.
     void set_file(const std::string &name, const std::string &parameter_directory);
 
-    /// Script variables for these parameters, with values in the units of a script.
+    /// Script variables for these parameters, with their values as text.
     std::map<std::string, std::string> script_variables() const;
 
-    /// Names of the script_variables() that affect the geometry: the names that occur in a Gmsh script; thickness, height and layers of an
-    /// extruded plan; and the pairing tolerance for every mesh. Reads the file without running it. Throws MeshError if it does not exist.
+    /// Names of the script_variables() that affect the geometry: names that occur in a Gmsh script, the dimensions, layers, rings and
+    /// grading of an extruded plan, and the pairing tolerance. Reads the file without running it. Throws MeshError if it does not exist.
     std::set<std::string> used_variables() const;
 
     /// True if the file is a plan to be extruded, not a solid. Reads the file. Throws MeshError if it does not exist.
@@ -83,7 +83,7 @@ namespace Squeal
 
     void declare(Declarations &declarations);
 
-    /// Throws ParameterError for invalid values or combinations.
+    /// Throws ParameterError.
     void check() const;
   };
 
@@ -99,16 +99,16 @@ namespace Squeal
     return (std::sqrt(12. * nodes - 3.) - 3.) / 6.;
   }
 
-  /// Throws ParameterError for a geometry whose mesh does not depend on the element size and the numbers of layers, and MeshError if the
-  /// file does not exist.
+  /// Throws ParameterError unless the mesh of the geometry depends on the element size and the numbers of layers, and MeshError if the file
+  /// does not exist.
   void check_follows(const GeometryParameters &geometry);
 
   /**
-   * Geometry with a mesh refined by @p factor in every direction: the element size is divided by it, and the numbers of layers, rings and
-   * elements k of the pin-face blocks (3 k (k + 1) + 1 nodes) are multiplied by it, rounded, and at least one. Grading ratios of layers and
-   * rings are reduced accordingly. Unchanged for a factor of 1.
+   * Geometry with a mesh refined by @p factor in every direction: the element size is divided by the factor, and the numbers of layers,
+   * rings and elements k of the pin-face blocks (3 k (k + 1) + 1 nodes) are multiplied by the factor and rounded, but at least one. Grading
+   * ratios of layers and rings are reduced accordingly. Unchanged for a factor of 1.
    *
-   * Throws as check_follows().
+   * Throws the errors of check_follows().
    */
   GeometryParameters refined(const GeometryParameters &geometry, double factor);
 } // namespace Squeal

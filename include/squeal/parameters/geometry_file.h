@@ -10,27 +10,26 @@ namespace Squeal
 {
   /**
    * Path of a geometry. A relative name is searched for in the folder of the parameter file, then in the current directory; a name without
-   * a directory also among the supplied geometries.
+   * a directory is also searched for among the supplied geometries.
    *
-   * Throws MeshError with the searched folders.
+   * Throws MeshError, listing the searched folders, if there is no such file.
    */
   std::string find_geometry(const std::string &name, const std::string &parameter_directory);
 
-  /// True if the geometry is supplied with the program.
   bool is_supplied(const std::string &geometry);
 
-  /// True if the file name is that of a Gmsh script, not of a mesh.
+  /// True for a Gmsh script (.geo), false for a mesh.
   bool is_script(const std::string &geometry);
 
   /// A variable that a Gmsh script exports.
   struct GeometryVariable
   {
-    std::string name;        ///< name in the script
+    std::string name;
     std::string value;       ///< value as written in the script
-    std::string onelab_name; ///< Name option of DefineNumber; empty if the script uses this name for another value
+    std::string onelab_name; ///< option Name of DefineNumber; empty for DefineConstant
   };
 
-  /// Text of a Gmsh script, without running it, and of the scripts that it includes by literal names; comments are removed.
+  /// Text, without comments, of a Gmsh script and of the scripts that it includes by literal names; nothing is run.
   class GeometryScript
   {
   public:
@@ -43,7 +42,8 @@ namespace Squeal
     /// The script itself, then existing files in its Include and Merge commands.
     std::vector<std::string> files() const;
 
-    /// File, line and text of the first line that contains one of @p words; an entry may be several words separated by single blanks.
+    /// File, line and text of the first line that contains one of @p words; each entry may contain several words separated by single
+    /// blanks.
     std::optional<std::string> find(const std::vector<std::string> &words) const;
 
   private:
@@ -70,7 +70,7 @@ namespace Squeal
     std::string       name;  ///< name of the copy or, if there is none, of the geometry itself
   };
 
-  /// Files to copy for a geometry, and their names. If the geometry includes a file from outside its folder, nothing is copied, because the
-  /// copy would not find that file; @p name is then the geometry itself.
+  /// Files to copy for a geometry, and their names. If the geometry includes a file from outside its folder, which a copy would not find,
+  /// the name is the geometry itself.
   GeometryCopy copy_of(const std::string &geometry);
 } // namespace Squeal

@@ -10,11 +10,11 @@
 
 namespace Squeal
 {
-  /// A system of matrices instead of a mesh (parameters `System` and `System values`).
+  /// System of matrices from a file, which replaces the mesh (parameters `System` and `System values`).
   struct GivenSystemParameters
   {
     std::string                   file;      ///< path of system.json or of its folder; empty: the system comes from a mesh
-    std::map<std::string, double> values;    ///< parameter values that replace those in the file
+    std::map<std::string, double> values;    ///< parameter values that replace the values in the file
     std::string                   directory; ///< folder of the parameter file
 
     explicit operator bool() const
@@ -22,12 +22,12 @@ namespace Squeal
       return !file.empty();
     }
 
-    /// Path of the file: relative to the directory of the parameter file if it exists there, else as given.
+    /// Path of the file: in the folder of the parameter file if it exists there, otherwise as given.
     std::string path() const;
 
     void declare(Declarations &declarations);
   };
 
-  /// "name, first, last, number": a range of a parameter. Throws ParameterError naming @p where.
+  /// Range of a parameter, parsed from "name, first, last, number". Throws ParameterError naming @p where.
   NamedRange parsed_range(const std::string &text, const std::string &where);
 } // namespace Squeal

@@ -18,7 +18,7 @@ namespace Squeal
     double nu13 = 0., nu23 = 0.;         ///< [-]
     double G12 = 0., G13 = 0., G23 = 0.; ///< [Pa]
 
-    /// A vector along axis 1 and a second one in the plane of axes 1 and 2; none: 1 radial, 2 tangential, 3 axial about the z axis.
+    /// A vector along axis 1 and a second vector in the plane of axes 1 and 2; none: 1 radial, 2 tangential, 3 axial about the z axis.
     std::optional<std::array<double, 6>> axes = {};
   };
 
@@ -45,7 +45,7 @@ namespace Squeal
   };
 
   /// Springs or dashpots between a named surface and the ground, per area [N/m³] or [N s/m³], in the radial, tangential (circumferential)
-  /// and axial directions of the disc axis (z).
+  /// and axial directions about the z axis.
   struct Mount
   {
     std::string surface;
@@ -86,8 +86,8 @@ namespace Squeal
   {
     Material                    disc = {210e9, 0.3, 7850.};
     Material                    pin  = {1.90e9, 0.25, 3070.};
-    std::vector<VolumeMaterial> volumes;                                        ///< volumes with their own material
-    std::vector<VolumeMaterial> orthotropic;                                    ///< orthotropic volumes; their axes are in the list below
+    std::vector<VolumeMaterial> volumes;
+    std::vector<VolumeMaterial> orthotropic;                                    ///< orthotropic volumes, without their axes
     std::vector<MaterialAxes>   axes;                                           ///< material axes that are not cylindrical
     std::vector<Mount>          mounts = {{"disc_bore", 0., 7.80e10, 1.88e10}}; ///< springs
     std::vector<Mount>          dashpots;
@@ -98,7 +98,7 @@ namespace Squeal
     /// Throws ParameterError.
     void check() const;
 
-    /// Material of a volume; by default, that of the disc or of the pins.
+    /// Material of a volume: its individual material or, by default, the material of the disc or of the pins.
     Material of(const std::string &volume) const;
 
     bool has_own(const std::string &volume) const;
@@ -117,7 +117,6 @@ namespace Squeal
     /// Mutable pointers to the values of all springs, dashpots and masses.
     std::vector<double *> mount_values();
 
-    /// Names of the surfaces with springs, dashpots or masses.
     std::vector<std::string> mounted_surfaces() const;
   };
 

@@ -15,7 +15,7 @@
 namespace Squeal
 {
   /**
-   * Splits a list at commas, as texts. Throws ParameterError if some commas look like decimal commas, as in "0,3, 0,4", "0,4, 1" and
+   * Splits a list at commas into texts. Throws ParameterError if some commas look like decimal commas, as in "0,3, 0,4", "0,4, 1" and
    * "0,05"; uniform lists such as "0,30" and "1,2,3" are accepted.
    *
    * @param what  name of the list, for messages: "Sweep/Count modes at"
@@ -26,7 +26,7 @@ namespace Squeal
   /// Hint for an error message: "; write a decimal point: 0.4" if a number seems to have a decimal comma; empty otherwise.
   std::string decimal_point_hint(const std::string &text);
 
-  /// Throws ParameterError if @p parameter, "Section/Name", contains a number twice.
+  /// Throws ParameterError, naming @p parameter ("Section/Name"), if a number occurs twice.
   void check_distinct(const std::vector<double> &numbers, const char *parameter);
 
   /// Format of a list of entries such as "disc_bore: 0, 7.8e10, 1.88e10; disc_rim: ...".
@@ -45,12 +45,12 @@ namespace Squeal
 
   struct ListEntry
   {
-    std::string         text; ///< the entry as written
+    std::string         text;
     std::string         key;
     std::vector<double> numbers;
   };
 
-  /// Entries of a list, without empty ones. Throws ParameterError, also for duplicate names.
+  /// Nonempty entries of a list. Throws ParameterError for invalid entries and for duplicate names.
   std::vector<ListEntry> parse_list(const std::string &text, const ListFormat &format);
 
   /// Declares a list of values; an entry has a @p key and @p numbers (members, or functions that return them). Omitted numbers are zero.

@@ -53,7 +53,7 @@ namespace Squeal
     /// True with radial dissipation or a friction slope.
     bool has_contact_damping() const;
 
-    /// ±Ω, positive about e_z [rad/s].
+    /// Signed rotation speed ±Ω about e_z [rad/s].
     double angular_velocity() const;
   };
 } // namespace Squeal

@@ -25,10 +25,9 @@
 
 namespace Squeal
 {
-  /// All input of a run; constant once read.
   struct Parameters
   {
-    const Study             *study = studies().front(); ///< study to run
+    const Study             *study = studies().front();
     AccuracyGoal             goal  = AccuracyGoal::as_given;
     std::vector<std::string> replaced; ///< parameters whose values were replaced by the accuracy goal
     GivenSystemParameters    system;   ///< system file that replaces geometry, materials and contact
@@ -51,39 +50,37 @@ namespace Squeal
     SolverParameters         solvers;
     OutputParameters         output;
 
-    /// Declares all parameters and binds them to the members.
     void declare(Declarations &declarations);
 
     /**
-     * Reads a parameter file, then applies overrides "Section/Name=value" and the settings of Accuracy, then checks all values and
-     * combinations. Throws FileError or ParameterError; the message gives the nearest known name for an unknown name, and the accepted
-     * values for a rejected value.
+     * Reads a parameter file, applies the overrides "Section/Name=value" and the settings of Accuracy, and checks all values and
+     * combinations. Throws FileError or ParameterError. The message suggests the nearest known name for an unknown name, and lists the
+     * accepted values for an invalid value.
      */
     static Parameters read(const std::string &file, const std::vector<std::string> &overrides);
 
     /// Changes the value of a parameter as a function of its current value, without checking combinations. Throws ParameterError, naming @p
-    /// where, if the parameter does not exist or rejects the value.
+    /// where, if the parameter does not exist or the value is invalid.
     void set(const std::string &path, const std::string &where, const std::function<std::string(const std::string &)> &new_value);
 
     /// Writes a parameter file with all values, optionally with documentation and accepted values.
     void print(std::ostream &stream, bool with_documentation) const;
 
-    /// True if the study solves for the steady sliding state.
+    /// True if the contact state is the steady sliding state.
     bool needs_steady_sliding() const;
 
-    /// True if any run of the study includes contact damping: radial dissipation, or friction that depends on speed.
     bool has_contact_damping() const;
 
     /// True if the study computes modes with friction; otherwise the friction coefficient affects only the steady sliding state.
     bool has_friction() const;
 
-    /// True if complex modes at Operation/Friction coefficient are computed by this solver.
+    /// True if this solver computes the complex modes at Operation/Friction coefficient.
     bool solves_by(ComplexSolver solver) const;
 
-    /// True if Operation/Load per side acts on any body.
+    /// True if the contact state or the contact damping requires a positive Operation/Load per side.
     bool uses_load_per_side() const;
 
-    /// Throws ParameterError for invalid values or combinations.
+    /// Throws ParameterError.
     void check() const;
 
   private:

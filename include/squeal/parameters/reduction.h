@@ -25,9 +25,9 @@ namespace Squeal
   struct ModeTruncation
   {
     double frequency    = 0.; ///< [Hz]; 0: use the numbers
-    int    disc         = 0;  ///< free modes of all pins together
-    int    pins_free    = 0;  ///< free modes of all pins together
-    int    pins_sliding = 0;  ///< sliding modes of all pins together
+    int    disc         = 0;
+    int    pins_free    = 0; ///< free modes of all pins together
+    int    pins_sliding = 0; ///< sliding modes of all pins together
 
     /// "10000 Hz" or "80/120/60".
     std::string text() const;

@@ -10,7 +10,6 @@
 
 namespace Squeal
 {
-  /// Distribution of an uncertain number.
   enum class DistributionKind
   {
     uniform,   ///< two limits
@@ -34,32 +33,31 @@ namespace Squeal
     static constexpr double normal_end = 3.;
   };
 
-  /// An uncertain parameter.
   struct UncertainParameter
   {
     std::string  name; ///< name in the parameter file, as in Designs/Variables, or in the system file
     Distribution distribution;
     bool         is_relative  = false; ///< numbers are per cent of the nominal value
-    bool         for_each_pin = false; ///< independent values for each pin
+    bool         for_each_pin = false;
   };
 
   struct Correlation
   {
-    std::string first, second; ///< names of uncertain parameters
-    double      value;         ///< correlation of the normal copula [-]
+    std::string first, second;
+    double      value; ///< correlation of the normal copula [-]
   };
 
-  /// Scatter of modes with uncertain parameters (section `Robustness`).
+  /// Scatter of modes due to uncertain parameters (section `Robustness`).
   struct RobustnessParameters
   {
-    std::string         distributions, correlations; ///< texts that are not yet parsed
+    std::string         distributions, correlations; ///< not yet parsed
     unsigned int        n_samples   = 2000;          ///< independent samples
     unsigned int        seed        = 1;
     double              tolerance   = 1e-4; ///< limit of the estimated |δλ| / |λ| at every sample [-]
     bool                has_indices = true; ///< compute Sobol' indices, which need additional samples
     std::vector<double> frequency_bands;    ///< limits of bands with separate probabilities [Hz]
     unsigned int        n_worst  = 5;       ///< number of worst samples written as parameter files
-    unsigned int        n_onsets = 0;       ///< number of samples followed over the friction coefficient
+    unsigned int        n_onsets = 0;       ///< number of samples whose modes are tracked over the friction coefficient
 
     void declare(Declarations &declarations);
 

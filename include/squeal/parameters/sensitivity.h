@@ -7,7 +7,7 @@
 
 namespace Squeal
 {
-  /// Geometry parameters of the built-in model with derivatives.
+  /// Geometry parameters of the built-in model for which derivatives are computed.
   enum class GeometrySensitivities
   {
     none,
@@ -21,13 +21,13 @@ namespace Squeal
     {GeometrySensitivities::sizes, "sizes"},
     {GeometrySensitivities::sizes_and_places, "sizes and places"}};
 
-  /// Quantities with derivatives in `Study = sensitivity`, and their accuracy (section `Sensitivity`).
+  /// Derivatives computed by `Study = sensitivity`, and their accuracy (section `Sensitivity`).
   struct SensitivityParameters
   {
-    unsigned int          modes      = 10;   ///< largest number of modes with derivatives
-    bool                  thresholds = true; ///< also compute derivatives of thresholds
+    unsigned int          modes      = 10; ///< maximum number of modes whose derivatives are computed
+    bool                  thresholds = true;
     GeometrySensitivities geometry   = GeometrySensitivities::sizes;
-    double                tolerance  = 1e-4; ///< relative change of derivatives at which the basis is no longer extended [-]
+    double                tolerance  = 1e-4; ///< relative change of derivatives below which the basis is no longer extended [-]
 
     void declare(Declarations &declarations);
   };

@@ -21,7 +21,8 @@ namespace Squeal
   inline constexpr EnumName<ContactState> enum_table<ContactState>[] = {{ContactState::equal_load, "equal load"},
                                                                         {ContactState::steady_sliding, "steady sliding"}};
 
-  /// Prescribed quantity: at rigid backplates, which move along their travel (contact/travel.h), or a pressure on faces of the bodies.
+  /// Prescribed quantity: force or displacement of rigid backplates along their travel (contact/travel.h), or pressure on faces of the
+  /// bodies.
   enum class BackplateControl
   {
     load_per_side, ///< one backplate for each side, with a given force
@@ -41,8 +42,8 @@ namespace Squeal
    *
    *   gap + sliding taper · s_t + radial taper · s_r
    *
-   * with the distances s_t along t and s_r outwards from the centre of the face; s_r is measured along the disc axis if the travel is not,
-   * and along b if the disc does not turn about z.
+   * with the distances s_t along t and s_r outwards from the centre of the face; s_r is measured along the disc axis if the travel is not
+   * axial, and along b if the disc does not turn about z.
    */
   struct PinGap
   {
@@ -66,7 +67,7 @@ namespace Squeal
     BackplateControl     control      = BackplateControl::load_per_side;
     double               displacement = 0.; ///< displacement of each backplate towards the disc [m]
     std::vector<PinLoad> pin_loads;         ///< pins with a load other than an equal share of their side
-    std::vector<PinGap>  gaps;              ///< pins with an initial gap
+    std::vector<PinGap>  gaps;
 
     std::vector<std::string> pressed_faces; ///< faces to which pressure control applies the load per side
 

@@ -28,7 +28,7 @@ namespace Squeal
     /// |v| = w_0 / Ω at a point [m].
     double lever(const Eigen::Vector3d &position) const;
 
-    /// v as a rigid-body motion: displacement along and rotation about x, y, z; empty if v is not a rigid-body motion.
+    /// v as a rigid-body motion: translation along and rotation about x, y, z; empty if v is not a rigid-body motion.
     std::optional<Eigen::Matrix<double, 6, 1>> rigid_motion() const;
 
     /// True if v = ±e_z × x.

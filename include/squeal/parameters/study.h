@@ -12,10 +12,10 @@ namespace Squeal
   class Run;
   struct Scene;
 
-  /// Reason why a run does not use a parameter, for messages; null if it does.
+  /// Reason why a run does not use a parameter, for messages; null if the run uses it.
   using Reason = const char *;
 
-  /// Reason that means: the general rules decide whether a study uses a parameter.
+  /// Marker for parameters whose use depends on the general rules for all studies.
   inline constexpr Reason as_in_general = "";
 
   inline Reason unless(const bool is_used, const Reason reason)
@@ -23,7 +23,7 @@ namespace Squeal
     return is_used ? nullptr : reason;
   }
 
-  /// Reason of a parameter that is used although its section is not.
+  /// Rule for a parameter that is used although its section is unused.
   inline Reason is_used(const Parameters & /*parameters*/)
   {
     return nullptr;
@@ -49,7 +49,7 @@ namespace Squeal
     const char *name;            ///< name in `set Study = ...`
     void (*run)(Scene &, Run &); ///< called with a meshed model
 
-    /// Paths of parameters and sections used only by this study and by others that list them.
+    /// Paths of the parameters and sections that are used only by the studies that list them.
     std::vector<const char *> own_parameters = {};
 
     /// Conditions under which parameters are unused in this study; they replace the general rules for these parameters.

@@ -24,7 +24,6 @@ namespace Squeal
                                                                         {MapParameter::load, "load"},
                                                                         {MapParameter::speed, "speed"}};
 
-  /// A range of values, from first to last.
   struct ValueRange
   {
     double       first, last;
@@ -49,7 +48,7 @@ namespace Squeal
   {
     ValueRange          friction_coefficients = {0., 0.45, 90};
     double              tolerance             = 1e-6; ///< limit of the estimated |δλ| / |λ| [-]
-    unsigned int        maximum_basis         = 1500; ///< maximum basis size [vectors]
+    unsigned int        maximum_basis         = 1500;
     double              threshold_tolerance   = 1e-6; ///< tolerance of thresholds in the friction coefficient [-]
     bool                compare_dissipation   = true; ///< repeat the sweep without radial dissipation
     std::vector<double> mode_shapes;                  ///< friction coefficients for output of the leading mode
@@ -62,7 +61,6 @@ namespace Squeal
 
     std::string parameter, second_parameter; ///< parameters of a system file: "name, first, last, number"; empty: mu, and no map
 
-    /// Friction coefficients for the complex plane.
     const std::vector<double> &complex_plane() const
     {
       return planes.empty() ? mode_shapes : planes;

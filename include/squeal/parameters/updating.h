@@ -15,7 +15,7 @@ namespace Squeal
     std::string  sensors;              ///< CSV: positions and directions of sensors, and measured shapes; empty: modes are paired by labels
     double       tolerance     = 1e-8; ///< step size at which the fit ends, fraction of each range [-]
     double       least_overlap = 0.5;  ///< MAC below which a shape has no counterpart [-]
-    unsigned int n_iterations  = 50;   ///< maximum number of iterations
+    unsigned int n_iterations  = 50;
 
     void declare(Declarations &declarations);
   };

@@ -22,7 +22,7 @@ namespace Squeal
    * Galerkin projection of the coupled system on a basis T, n × r (eqs. (12) and (13) of the paper). The terms A of the system are
    * projected once, as TᵀAT, or as LᵀT and RᵀT for low rank, and reused for all values of their coefficients: friction, load and speed.
    *
-   * extend() appends vectors to the basis and projects only these.
+   * extend() appends vectors to the basis and projects only these vectors.
    */
   class ReducedModel
   {
@@ -33,10 +33,10 @@ namespace Squeal
     /// Appends the columns of @p vectors, n × k, to the basis.
     void extend(MultiVector vectors);
 
-    /// The matrices of the model on the basis TZ, Z: r × k; basis() is not available.
+    /// The model on the basis T Z with Z, r × k; its basis() is not available.
     ReducedModel restricted(const DenseMatrix &Z) const;
 
-    /// r
+    /// Size r of the basis.
     int size() const
     {
       return mass_matrix.rows();

@@ -21,7 +21,7 @@ namespace Squeal
   };
 
   /**
-   * Computes inner products of residuals from small matrices: residuals are sums over the terms θ A of the system,
+   * Computes inner products of residuals from small matrices. Residuals are sums over the terms θ A of the system,
    *
    *   Q(λ) T φ_r  = S T φ_r + W y,   Q(λ)ᵀ T ψ_r = S T ψ_r + W z,   S = K_c + s² M_c,
    *
@@ -33,16 +33,16 @@ namespace Squeal
    *
    *   Lᵀ S⁻¹ R = zᵀ (Wᵀ S⁻¹ W − Wᵀ T (TᵀST)⁻¹ TᵀW) y.
    *
-   * Terms with the same power of λ have the same rows up to their coefficients: at an operating point y = C c and z = D d, where C and D
+   * Terms with the same power of λ have the same rows up to their coefficients. At an operating point, y = C c and z = D d, where C and D
    * combine blocks in the same way for all modes. The bracket B is therefore reduced to Dᵀ B C first, which costs no more than reading B.
-   * The remaining cancellation error, in the bracket, is about 10⁻¹⁵ of φᴴKφ, so that estimates |δλ|/|λ| well below 10⁻¹² are reliable.
+   * The cancellation error of the bracket is about 10⁻¹⁵ of φᴴKφ, so that estimates |δλ|/|λ| well below 10⁻¹² are reliable.
    */
   class ProjectedResiduals
   {
   public:
     /**
      * @param inverse factor of S; a positive @p shift s [rad/s] requires a system without damping
-     * @param values  parameter values: terms that are zero there, except friction, must also be zero in products()
+     * @param values  parameter values; terms that vanish at these values, except friction, must also vanish in products()
      *
      * The arguments must outlive the object.
      */
@@ -58,17 +58,17 @@ namespace Squeal
      * independent vectors. The relative standard deviation is 6 % for a norm; for a product, it is 9 % of the product of the norms. Call
      * before extend().
      *
-     * @return false if the library of the factor cannot draw V: products remain exact
+     * @return false if the library of the factor cannot draw V; products then remain exact
      */
     bool use_sketch();
 
     /// Adds the vectors that were appended to the basis of @p model.
     void extend(const ReducedModel &model);
 
-    /// Clears the basis; the next extend() starts a new one.
+    /// Clears the basis; the next extend() starts a new basis.
     void clear();
 
-    /// Assembles the bracket or Z from its parts. products() does so on demand; call before sharing the object between threads.
+    /// Assembles the bracket or Z. products() calls it on demand; call it before sharing the object between threads.
     void prepare() const;
 
     /// Products for reduced modes λ, φ_r and ψ_r (r × k).
@@ -77,7 +77,6 @@ namespace Squeal
                               const ComplexDenseMatrix                &right,
                               const ComplexDenseMatrix                &left) const;
 
-    /// Modes of a reduced model at an operating point.
     struct ModesAt
     {
       ParameterValues                   values;
@@ -87,9 +86,9 @@ namespace Squeal
 
     /**
      * S⁻¹ W C, n × p: components of right and left displacement residuals outside the basis, as principal axes in the norm of S; axes below
-     * @p tolerance times the largest are dropped. Each mode, scaled to unit strain energy, is weighted by the error of its λ. The axes are
-     * computed from the small matrices, so that the number of solves equals the number of axes, not of residuals. The result may contain
-     * components in the span of the basis; it is empty if all residuals vanish. Not available for a member of a family. Collective.
+     * @p tolerance times the largest axis are dropped. Each mode, scaled to unit strain energy, is weighted by the error of its λ. The axes
+     * are computed from the small matrices, so that the number of solves equals the number of axes, not of residuals. The result may
+     * contain components in the span of the basis; it is empty if all residuals vanish. Not available for a member of a family. Collective.
      */
     std::optional<MultiVector> principal_responses(const ReducedModel &model, const std::vector<ModesAt> &modes, double tolerance) const;
 
@@ -119,7 +118,6 @@ namespace Squeal
       DenseMatrix              sketched;        ///< VᵀA T
     };
 
-    /// A factor of low-rank terms.
     struct Factor
     {
       const LowRankFactor *factor;

@@ -23,7 +23,7 @@ namespace Squeal
    *
    *   ψᵀ (T_cᵀ X T_c − μ A V_X) φ = wᵀ X u,   u = T_c φ,   w = T_c ψ − μ Sᵀ P_t T_c ψ,
    *
-   * because A = T_cᵀ P_tᵀ and V_X = S X T_c: friction enters derivatives with respect to the bodies only through w.
+   * because A = T_cᵀ P_tᵀ and V_X = S X T_c. Friction enters derivatives with respect to the bodies only through w.
    */
   Eigentriples on_bodies(const ContactOperators &contact, double friction_coefficient, const Eigentriples &coupled);
 
@@ -46,7 +46,6 @@ namespace Squeal
     ComplexDenseMatrix along(const ParameterValues &values, const ParameterValues &rates) const;
 
   private:
-    /// Products of one term.
     struct Product
     {
       Term               term;        ///< the term without its matrices
@@ -73,7 +72,7 @@ namespace Squeal
    * (P. Lancaster, *On eigenvalues of matrices dependent on a parameter*, Numerische Mathematik 6 (1964) 377–387). If a pair nearly
    * coalesces, D_ii tends to zero, and neither eigenvalue has a derivative at the exceptional point. Their mean and their squared
    * difference are differentiable: on the span of the vectors, the pencil is represented by a matrix Λ, and Λ' = −D⁻¹ N in the basis of the
-   * φ.
+   * vectors φ.
    */
   std::complex<double> eigenvalue_derivative(const ComplexDenseMatrix &N, const ComplexDenseMatrix &D, int mode);
 
@@ -86,7 +85,7 @@ namespace Squeal
                                                      const std::vector<std::complex<double>> &lambda);
 
   /// Value at 0 of the even part of a function, extrapolated from its means at ±h, ±2h and ±3h. The error is the difference from the
-  /// extrapolation of two means, an upper bound unless the function has a singularity nearby.
+  /// extrapolation of two means; it is an upper bound unless the function has a singularity nearby.
   struct ValueAtCentre
   {
     std::complex<double> value;

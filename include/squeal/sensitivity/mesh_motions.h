@@ -16,15 +16,15 @@ namespace Squeal
     std::string              parameter; ///< name, for example "Geometry/Pin height"
     std::string              pin;       ///< the only pin that moves; empty: all
     std::string              unit;
-    double                   value;         ///< value of the parameter in this unit
+    double                   value;
     std::vector<Mesh::Point> velocity;      ///< dx/dp of each node [m per unit]
     bool                     moves_contact; ///< contact nodes move in the plane of the disc
   };
 
   /**
-   * Motions of disc and pins of the built-in geometry (disc_pins.geo): faces, rims and outlines follow the parameter, interior nodes are
-   * interpolated so that the bodies remain conforming at the contact. With the disc between z = ± t/2, its axis z, a pin of radius a about
-   * c, and a function ρ that is 1 within a circle of radius a about c and falls to 0 towards the nearest other pin or rim:
+   * Motions of disc and pins of the built-in geometry (disc_pins.geo): faces, rims and outlines follow the parameter, and interior nodes
+   * are interpolated so that the bodies remain conforming at the contact. With the disc between z = ± t/2, its axis z, a pin of radius a
+   * about c, and a function ρ that is 1 within a circle of radius a about c and falls to 0 towards the nearest other pin or rim:
    *
    *   disc thickness t     z/t e_z in the disc, ± ½ e_z in the pins
    *   pin height h         ± (|z| − t/2)/h e_z in the pins
@@ -40,7 +40,7 @@ namespace Squeal
    */
   std::vector<MeshMotion> mesh_motions(const Mesh &mesh, const GeometryParameters &parameters);
 
-  /// The mesh with x + change · dx/dp.
+  /// The mesh with its nodes at x + change · dx/dp.
   Mesh moved(Mesh mesh, const MeshMotion &motion, double change);
 
   /// Largest |dx/dp| [m per unit].

@@ -37,18 +37,18 @@ namespace Squeal
    *   φ_iᵀ C_m' φ_j = (φ_iᵀ K' φ_j − β_ij φ_iᵀ M' φ_j) g_ij + (d_i + d_j)/2 φ_iᵀ M' φ_j
    *
    * Equal frequencies need no special treatment, because g is smooth; pairs of undamped modes contribute nothing. Contributions of a damped
-   * mode and modes beyond the computed ones are found in a Krylov space of (K_c + s² M_c)⁻¹ M_c, started from the components of the vectors
-   * outside the computed modes.
+   * mode and modes beyond the computed modes are found in a Krylov space of (K_c + s² M_c)⁻¹ M_c, started from the components of the
+   * vectors outside the computed modes.
    */
   class ModalDampingDerivatives
   {
   public:
     /**
-     * @param undamped system with the modes Φ: its stiffness, mass and kernel. Must outlive this object, as must inverse and modes
+     * @param undamped stiffness, mass and kernel of the system with the modes Φ; must outlive this object, like inverse and modes
      * @param inverse  (K_c + s² M_c)⁻¹
      * @param modes    all modes in the band and its margin
-     * @param n_damped number of damped modes, the lowest ones. Throws SolverError if the next mode has the same frequency as the last
-     *                 damped one
+     * @param n_damped number of damped modes, which are the lowest modes. Throws SolverError if the next mode has the same
+     *                 frequency as the last damped mode
      */
     ModalDampingDerivatives(const CoupledSystem     &undamped,
                             const LinearOperator    &inverse,

@@ -15,16 +15,14 @@
 
 namespace Squeal
 {
-  /// A named parameter of a system file.
   struct FileParameter
   {
     std::string name;
     double      value = 0.;
-    double      lower = 0., upper = 0.; ///< range of validity of the coefficients; both equal the value if no range is given
+    double      lower = 0., upper = 0.; ///< range of validity of the coefficients; equal to the value if not given
     std::string unit = "-", description = {};
   };
 
-  /// A named group of dofs.
   struct DofGroup
   {
     std::string                      name;
@@ -48,9 +46,9 @@ namespace Squeal
     std::string                description;
     std::vector<FileParameter> parameters;
 
-    /// Symmetric, skew or low-rank; an unsymmetric matrix is split into its symmetric and its skew part.
+    /// Symmetric, skew or low-rank terms; an unsymmetric matrix is split into its symmetric and its skew part.
     std::vector<Term>          terms;
-    ParameterValues            weights; ///< weights of low-rank terms
+    ParameterValues            weights;
     std::vector<DofGroup>      groups;
     std::optional<ShapePoints> points;
     std::string                measured_modes; ///< CSV file of measured modes for a fit; empty: none
@@ -58,11 +56,11 @@ namespace Squeal
 
     const FileParameter *find(const std::string &parameter) const;
 
-    /// `mu` if there is such a parameter, else the first one; empty if there are no parameters.
+    /// `mu` if the system has this parameter, otherwise its first parameter; empty if there are no parameters.
     std::string default_varied() const;
 
-    /// Values of all parameters and weights, with @p others replacing those of the file. Throws ParameterError if a parameter does not
-    /// exist or its value is out of range.
+    /// Values of all parameters and weights; @p others replace values of the file. Throws ParameterError if a parameter does not exist or
+    /// its value is out of range.
     ParameterValues values(const std::map<std::string, double> &others = {}) const;
   };
 
@@ -75,7 +73,7 @@ namespace Squeal
    */
   SystemFile read_system(const std::string &path, MPI_Comm communicator);
 
-  /// Writes a file of the folder: name and content.
+  /// Function that writes a file of the folder.
   using WriteFile = std::function<void(const std::string &name, const std::function<void(std::ostream &)> &content)>;
 
   /// Files of a reduced model: its basis, n × r, and a table of estimated errors at points, with their tolerance.

@@ -23,13 +23,13 @@ namespace Squeal
     /// @param columns F, n × m
     explicit LowRankFactor(MultiVector columns);
 
-    /// m
+    /// Number of columns m.
     int rank() const;
 
     /// Fᵀ X, m × k, the same on every process.
     DenseMatrix transpose_times(const MultiVector &X) const;
 
-    /// F Y for Y, m × k, the same on every process.
+    /// F Y for an m × k matrix Y that is the same on every process.
     MultiVector operator*(const DenseMatrix &Y) const;
 
     /// Columns [first, first + n) of F.
@@ -73,7 +73,7 @@ namespace Squeal
     virtual std::string text() const = 0;
   };
 
-  /// θ(p) of a term: a monomial of named parameters such as −μ ρ, another function of them, or a product of both.
+  /// θ(p) of a term: a monomial of named parameters such as −μ ρ, another function of the parameters, or a product of such functions.
   class Coefficient
   {
   public:
@@ -97,9 +97,9 @@ namespace Squeal
   /// Physical origin of a term.
   enum class TermKind
   {
-    body,            ///< elasticity, inertia and material damping
-    mount,           ///< springs and dashpots between bodies and the ground
-    rotation,        ///< rotation of the disc
+    body,  ///< elasticity, inertia and material damping
+    mount, ///< springs and dashpots between bodies and the ground
+    rotation,
     friction,        ///< forces μ r_n along t
     circulatory,     ///< skew parts of unsymmetric matrices
     contact_damping, ///< forces at the contact nodes proportional to relative velocities
@@ -119,10 +119,10 @@ namespace Squeal
     std::string                          name;      ///< name for messages
     int                                  power = 0; ///< p_k: 0, 1 or 2
     Coefficient                          coefficient;
-    std::shared_ptr<const SparseMatrix>  matrix;                         ///< A, n × n; null if A has low rank
-    Symmetry                             symmetry = Symmetry::symmetric; ///< symmetry of the matrix
-    std::shared_ptr<const LowRankFactor> left = {}, right = {};          ///< L and R, n × m
-    std::string                          weights = {};                   ///< list parameter with d; empty: ones
+    std::shared_ptr<const SparseMatrix>  matrix; ///< A, n × n; null if A has low rank
+    Symmetry                             symmetry = Symmetry::symmetric;
+    std::shared_ptr<const LowRankFactor> left = {}, right = {}; ///< L and R, n × m
+    std::string                          weights = {};          ///< list parameter with d; empty: ones
     TermKind                             kind    = TermKind::body;
 
     /// θ(p) λ^p_k
@@ -132,13 +132,12 @@ namespace Squeal
       return coefficient.at(values) * (power == 0 ? Number(1.) : power == 1 ? lambda : lambda * lambda);
     }
 
-    /// True if the term is zero at these values.
     bool vanishes(const ParameterValues &values) const;
 
     /// True if A can be written as a sparse matrix.
     bool is_sparse() const;
 
-    /// True if A belongs to the mass, damping or stiffness without friction: symmetric, and not a friction term.
+    /// True if A belongs to the mass, damping or stiffness without friction, that is, if A is symmetric and not a friction term.
     bool is_frictionless() const
     {
       return symmetry == Symmetry::symmetric && kind != TermKind::friction;
@@ -202,15 +201,15 @@ namespace Squeal
   /// Nonzero terms with this power of λ.
   std::vector<const Term *> terms_of(const std::vector<Term> &terms, const ParameterValues &values, int power);
 
-  /// M, C and K of Q(λ) = λ² M + λ C + K as sparse matrices, null if there is no term. Throws SolverError naming a term without sparse
-  /// form.
+  /// M, C and K of Q(λ) = λ² M + λ C + K as sparse matrices; a matrix without terms is null. Throws SolverError naming a term without
+  /// sparse form.
   SecondOrderSystem sparse_matrices(const std::vector<Term> &terms, const ParameterValues &values);
 
   /// Σ ‖θ A‖_∞ ≥ ‖Σ θ A‖_∞ over the terms with a power of λ; all these terms must have a sparse form.
   double norm_bound(const std::vector<Term> &terms, const ParameterValues &values, int power);
 
-  /// The same Q at these values with as few terms as possible: one sparse term for each power and symmetry, with a coefficient of one,
-  /// without zero terms. Low-rank terms are not allowed.
+  /// The same Q at these values with as few terms as possible: one sparse term with a coefficient of one for each power and symmetry,
+  /// unless it is zero. Low-rank terms are not allowed.
   std::vector<Term> merged(const std::vector<Term> &terms, const ParameterValues &values);
 
   /// Common terms of several systems, the members of a family, which differ only in coefficients.
@@ -222,7 +221,7 @@ namespace Squeal
   };
 
   /**
-   * Terms Σ θ_k A_k of a family with as few matrices as possible: terms whose coefficients θ_k have the same ratio in all members are
+   * Terms Σ θ_k A_k of a family with as few matrices as possible. Terms whose coefficients θ_k have the same ratio in all members are
    * summed, with the means of θ_k over the members. All terms must be sparse.
    *
    * @param members values of the parameters of the terms for each member, at least one
