@@ -252,7 +252,7 @@ TEST(MeshTopology, TrianglesUponQuadrilateralsAreFound)
   expect_passes(pyramid);
   mesh.cells.push_back({Shape::tetrahedron, {top[4], top[5], top[6], 8}, 0});
   mesh.cells.push_back({Shape::tetrahedron, {top[4], top[6], top[7], 8}, 0});
-  expect_refused(mesh, {"1 quadrilateral face of body 'disc'", "two triangles", "pyramids"});
+  expect_refused(mesh, {"1 quadrilateral face", "body 'disc'", "two triangles", "pyramids"});
 }
 
 TEST(MeshTopology, BodyOnTheWrongSideIsFound)

@@ -47,7 +47,7 @@ TEST(Refusals, SolidsThatDoNotFit)
                   {blocks("Physical Volume(\"disk\") = {1}; Physical Volume(\"pin_1\") = {2};" + surfaces),
                    {"No physical volume is named 'disc'", "disk, pin_1"}},
                   {blocks("Physical Volume(\"disc\") = {1, 2};" + surfaces), {"All physical volumes belong to the disc"}},
-                  {blocks("Physical Volume(\"disc\") = {1};" + surfaces), {"8 volume elements"}},
+                  {blocks("Physical Volume(\"disc\") = {1};" + surfaces), {"volume: 8"}},
                   {blocks(volumes + "Physical Surface(\"disc_contact\") = {11}; Physical Surface(\"pin_contact\") = {6};"),
                    {"'pin_contact' has a face on 'disc'"}},
                   {blocks(volumes + "Physical Surface(\"disc_contact\") = {6}; Physical Surface(\"pin_contact\") = {6};", "Coherence;\n"),
@@ -88,7 +88,7 @@ TEST(Refusals, PlansThatDoNotFit)
   parameters.pin_diameter      = 0.05;
   parameters.top               = {{0.0765, 0.1275}, {0., 0.}};
   parameters.bottom            = {{0.102}, {0.}};
-  expect_mentions(refusal(parameters), {"no room", "Move the pins"});
+  expect_mentions(refusal(parameters), {"pins that overlap", "Move the pins"});
   // The mounted surface does not exist
   expect_mentions(refusal(one_pin(), {"disc_ear"}), {"'disc_ear'", "disc_bore"});
 }

@@ -186,12 +186,12 @@ TEST(DesignPlan, NamesTheLineOfAFileAndWhatIsWrongThere)
           {"UTF-16", "UTF-8"}},
          {1, "A/x,B/y\r1,2\r", {"carriage return"}},
          {1, "A/x,B/y,\n1,2,\n", {"column 3", "ends with a comma"}},
-         {3, "A/x,B/y\n1,2\n3,4,\n", {"3 values", "2 names", "ends with a comma"}},
-         {2, "A/x\n0,3\n", {"2 values", "1 name", "0.3"}},
+         {3, "A/x,B/y\n1,2\n3,4,\n", {"3 values", "2 columns", "ends with a comma"}},
+         {2, "A/x\n0,3\n", {"2 values", "1 column", "0.3"}},
          {2, "A/x,B/y\n1;2\n", {"semicolons"}},
          {2, "A/x,B/y\n1,\"2,\n3\"\n", {"quotation mark"}},
          {1, "A/x,B/y\n", {"no design"}},
-         {2, "A/x,B/y\n1\n", {"1 value", "2 names"}},
+         {2, "A/x,B/y\n1\n", {"1 value", "2 columns"}},
          {1, "A/x,B/y + A/x\n1,2\n", {"`A/x` varies twice"}},
          {1, "A/x,A/x\n1,2\n", {"`A/x` varies twice"}}})
     {

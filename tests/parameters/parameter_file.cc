@@ -88,7 +88,7 @@ TEST_F(ParameterFile, FilesThatMultiplyEndSoon)
     }
   expect_refusal(write("40.prm", "include 0.prm\n"), {"includes itself"});
   write("40.prm", "");
-  expect_refusal((folder.path / "0.prm").string(), {"more than 1000 times"});
+  expect_refusal((folder.path / "0.prm").string(), {"more than 1000 parameter files"});
 }
 
 TEST_F(ParameterFile, SectionsThatAreNeverClosedEndSoon)

@@ -145,7 +145,7 @@ class FullDisks(LostResults):
         self.assertGreater(sizes[largest[".mtx"]], sizes[largest[".msh"]])
         for ending, overrides in {".mtx": self.EVERYTHING, ".msh": self.EVERYTHING[2:], ".vtu": self.EVERYTHING[:1]}.items():
             process = self.start("copy", *overrides, preexec_fn=limit_files(sizes[largest[ending]] - 100))
-            self.assert_not_written(process, largest[ending], "free space" if ending == ".msh" else "File too large")
+            self.assert_not_written(process, largest[ending], "disk space" if ending == ".msh" else "File too large")
             self.assertEqual(contents(copy), before)
         process = self.start("new", preexec_fn=limit_files(1000))
         self.assert_not_written(process, "--output new", "File too large")

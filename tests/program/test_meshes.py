@@ -243,8 +243,8 @@ class Tetrahedra(ProgramTest):
         file = self.write_brake(bonded_brake(), "bonded")
         for mentions, *overrides in (
                 (["'pad_outer_lining_back' is not used", "Contact/Tied"],),
-                (["`pad_outer_face` is tied"], "Contact/Tied=pad_outer_face / pad_outer_front"),
-                (["'pad_inner_fronts', which Contact/Tied names"], TIED + "s"),
+                (["`pad_outer_face`", "Contact/Pairs"], "Contact/Tied=pad_outer_face / pad_outer_front"),
+                (["'pad_inner_fronts'", "Contact/Tied"], TIED + "s"),
                 (["`pad_outer_front` is not a pair"], "Contact/Tied=pad_outer_front")):
             with self.subTest(mentions):
                 self.dry_run_refused(mentions, *overrides, file=file)

@@ -262,7 +262,7 @@ class OfScene(ProgramTest):
                 "Robustness/Distributions": "Operation/Friction coefficient = uniform 0.3 to 0.6"}
         for path, value, words in (("Designs/Variables", "Geometry/Pin height = 0.029 to 0.035", "Pin height"),
                                    ("Robustness/Distributions", "Pin material/Young modulus = uniform 1.6e9 to 2e9", "Young modulus"),
-                                   ("Steady sliding/Contact state", "steady sliding", "contact set")):
+                                   ("Steady sliding/Contact state", "steady sliding", "steady sliding")):
             self.assert_refused([words], *(f"{name}={text}" for name, text in {**good, path: value}.items()))
 
     def test_worst_samples_at_full_order(self):

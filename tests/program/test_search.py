@@ -72,7 +72,7 @@ class SearchTest(ProgramTest):
     def test_what_is_refused(self):
         """Invalid settings; tests/parameters covers invalid variables."""
         for overrides, what in ((["Designs/Variables=Geometry/Pin height = 0.03, 0.04"], "a search requires ranges"),
-                                ([VARIABLES, "Search/Samples=20", "Search/Evaluations=10"], "20 samples"),
+                                ([VARIABLES, "Search/Samples=20", "Search/Evaluations=10"], "samples, 20"),
                                 ([VARIABLES, "Search/Smallest step=0.2"], "larger than the first")):
             with self.subTest(what):
                 self.assert_message(self.call("scene.prm", "--output", "none", *settings(["Study=search", *overrides])), [what])

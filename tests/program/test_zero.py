@@ -90,7 +90,7 @@ class SoftMount(ProgramTest):
             with self.subTest(folder.name):
                 rows = read_table(folder / "complex_modes.csv")
                 # The warnings give one limit for all modes and one for low frequencies
-                limits = [float(text) for text in re.findall(r"below ([-+.e0-9]+) %", warnings(folder))]
+                limits = [float(text) for text in re.findall(r"(?:below|limit is) ([-+.e0-9]+) %", warnings(folder))]
                 self.assertEqual(len(limits), 2, warnings(folder))
                 for row in rows:
                     rate, is_slow = float(row["divergence rate [%]"]), float(row["frequency [Hz]"]) < 1
@@ -124,7 +124,7 @@ class WeakDamping(ProgramTest):
         rows = read_table(self.folder / "weak" / "complex_modes.csv")
         neutral = [row for row in rows if abs(float(row["divergence rate [%]"])) <= 1e-6 and row["verdict"] == "stable"]
         self.assertGreater(len(neutral), 0)
-        self.assertRegex(process.stdout, rf"\b{len(neutral)} of {len(rows)} modes\b.* damping")
+        self.assertRegex(process.stdout, rf"\b{len(neutral)} of {len(rows)} modes\b")
 
 if __name__ == "__main__":
     unittest.main()

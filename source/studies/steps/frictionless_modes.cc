@@ -35,18 +35,27 @@ namespace Squeal
     }
 
     /// Rejects supercritical speeds, at which K − Ω² ρ N has eigenvalues ≤ 0 and no Cholesky factor.
-    void check_speed(const CoupledSystem &coupled, const Parameters &parameters)
+    void check_speed(CoupledSystem coupled, const Parameters &parameters)
     {
       if (!parameters.operation.rotating_disc || !parameters.has_friction())
         return;
+      const double speed = parameters.operation.rotation_speed, last = parameters.sweep.map_values.last;
+      const bool   is_in_map =
+        parameters.study->has("Sweep/Map parameter") && parameters.sweep.map_parameter == MapParameter::speed && last > speed;
+      if (is_in_map)
+        {
+          coupled.values[BodyParameter::angular_velocity] = {last};
+          set_frictionless_matrices(coupled);
+        }
       int       n_null = 0;
       const int n      = count_negative_eigenvalues(*coupled.stiffness, "stiffness of the rotating disc", &n_null);
       if (n + n_null > 0)
         throw ParameterError(
-          text("the rotation speed of ", exact_text(parameters.operation.rotation_speed), " rad/s exceeds a critical speed: ",
+          text("the rotation speed of ", exact_text(is_in_map ? last : speed), " rad/s exceeds a critical speed: ",
                "the stiffness K - Omega^2 rho N has ", n + n_null, " non-positive eigenvalue", n + n_null == 1 ? "" : "s",
                ". The model does not contain centrifugal prestress, which is of the same order Omega^2 and stiffens the disc"),
-          "parameter Operation/Rotation speed", "lower it, or set Operation/Gyroscopic forces = false");
+          is_in_map ? "parameter Sweep/Last map value" : "parameter Operation/Rotation speed",
+          "lower it, or set Operation/Gyroscopic forces = false");
     }
 
     /// Modes of the disc and of the pins alone, as a step of the run.

@@ -129,8 +129,18 @@ namespace Squeal
       if (term.power == 0 && (term.kind == TermKind::body || term.kind == TermKind::mount))
         scene.elastic.terms.push_back(term);
     scene.elastic.values = bodies.values;
-    scene.bodies         = merged(bodies.terms, bodies.values);
-    scene.system         = sparse_matrices(scene.bodies, bodies.values);
+    // Maps over the speed vary the rotation terms, which therefore remain individual terms
+    std::vector<Term> fixed = bodies.terms, varied;
+    if (parameters.study->has("Sweep/Map parameter") && parameters.sweep.map_parameter == MapParameter::speed)
+      {
+        const auto first =
+          std::stable_partition(fixed.begin(), fixed.end(), [](const Term &term) { return term.kind != TermKind::rotation; });
+        varied.assign(first, fixed.end());
+        fixed.erase(first, fixed.end());
+      }
+    scene.bodies = merged(fixed, bodies.values);
+    scene.bodies.insert(scene.bodies.end(), varied.begin(), varied.end());
+    scene.system = sparse_matrices(scene.bodies, bodies.values);
     run.progress.finish(text(scene.system.stiffness->n_entries(), " entries in K"));
     return bodies;
   }
@@ -196,7 +206,7 @@ namespace Squeal
     const bool all = state.closed.size() == scene.interface.size();
     result.contact = all ? scene.contact : contact_operators(*scene.model, result.interface);
     result.damping = selected(state.damping, state.closed);
-    result.coupled = couple(scene.bodies, result.contact, result.damping);
+    result.coupled = couple(scene.bodies, result.contact, result.damping, scene.elastic.values);
     return result;
   }
 

@@ -15,9 +15,10 @@ namespace Squeal
     double damping_of(const OperatingPoint &point)
     {
       double sum = 0.;
-      for (const auto &[name, coefficients] : point.values)
-        for (const double c : coefficients)
-          sum += std::abs(c);
+      for (const char *name : {SystemParameter::radial_damping, SystemParameter::sliding_damping})
+        if (const auto coefficients = point.values.find(name); coefficients != point.values.end())
+          for (const double c : coefficients->second)
+            sum += std::abs(c);
       return sum;
     }
 

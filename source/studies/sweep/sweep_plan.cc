@@ -25,6 +25,8 @@ namespace Squeal
             lines.push_back({Kind::map, operation, value, sweep.map_grid()});
             OperationParameters &varied                                                                = lines.back().operation;
             (sweep.map_parameter == MapParameter::load ? varied.load_per_side : varied.rotation_speed) = value;
+            if (sweep.map_parameter == MapParameter::speed && varied.rotating_disc)
+              lines.back().values[BodyParameter::angular_velocity] = {value};
           }
       return lines;
     }
@@ -106,7 +108,9 @@ namespace Squeal
         {
           run.progress.update(text("state ", ++n_points));
           const StateOfContact state = plan.state_at(static_cast<int>(l), mu);
-          regime_of(state.closed, regimes).points.push_back({mu, selected(state.damping, state.closed).values(), static_cast<int>(l)});
+          OperatingPoint       point{mu, plan.lines[l].values, static_cast<int>(l)};
+          point.values.merge(selected(state.damping, state.closed).values());
+          regime_of(state.closed, regimes).points.push_back(std::move(point));
         }
     run.progress.finish(text(n_points, " operating points, ", regimes.size(), regimes.size() == 1 ? " contact set" : " contact sets"));
     return plan;

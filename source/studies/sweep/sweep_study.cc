@@ -185,9 +185,12 @@ namespace Squeal
         return;
       const OperationParameters &operation = parameters.operation;
       const bool                 is_steady = parameters.needs_steady_sliding();
-      if (!operation.has_contact_damping() && !(is_steady && varied == MapParameter::load))
-        throw ParameterError("a map over the " + to_string(varied) + " requires contact damping", "parameter Sweep/Map parameter",
-                             "set Operation/Radial dissipation or Operation/Friction slope, or Sweep/Map parameter = none");
+      const bool has_effect = operation.has_contact_damping() || (varied == MapParameter::load ? is_steady : operation.rotating_disc);
+      if (!has_effect)
+        throw ParameterError("no term of the model depends on the " + to_string(varied) + " of the map", "parameter Sweep/Map parameter",
+                             text("set Operation/Radial dissipation or Operation/Friction slope",
+                                  varied == MapParameter::speed ? " or Operation/Gyroscopic forces" : "",
+                                  ", or Sweep/Map parameter = none"));
       if (is_steady && varied == MapParameter::load && !parameters.uses_load_per_side())
         throw ParameterError("the steady sliding state does not depend on the load of the map", "parameter Steady sliding/Control",
                              "set it to load per side or pressure, or Sweep/Map parameter = none");
