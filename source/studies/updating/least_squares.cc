@@ -62,6 +62,22 @@ namespace Squeal
       return svd.solve(residuals.r).cwiseAbs().maxCoeff();
     }
 
+    /// Largest relative offset of a minimum: remaining steps are small compared with the standard deviations of the parameters [-].
+    constexpr double offset_at_minimum = 0.1;
+
+    /// √(‖P r‖²/n) / √(‖r − P r‖²/(m − n)) with the projection P onto the columns of J, m numbers and n free parameters (D. M. Bates,
+    /// D. G. Watts, Technometrics 23 (1981) 179); infinite for m <= n.
+    double relative_offset(const std::vector<double> &x, const Residuals &residuals)
+    {
+      const std::vector<Eigen::Index> free = free_parameters(x, residuals);
+      const auto                      m = residuals.r.size(), n = static_cast<Eigen::Index>(free.size());
+      if (m <= n)
+        return std::numeric_limits<double>::infinity();
+      const DenseMatrix     J         = residuals.J(Eigen::placeholders::all, free);
+      const Eigen::VectorXd projected = J * J.colPivHouseholderQr().solve(residuals.r);
+      return std::sqrt(projected.squaredNorm() / n / ((residuals.r - projected).squaredNorm() / (m - n)));
+    }
+
     /// A parameter is undetermined if the squared norm of its component in undetermined directions exceeds this value.
     constexpr double undetermined_square = 1e-4;
 
@@ -146,7 +162,8 @@ namespace Squeal
           break;
         if (reached == held || change == most_changes)
           {
-            result.has_converged = reached == held && remaining_step(result.x, result.residuals) <= std::max(step_at_minimum, tolerance);
+            result.has_converged = reached == held && (remaining_step(result.x, result.residuals) <= std::max(step_at_minimum, tolerance) ||
+                                                       relative_offset(result.x, result.residuals) <= offset_at_minimum);
             break;
           }
         held = reached;
