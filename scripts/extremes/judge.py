@@ -101,12 +101,12 @@ def judge_refusal(case, process, folder, row):
     """Checks that the run reports one error with its reason, location and remedy, and writes no files."""
     reason = re.match(r"^error: (.*)\n  where:  .*\n  change: .*\n$", process.stderr.lstrip("\n"))
     if not reason:
-        raise Wrong(f"no error message with reason, location and remedy: {process.stderr[-400:]!r}")
+        raise Wrong(f"the error output is not one message with reason, location and remedy: {process.stderr[-400:]!r}")
     if (folder / "run").exists():
         raise Wrong("rejected, but a result folder was created")
     row.outcome, row.remark = "refused", reason[1]
     if case.expected == RIGHT or case.expected not in process.stderr:
-        raise Wrong(f"refused, but expected was {case.expected!r}: {reason[1]}")
+        raise Wrong(f"refused, but {case.expected!r} was expected: {reason[1]}")
 
 
 def judge_results(case, process, folder, row):
