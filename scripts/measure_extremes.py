@@ -4,12 +4,12 @@
 """Runs the cases of doc/extremes.md, compares each with an independent solution, and prints the table of that page.
 
     scripts/measure_extremes.py                    # all cases, about twenty minutes on two idle cores
-    scripts/measure_extremes.py --only mounts      # cases whose name contains a word
-    scripts/measure_extremes.py --missing          # cases that are missing in the table of the page
-    scripts/measure_extremes.py --write            # all cases, and updates the table of the page
+    scripts/measure_extremes.py --only mounts      # cases whose names contain `mounts`
+    scripts/measure_extremes.py --missing          # cases that are not in the table of the page
+    scripts/measure_extremes.py --write            # all cases; also updates the table of the page
 
-The exit status is 1 if a case is neither right nor rejected as expected. The environment variable SQUEAL is the path of
-the program.
+The exit status is 1 if a case is neither right nor refused as expected. The environment variable SQUEAL may specify the
+path of the program.
 """
 
 import collections
@@ -29,7 +29,7 @@ from squeal.command_line import Parser, exit_on_error
 
 PAGE = pathlib.Path(__file__).resolve().parents[1] / "doc" / "extremes.md"
 BEGIN, END = "<!-- cases -->", "<!-- end of cases -->"
-# Attributes of judge.Row
+# Headings of the attributes of judge.Row, in the same order
 COLUMNS = ("case", "value", "outcome", "modes", "residual", "count", "oracle", "deviation", "digits", "remark")
 HEAD = "| " + " | ".join(COLUMNS) + " |\n" + "|---" * len(COLUMNS) + "|"
 
@@ -63,10 +63,10 @@ def judge_in_folder(case):
 @exit_on_error()
 def main():
     parser = Parser(__doc__)
-    parser.add_argument("--only", default="", metavar="WORDS", help="only the cases whose name contains WORDS")
-    parser.add_argument("--missing", action="store_true", help="only the cases missing in the table of doc/extremes.md")
+    parser.add_argument("--only", default="", metavar="WORDS", help="run only the cases whose names contain WORDS")
+    parser.add_argument("--missing", action="store_true", help="run only the cases that are not in the table of doc/extremes.md")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), metavar="N", help="number of concurrent cases (default: %(default)s)")
-    parser.add_argument("--write", action="store_true", help="updates the measured rows of the table of doc/extremes.md")
+    parser.add_argument("--write", action="store_true", help="update the measured rows of the table of doc/extremes.md")
     arguments = parser.parse_args()
     known = known_lines() if arguments.missing else ()
     chosen = [case for case in CASES if arguments.only in case.name and (case.group, case.value) not in known]

@@ -4,7 +4,7 @@
 
     cases.py     the models as data
     oracle.py    all eigenvalues of the exported matrices by SciPy, refined in extended precision
-    judge.py     runs a case and decides whether it is right, refused or wrong
+    judge.py     runs a case and decides whether it is right, refused, wrong or not judged
 """
 
 import pathlib

@@ -4,7 +4,7 @@
 
 import dataclasses
 
-# One pin on each side of a disc with one layer of elements: 780 dofs, 32 modes, one of them unstable
+# One pin on each side of a disc with one layer of elements: 780 dofs and 32 modes, one of them unstable
 BASE = """
 subsection Geometry
   set Disc inner radius = 0.2
@@ -32,7 +32,8 @@ MOUNT = (0, 7.8e10, 1.88e10)
 
 @dataclasses.dataclass(frozen=True)
 class Case:
-    """One model: the results must be correct, or the run must stop with a message that contains `expected`."""
+    """One model. If `expected` is RIGHT, the results must be correct; otherwise the run must stop with a message that
+    contains `expected`."""
 
     group: str
     value: str
@@ -51,7 +52,7 @@ class Case:
 def scaled(s, *, held=True, damped=False):
     """Settings of the small model with lengths scaled by s, for the same dimensionless results.
 
-    At constant Young's moduli, densities and pressures, frequencies, rates and speeds scale with 1 / s, forces with s^2, mount stiffnesses
+    At constant Young's moduli, densities and pressures, frequencies, rates and rotation speeds scale with 1 / s, forces with s^2, mount stiffnesses
     per area with 1 / s, and damping coefficients of contact nodes with s^2.
     """
     settings = [f"Geometry/{name}={value * s!r}" for name, value in LENGTHS.items()]
@@ -103,7 +104,7 @@ add("Poisson's ratio of the pins, trilinear", "0.5", "Pin material/Poisson ratio
 
 for exponent in range(-6, 7):
     ratio = 10.0**exponent
-    # The mesh resolves slow waves only up to a lower frequency
+    # Lower the end of the band for soft pins, because the mesh does not resolve their short waves at higher frequencies
     end = 5000 * min(1, (ratio / 1e-2) ** 0.5)
     add("ratio of Young's moduli, pin to disc", f"1e{exponent}", f"Pin material/Young modulus={ratio * DISC_MODULUS!r}", band(end),
         quick=exponent == -6, argument_count=exponent in (-6, 6))
@@ -169,8 +170,8 @@ add("layout", "no pin", *pins([], [], sides=()), expected="pin")
 add("mesh", "one layer everywhere", "Geometry/Pin layers=1")
 add("mesh", "coarsest: 0.05774 m", "Geometry/Pin layers=1", "Geometry/Element size=0.05774")
 add("mesh", "too coarse: 0.058 m", "Geometry/Element size=0.058", expected="Element size")
-add("mesh", "fine: 61 nodes per pin, 0.02 m", "Geometry/Nodes per pin face=61", "Geometry/Element size=0.02", "Geometry/Disc layers=2",
-    "Geometry/Pin layers=6")
+add("mesh", "fine: 61 nodes per pin face, element size 0.02 m", "Geometry/Nodes per pin face=61", "Geometry/Element size=0.02",
+    "Geometry/Disc layers=2", "Geometry/Pin layers=6")
 
 for beta in (1e-9, 1e-6, 2.6e-5):
     add("Rayleigh beta [s]", f"{beta:g}", f"Disc material/Rayleigh beta={beta!r}", f"Pin material/Rayleigh beta={beta!r}", quick=beta == 2.6e-5)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Runs a case and judges the outcome: right, refused with a reason, or wrong."""
+"""Runs a case and judges the outcome: right, refused with a reason, wrong, or not judged."""
 
 import dataclasses
 import json
@@ -17,17 +17,17 @@ from squeal import exported_matrices, parameter_file, quadratic
 from squeal.program import find_program, words_of
 from squeal.results import Table
 
-# Largest relative difference of eigenvalues from the oracle
+# Largest acceptable relative difference of eigenvalues from the oracle
 TOLERANCE = 1e-6
-# Largest residual of a mode, if the run does not warn of lost digits
+# Largest acceptable residual of a complex mode if the run does not warn of lost digits
 LARGEST_RESIDUAL = 1e-8
 # Relative rounding error of tables, which have 12 digits
 PRINTED = 1e-11
 # Relative distance from the end of the band, or from the radius, within which eigenvalues may be missing
 EDGE = 1e-7
-# |lambda| / end of the band below which the program treats lambda as zero
+# |lambda| / end of the band up to which eigenvalues are not compared
 ZERO = 1e-4
-# Largest difference of dimensionless results from the model in metres
+# Largest acceptable difference of dimensionless results from the model in metres
 SAME_IN_ALL_UNITS = 1e-8
 # Limits of the CPU time and the wall time of a run [s]
 CPU_LIMIT, TIME_LIMIT = 300, 1500
@@ -90,7 +90,7 @@ def judge(case, folder):
         else:
             judge_results(case, process, folder, row)
             if case.expected != RIGHT:
-                raise Wrong(f"{row.outcome}, but should be refused: {case.expected}")
+                raise Wrong(f"{row.outcome}, but should have been refused: {case.expected}")
     except Wrong as wrong:
         row.outcome = "WRONG"
         row.remark = str(wrong)
@@ -101,12 +101,12 @@ def judge_refusal(case, process, folder, row):
     """Checks that the run reports one error with its reason, location and remedy, and writes no files."""
     reason = re.match(r"^error: (.*)\n  where:  .*\n  change: .*\n$", process.stderr.lstrip("\n"))
     if not reason:
-        raise Wrong(f"no clear error: {process.stderr[-400:]!r}")
+        raise Wrong(f"the error output is not one message with reason, location and remedy: {process.stderr[-400:]!r}")
     if (folder / "run").exists():
         raise Wrong("rejected, but a result folder was created")
     row.outcome, row.remark = "refused", reason[1]
     if case.expected == RIGHT or case.expected not in process.stderr:
-        raise Wrong(f"refused: {reason[1]}")
+        raise Wrong(f"refused, but {case.expected!r} was expected: {reason[1]}")
 
 
 def judge_results(case, process, folder, row):
@@ -159,7 +159,7 @@ def judge_results(case, process, folder, row):
     if own_error > TOLERANCE / 10:
         row.outcome, row.remark = "not judged", f"the oracle's own error is {own_error:.0e}"
     elif dense_error > TOLERANCE:
-        row.remark = f"LAPACK alone is off by {dense_error:.0e}"
+        row.remark = f"the oracle before refinement is off by {dense_error:.0e}"
     if has_warned:
         row.remark += ("; " if row.remark else "") + "warning of lost digits"
 
@@ -196,7 +196,7 @@ def difference(rows, others, scale):
 
 
 def compare(what, actual, expected, band, radius):
-    """Largest relative difference of eigenvalues. Raises Wrong if their numbers differ."""
+    """Largest relative difference of eigenvalues. Raises Wrong if the numbers of oscillating or real eigenvalues differ."""
     def certain(values):
         return [value for value in values
                 if abs(value) > ZERO * band and abs(abs(value) - radius) > EDGE * radius and abs(value.imag - band) > EDGE * band]
@@ -212,8 +212,9 @@ def compare(what, actual, expected, band, radius):
 
 
 def argument_count(case, folder, modes, band):
-    """Counts complex modes by the argument principle in a sweep with one friction coefficient: modes with |Re lambda| up
-    to 0.1 times, and Im lambda of at least 0.001 times the end of the band."""
+    """Counts complex modes by the argument principle in a sweep with one friction coefficient. Relative to the end of the
+    band, |Re lambda| is at most 0.1 and Im lambda is 0.001 to 1. Returns the text for the column `count`; raises Wrong if
+    the count differs from the modes."""
     parameters = parameter_file.read_parameters(folder / "run" / "parameters.prm")
     mu = parameters["Operation/Friction coefficient"]
     settings = [*case.settings, "Study=sweep", f"Sweep/First friction coefficient={mu}", f"Sweep/Last friction coefficient={mu}",

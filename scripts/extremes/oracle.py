@@ -10,10 +10,11 @@ Three steps:
        no damping           the eigenvalues theta of S^-1 T                                             eig
        damping              with lambda = s + s / nu:  nu^2 Q(s) + nu s Q'(s) + s^2 M                   eig of size 2 n
 
-   Systems beyond `largest_dense` are solved by ARPACK on the shifted and inverted companion form.
+   Systems with more than LARGEST_DENSE dofs are solved by ARPACK on the shifted and inverted companion form.
 2. Two-sided block inverse iteration about the centre c of each cluster; the eigenvalues then follow from W^H Q(c + delta) V, whose entries
-   are computed with a 64-bit mantissa. Their error is the product of the errors of V and W.
-3. Step 2 is repeated while it changes the eigenvalues by more than 1e-10; the last change is the error of the oracle.
+   are computed with a 64-bit mantissa. The error of the eigenvalues is the product of the errors of V and W.
+3. Step 2 is repeated, up to three times in total, while it changes the eigenvalues by more than 1e-10. The last change is the error of the
+   oracle.
 """
 
 import dataclasses
@@ -33,7 +34,7 @@ CLUSTER = 1e-6
 N_ITERATIONS = 4
 # Relative distance up to which eigenvalues from ARPACK are copies if their vectors are linearly dependent
 COPIES = 1e-5
-# |lambda| / end of the band below which eigenvalues count as zero and are not refined
+# |lambda| / end of the band below which eigenvalues are not refined
 ZERO = 0.9e-4
 # Relative change below which refinement stops
 CONVERGED = 1e-10
@@ -41,7 +42,7 @@ CONVERGED = 1e-10
 
 @dataclasses.dataclass
 class Solution:
-    """Eigenvalues with Im lambda >= 0 and |lambda| below a radius."""
+    """Eigenvalues with Im lambda >= 0 and |lambda| up to 1.001 times a radius."""
 
     values: np.ndarray
     error: float  # largest relative change in the last refinement
@@ -63,7 +64,7 @@ class Oracle:
         self.shift = 0.1 * 2 * np.pi * band
 
     def solve(self, radius):
-        """All eigenvalues with |lambda| up to a radius [1/s]."""
+        """All eigenvalues with Im lambda >= 0 and |lambda| up to 1.001 times a radius [1/s]."""
         values, method = self.approximate()
         values = values[(values.imag >= 0) & (abs(values) <= 1.001 * radius)]
         changes = [np.inf]
@@ -104,7 +105,7 @@ class Oracle:
     # ---------------------------------------------------------------- refinement
 
     def refine(self, values):
-        """Refines each cluster of values; values that count as zero are not changed."""
+        """Refines each cluster of values; values near zero are not changed."""
         values = values[np.lexsort((values.real, values.imag))]
         is_near = abs(values[:, None] - values) <= CLUSTER * abs(values)
         n_clusters, cluster_of = scipy.sparse.csgraph.connected_components(is_near, directed=False)
