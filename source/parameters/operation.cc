@@ -47,10 +47,11 @@ namespace Squeal
   void OperationParameters::check() const
   {
     if (!SlidingVelocity(*this).turns_about_z() && rotating_disc)
-      throw ParameterError("gyroscopic forces require a disc that turns about the z axis, but Operation/Sliding direction is " +
-                             sliding_direction,
-                           "parameters Operation/Gyroscopic forces and Sliding direction",
-                           "set Operation/Gyroscopic forces = false, or Operation/Sliding direction = -y, x, 0");
+      throw ParameterError(
+        "gyroscopic forces require the sliding direction -y, x, 0 (rotation about the z axis), but Operation/Sliding direction is " +
+          sliding_direction,
+        "parameters Operation/Gyroscopic forces and Sliding direction",
+        "set Operation/Gyroscopic forces = false, or Operation/Sliding direction = -y, x, 0");
   }
 
   bool OperationParameters::has_contact_damping() const

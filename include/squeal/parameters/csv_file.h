@@ -7,12 +7,12 @@
 
 namespace Squeal
 {
-  /// Table of texts from a CSV file.
+  /// Content of a CSV file as strings.
   struct CsvFile
   {
     std::vector<std::string>              names;       ///< column names
     std::string                           where_names; ///< file and line of the column names, for messages
-    std::vector<std::vector<std::string>> rows;        ///< one text for each column, without surrounding blanks
+    std::vector<std::vector<std::string>> rows;        ///< one string for each column, without surrounding blanks
     std::vector<std::string>              where;       ///< file and line of each row, for messages
 
     /// Index of a column; names.size() if it is missing.

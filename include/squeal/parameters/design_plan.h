@@ -12,8 +12,8 @@ namespace Squeal
   /// Designs, defined by the values of their variables.
   struct DesignPlan
   {
-    std::vector<std::string>              names;   ///< variables: "Section/Name" or "Section/Name[k]", or several of them joined by "+"
-    std::vector<std::vector<std::string>> designs; ///< values of the variables for each design; an empty text means unchanged
+    std::vector<std::string>              names;   ///< variables: "Section/Name" or "Section/Name[k]", or several of these joined by "+"
+    std::vector<std::vector<std::string>> designs; ///< values of the variables for each design; an empty string means unchanged
 
     std::string              where_names; ///< source of the names for messages: parameter, or file and line
     std::vector<std::string> where;       ///< file and line of each design; empty: as where_names
@@ -64,8 +64,7 @@ namespace Squeal
   /// @p text with the number from number_of() replaced. Throws ParameterError if there are fewer numbers.
   std::string with_number(const std::string &text, unsigned int k, const std::string &value);
 
-  /// Path of the file of designs: in the folder of the parameter file, or in the current directory; empty if the designs do not come from a
-  /// file.
+  /// Path of the file of designs: in the folder of the parameter file or in the current directory; empty unless Designs/Plan = file.
   std::string designs_file(const Parameters &parameters);
 
   /// Designs from the CSV file Designs/File: names of the variables in the first line, then one design per line. Throws the errors of

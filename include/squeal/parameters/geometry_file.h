@@ -29,7 +29,7 @@ namespace Squeal
     std::string onelab_name; ///< option Name of DefineNumber; empty for DefineConstant
   };
 
-  /// Text, without comments, of a Gmsh script and of the scripts that it includes by literal names; nothing is run.
+  /// Text, without comments, of a Gmsh script and of the scripts that it includes or merges by literal names; nothing is run.
   class GeometryScript
   {
   public:
@@ -39,7 +39,7 @@ namespace Squeal
     /// Variables in DefineConstant[...], and in DefineNumber[...] with the option Name; strings and lists are skipped.
     std::vector<GeometryVariable> variables() const;
 
-    /// The script itself, then existing files in its Include and Merge commands.
+    /// The script itself, then existing files that its Include and Merge commands name, also indirectly.
     std::vector<std::string> files() const;
 
     /// File, line and text of the first line that contains one of @p words; each entry may contain several words separated by single
@@ -58,7 +58,7 @@ namespace Squeal
     std::vector<std::string> merged; ///< merged files that are not scripts
   };
 
-  /// A geometry and all included files, to be stored with results.
+  /// A geometry and its included and merged files, to be stored with results.
   struct GeometryCopy
   {
     struct File

@@ -15,7 +15,7 @@
 namespace Squeal
 {
   /**
-   * Splits a list at commas into texts. Throws ParameterError if some commas look like decimal commas, as in "0,3, 0,4", "0,4, 1" and
+   * Splits a list into strings at commas. Throws ParameterError if some commas look like decimal commas, as in "0,3, 0,4", "0,4, 1" and
    * "0,05"; uniform lists such as "0,30" and "1,2,3" are accepted.
    *
    * @param what  name of the list, for messages: "Sweep/Count modes at"
@@ -39,7 +39,7 @@ namespace Squeal
     std::set<std::size_t> n_numbers; ///< permitted numbers of values in an entry
     char                  separator = ';', between_numbers = ',';
 
-    /// Throws ParameterError that quotes this format; a decimal comma in @p list adds a hint.
+    /// Throws a ParameterError that quotes this format; a decimal comma in @p list adds a hint.
     [[noreturn]] void refuse(const std::string &what, const std::string &list = "") const;
   };
 

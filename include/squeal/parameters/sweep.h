@@ -32,7 +32,7 @@ namespace Squeal
     /// Equally spaced values.
     std::vector<double> linear() const;
 
-    /// Values with a constant ratio.
+    /// Geometrically spaced values.
     std::vector<double> geometric() const;
   };
 
@@ -43,7 +43,7 @@ namespace Squeal
     ValueRange  values;
   };
 
-  /// Modes over the friction coefficient (section `Sweep`).
+  /// Modes as functions of the friction coefficient (section `Sweep`).
   struct SweepParameters
   {
     ValueRange          friction_coefficients = {0., 0.45, 90};
