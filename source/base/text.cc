@@ -14,7 +14,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Maximum length of a text in a message [characters].
+    /// Maximum length of user input quoted in a message; longer input is truncated [characters].
     constexpr std::size_t largest_length = 80;
 
     /// Characters without special meaning in any shell, as in Python's shlex.quote(). Words with other characters are quoted.

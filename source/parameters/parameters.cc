@@ -303,7 +303,7 @@ namespace Squeal
                            "give a positive load, or set Operation/Radial dissipation = none, Operation/Friction slope = 0 and Steady "
                            "sliding/Contact state = equal load");
     if ((is_steady || has_contact_damping()) && !(operation.rotation_speed > 0.))
-      throw ParameterError("contact damping and steady sliding require a positive sliding speed, but the rotation speed is zero",
+      throw ParameterError("contact damping and steady sliding require a sliding speed, but the disc does not turn",
                            "parameter Operation/Rotation speed",
                            "give a positive speed, or set Operation/Radial dissipation = none, Operation/Friction slope = 0 and Steady "
                            "sliding/Contact state = equal load");

@@ -81,7 +81,7 @@ namespace Squeal
                            "otherwise");
     for (const std::string &face : pressed_faces)
       if (std::count(pressed_faces.begin(), pressed_faces.end(), face) > 1)
-        throw ParameterError("the surface " + face + " is listed twice", "parameter Steady sliding/Pressed faces", "list each face once");
+        throw ParameterError("the surface " + face + " is named twice", "parameter Steady sliding/Pressed faces", "name each face once");
     if (control != BackplateControl::load_per_pin && !pin_loads.empty())
       throw ParameterError("loads of individual pins are given, but `" + to_string(control) + "` is prescribed",
                            "parameter Steady sliding/Loads", "set Steady sliding/Control = load per pin, or remove the loads");
