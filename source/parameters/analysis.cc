@@ -20,7 +20,7 @@ namespace Squeal
       "Element", element,
       "Element type, described here for hexahedra. `trilinear`: 8 nodes, too stiff in bending. `incompatible modes`: 8 nodes and "
       "additional quadratic displacements inside each element (Wilson, Taylor), accurate in bending with the same number of unknowns. "
-      "`quadratic`: 27 nodes; the elements follow curved boundaries.");
+      "`quadratic`: 27 nodes; the elements follow the cylinders disc_bore, disc_rim and pin_side.");
     declarations.add(
       "Coarser mesh", coarser_mesh,
       "Second mesh, from which the discretisation error of each mode is estimated. Give parameters of the section Geometry with their "
@@ -86,7 +86,7 @@ namespace Squeal
 
     declarations.enter("Linear algebra");
     declarations.add("Factorization", library,
-                     "Sparse direct solver for symmetric matrices. `automatic`: CHOLMOD on one process, MUMPS on several.");
+                     "Sparse direct solver for positive definite matrices. `automatic`: CHOLMOD on one process, MUMPS on several.");
     declarations.add(
       "Threads", n_threads, "none",
       "Number of threads per process, used for concurrent friction coefficients, matrix products, solves and large factorisations. 0: "

@@ -77,9 +77,10 @@ namespace Squeal
                      "Maximum width of the interval of friction coefficients that encloses a threshold.", {1e-13, 1e-2});
     declarations.add("Compare dissipation", compare_dissipation,
                      "If Operation/Radial dissipation is not none, repeats the sweep without it and shows both results.");
-    declarations.add("Mode shapes at", mode_shapes, "none",
-                     "Friction coefficients, separated by commas, at which the leading mode is written as a field.", coefficients,
-                     most_coefficients);
+    declarations.add(
+      "Mode shapes at", mode_shapes, "none",
+      "Friction coefficients, separated by commas, at which the mode with the largest divergence rate is written as a field if it grows.",
+      coefficients, most_coefficients);
     declarations.add(
       "Complex plane at", planes, "none",
       "Friction coefficients, separated by commas, at which all modes of the band are written to a table and drawn in the complex plane; "
@@ -88,7 +89,7 @@ namespace Squeal
     declarations.add(
       "Count modes at", counts, "none",
       "Friction coefficients, separated by commas, at which the modes of the band are counted by the argument principle, independently of "
-      "the eigensolvers.",
+      "the solution for complex modes.",
       {}, most_coefficients);
     declarations.add(
       "Map parameter", map_parameter,
