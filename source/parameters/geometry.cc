@@ -235,7 +235,7 @@ namespace Squeal
     declarations.add(
       "Allow shell commands", allow_shell_commands,
       "Allows a .geo to start programs, to create, write and remove files, and to use the network. If the operating system cannot forbid "
-      "these actions, a note is printed. Set it to true only if you trust every line.");
+      "these actions, a note is printed. Set this parameter to true only if you trust every line of the file.");
     declarations.add("Meshing time limit", meshing_time_limit, "s", "Time limit for Gmsh.", {0.});
     declarations.add("Meshing memory limit", meshing_memory_limit, "GB", "Memory limit for Gmsh.", {0.});
     for (Variable &variable : variables)

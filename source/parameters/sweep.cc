@@ -89,7 +89,7 @@ namespace Squeal
     declarations.add(
       "Count modes at", counts, "none",
       "Friction coefficients, separated by commas, at which the modes of the band are counted by the argument principle, independently of "
-      "the solution for complex modes.",
+      "the solver for complex modes.",
       {}, most_coefficients);
     declarations.add(
       "Map parameter", map_parameter,

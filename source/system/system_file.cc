@@ -27,7 +27,7 @@ namespace Squeal
     /// Largest entry of (A − Aᵀ)/2 for a symmetric matrix, or of (A + Aᵀ)/2 for a skew matrix, relative to the largest entry of A [-].
     constexpr double symmetry_tolerance = 1e-12;
 
-    /// Number of values of every parameter at which the coefficients are checked.
+    /// Number of values in the range of each parameter at which the coefficients are checked.
     constexpr int n_samples = 65;
 
     /// A JSON value with its position in the file, for messages.

@@ -21,7 +21,7 @@ namespace Squeal
     std::vector<std::string> bases           = {"real + 1st-ord. two-sided", "residual-grown"};
     double                   grown_tolerance = 1e-4;   ///< tolerance of residual-grown bases [-]
     double                   largest_dofs    = 150000; ///< maximum number of dofs of a mesh, including clamped dofs
-    double                   margin          = 0.1;    ///< relative extension of the band, so that all modes have counterparts [-]
+    double                   margin          = 0.1;    ///< relative extension of the band, so that modes near its end have counterparts [-]
 
     void declare(Declarations &declarations);
 

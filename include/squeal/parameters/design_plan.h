@@ -38,7 +38,7 @@ namespace Squeal
   std::vector<std::vector<double>> sobol_points(std::size_t n, std::size_t dimension, unsigned int seed);
 
   /**
-   * Designs from the section `Designs`, identical on every process and machine.
+   * Designs from the section `Designs`, identical on every process.
    *
    * Latin hypercube (M. D. McKay, R. J. Beckman, W. J. Conover 1979): each of n equal parts of every range contains one sample at a random
    * position. Sobol sequence (I. M. Sobol 1967), with all samples shifted by one random vector modulo 1 (R. Cranley, T. N. L. Patterson
@@ -51,8 +51,8 @@ namespace Squeal
   /// The plan as a CSV file for Designs/Plan = file.
   std::string as_csv(const DesignPlan &plan);
 
-  /// @p parameters with the values of a design, without a check of combinations. Throws ParameterError for an unknown parameter, suggesting
-  /// the nearest known name, and for an invalid value.
+  /// @p parameters with the values of a design, without a check of combinations. Throws ParameterError for an invalid value, and for an
+  /// unknown parameter with the nearest known name.
   Parameters with_design(const Parameters &parameters, const std::vector<std::string> &names, const std::vector<std::string> &values);
 
   /// Current value of the first parameter of a variable. Throws ParameterError as with_design() does.

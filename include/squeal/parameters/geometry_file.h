@@ -12,7 +12,7 @@ namespace Squeal
    * Path of a geometry. A relative name is searched for in the folder of the parameter file, then in the current directory; a name without
    * a directory is also searched for among the supplied geometries.
    *
-   * Throws MeshError, listing the searched folders, if there is no such file.
+   * Throws a MeshError that lists the searched folders if there is no such file.
    */
   std::string find_geometry(const std::string &name, const std::string &parameter_directory);
 
@@ -63,7 +63,7 @@ namespace Squeal
   {
     struct File
     {
-      std::string from, to; ///< current path; name in the folder of the copy
+      std::string from, to; ///< path of the file; name of its copy in the results
     };
 
     std::vector<File> files; ///< empty for a supplied geometry

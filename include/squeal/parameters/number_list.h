@@ -26,7 +26,7 @@ namespace Squeal
   /// Hint for an error message: "; write a decimal point: 0.4" if a number seems to have a decimal comma; empty otherwise.
   std::string decimal_point_hint(const std::string &text);
 
-  /// Throws ParameterError, naming @p parameter ("Section/Name"), if a number occurs twice.
+  /// Throws a ParameterError that names @p parameter ("Section/Name") if a number occurs twice.
   void check_distinct(const std::vector<double> &numbers, const char *parameter);
 
   /// Format of a list of entries such as "disc_bore: 0, 7.8e10, 1.88e10; disc_rim: ...".

@@ -31,7 +31,7 @@ namespace Squeal
   /// without quotes.
   std::string written_value(const std::string &value);
 
-  /// Value of @p text: the quoted text, or the text without surrounding blanks. Throws ParameterError, naming @p where, if quotes or
+  /// Value of @p text: the quoted text, or the text without surrounding blanks. Throws a ParameterError that names @p where if quotes or
   /// escapes are invalid.
   std::string read_value(const std::string &text, const std::string &where);
 } // namespace Squeal

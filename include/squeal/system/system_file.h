@@ -67,9 +67,9 @@ namespace Squeal
   /**
    * Reads a system. Collective.
    *
-   * Throws FileError or ParameterError, naming file and entry, for unreadable files, syntax errors, inconsistent sizes, non-finite entries,
-   * violated symmetries, unknown parameters, coefficients that are not finite at sampled parameter values, a missing mass, dofs that
-   * occur in no matrix, and zero displacements.
+   * Throws a FileError or ParameterError that names file and entry for unreadable files, syntax errors, inconsistent sizes, non-finite
+   * entries, violated symmetries, unknown parameters, coefficients that are not finite at sampled parameter values, a missing mass, dofs
+   * that occur in no matrix, and zero displacements.
    */
   SystemFile read_system(const std::string &path, MPI_Comm communicator);
 
