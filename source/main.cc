@@ -123,8 +123,8 @@ Predicts whether a disc with friction pins squeals.
       {
         return std::string("a system call failed: ") + error.what() +
                "\n  where:  a file, or the limits of this process on threads (ulimit -u) and memory (ulimit -v)\n"
-               "  change: check permissions and free space of the file; or use fewer threads, OMP_NUM_THREADS=1 or Linear "
-               "algebra/Threads = 1, or raise the limit";
+               "  change: check permissions and free space of the file; or use fewer threads (OMP_NUM_THREADS=1 or Linear algebra/Threads "
+               "= 1), or raise the limits";
       }
     catch (const std::exception &error)
       {

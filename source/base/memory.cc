@@ -34,7 +34,7 @@ namespace Squeal
       return numbers;
     }
 
-    /// Remaining memory of a control group [byte]; infinite if its limit is `max` or, in a container, its folder is missing.
+    /// Remaining memory of a control group [byte]; infinite if its limit is `max` or its folder is missing, as in a container.
     double left_by_group(const fs::path &folder)
     {
       double limit, usage;

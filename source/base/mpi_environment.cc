@@ -7,8 +7,8 @@
 
 #include <cstdlib>
 
-/// Replaces MPI_Init() of the library, because Ipopt, which OpenTURNS may load, would start MPI before main(); deal.II calls
-/// MPI_Init_thread().
+/// Replaces MPI_Init() of the library, because Ipopt, which OpenTURNS may load, would otherwise start MPI before main(). MPI is started by
+/// deal.II, which calls MPI_Init_thread().
 extern "C" int MPI_Init(int * /*argc*/, char *** /*argv*/)
 {
   return MPI_SUCCESS;
@@ -18,7 +18,7 @@ namespace Squeal
 {
   void prepare_mpi_environment()
   {
-    // Set by mpirun in the processes that it starts
+    // This variable is set by mpirun in the processes that it starts
     const char *n_processes = std::getenv("OMPI_COMM_WORLD_LOCAL_SIZE");
     if (n_processes == nullptr)
       {

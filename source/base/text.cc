@@ -14,10 +14,10 @@ namespace Squeal
 {
   namespace
   {
-    /// Maximum length of a text in a message [characters].
+    /// Maximum length of user input quoted in a message; longer input is truncated [characters].
     constexpr std::size_t largest_length = 80;
 
-    /// Characters without special meaning in any shell, as in Python's shlex.quote(). Words with other characters are quoted.
+    /// Characters that require no quotes, as in Python's shlex.quote(). Words with other characters are quoted.
     constexpr const char *plain_characters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789@%+=:,./_-";
   } // namespace
 

@@ -59,7 +59,7 @@ namespace Squeal
       return groups;
     }
 
-    /// True for mesh formats before 4, in which every element has a physical tag in addition to the tag of its entity. Gmsh adds all
+    /// True for mesh formats 1 and 2, in which every element has a physical tag in addition to the tag of its entity. Gmsh adds all
     /// elements of an entity to the groups of all its elements, which is wrong for files with a single entity from some converters.
     bool has_physical_tags(const std::string &file)
     {

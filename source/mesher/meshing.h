@@ -16,7 +16,7 @@ namespace Squeal
     using std::runtime_error::runtime_error;
   };
 
-  /// Starts Gmsh without the user's configuration files, on one thread and with fixed seeds, so that the same input gives the same mesh.
+  /// Starts Gmsh without the user's configuration files, on one thread and with fixed seeds, so that meshes are reproducible.
   /// Call once per process.
   void start_gmsh();
 
@@ -30,7 +30,7 @@ namespace Squeal
 
   /**
    * Confines this process, which can then no longer start programs, write, create, rename or remove files, or open connections. Files that
-   * are already open remain usable. A forbidden call ends the process by SIGSYS (libseccomp).
+   * are already open remain usable. Attempts to remove files fail; most other forbidden calls end the process by SIGSYS (libseccomp).
    *
    * Gmsh scripts could perform these actions by SystemCall, NonBlockingSystemCall, OnelabRun, CreateDir, Save, Print, Printf > "file", and
    * some plugins and options.

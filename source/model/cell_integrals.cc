@@ -14,7 +14,7 @@ namespace Squeal
 
   namespace
   {
-    /// A free dof of an element, or of a master of its tied nodes, with its local row, or -1 if another process owns the row.
+    /// A free dof of an element or of a master of its tied nodes, with its local row (-1 if another process owns the row).
     struct FreeDof
     {
       unsigned int in_element;

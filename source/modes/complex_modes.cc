@@ -71,7 +71,7 @@ namespace Squeal
     if (k == 0)
       return;
 
-    // Ascending frequency; for equal frequencies, the mode with the smaller growth rate first
+    // Sort by frequency, and modes of equal frequency by growth rate
     std::vector<int> order(k);
     std::iota(order.begin(), order.end(), 0);
     constexpr double equal = 1e-9;

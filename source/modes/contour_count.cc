@@ -251,9 +251,12 @@ namespace Squeal
   void check_count(const int n_counted, const std::vector<Complex> &lambda, const ContourOptions &contour)
   {
     if (const int n_found = n_in_rectangle(lambda, contour); n_found != n_counted)
-      throw SolverError(text(n_found, " complex modes were found in the band up to |Re lambda| = ", contour.largest_growth, " 1/s, but ",
-                             n_counted, " were counted"),
-                        place, "lower Complex modes/Tolerance, or change Band/Maximum frequency or Band/Maximum rate");
+      throw SolverError(
+        text(n_found, " complex modes were found in the band up to |Re lambda| = ", contour.largest_growth, " 1/s, but ", n_counted,
+             " were counted"),
+        place,
+        "lower Complex modes/Tolerance (or Complex modes/Iteration tolerance for residual iteration), or change Band/Maximum frequency or "
+        "Band/Maximum rate");
   }
 
   ContourCount count_by_sparse_lu(const SecondOrderSystem &matrices, const ContourOptions &options, Progress &progress)

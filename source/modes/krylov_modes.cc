@@ -14,7 +14,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Sum of all terms with one power of λ, which are applied individually because a matrix of the sum would need as much memory as K.
+    /// Sum of all terms with one power of λ; terms are applied individually, because a matrix of the sum would need as much memory as K.
     struct SumOfTerms : LinearOperator
     {
       SumOfTerms(const CoupledSystem &system, const ParameterValues &values, const int power)
@@ -91,8 +91,8 @@ namespace Squeal
     const bool has_full_terms = !terms_of(others, values, 1).empty();
     // Reject modal damping with a shift, because the shifted factor cannot include modal damping
     if (shift != 0. && has_full_terms)
-      throw SolverError("the Krylov solver cannot combine modal damping with a disc that is free or softly mounted", "complex modes",
-                        "choose Complex modes/Solver = residual iteration, give the disc stiffer Mounts/Elastic mounts, or leave "
+      throw SolverError("the Krylov solver cannot combine modal damping with a body that is free or softly mounted", "complex modes",
+                        "choose Complex modes/Solver = residual iteration, stiffen Mounts/Elastic mounts, or leave "
                         "Damping/Modal damping ratio empty");
 
     const SumOfTerms      mass(system, values, 2), damping(system, values, 1), stiffness(system, values, 0);
@@ -121,8 +121,7 @@ namespace Squeal
       }
     catch (const SolverError &)
       {
-        // Retry with a shift, because K̃ is almost singular close to a static instability; after any other failure, the second attempt
-        // throws again
+        // Retry with a shift, because K̃ is almost singular close to a static instability; other failures usually recur
         if (shift != 0. || has_full_terms)
           throw;
         options.shift = band.end / band_per_stabilizing_shift;

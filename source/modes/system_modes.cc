@@ -61,7 +61,7 @@ namespace Squeal
     result.inverse                   = std::make_shared<UpdatedInverse>(system, shift, solvers.library, attachment);
     const double n_entries           = result.inverse->frictionless().n_factor_entries();
     result.factorisation =
-      progress.finish(text(n_entries / 1e6, " million entries", shift > 0. ? ", shifted because the disc is free or softly mounted" : ""));
+      progress.finish(text(n_entries / 1e6, " million entries", shift > 0. ? ", shifted because a body is free or softly mounted" : ""));
 
     progress.begin("Real modes");
     SymmetricModesOptions options = real_modes_options(solvers, "real modes of the coupled system", shift);

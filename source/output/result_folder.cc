@@ -132,7 +132,7 @@ namespace Squeal
     remove_traces();
   }
 
-  /// Removes everything except committed results.
+  /// Removes uncommitted results, unless moving them failed, and a new folder that is empty.
   void ResultFolder::remove_traces()
   {
     std::error_code ignored;

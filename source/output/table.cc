@@ -16,7 +16,7 @@ namespace Squeal
   {
     constexpr int significant_digits = 12;
 
-    /// An entry as text; @p shown formats numbers.
+    /// An entry as a string; @p shown formats numbers.
     template <typename Shown>
     std::string text_of(const Entry &cell, const Shown &shown)
     {

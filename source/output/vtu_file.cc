@@ -42,7 +42,7 @@ namespace Squeal
       return result;
     }
 
-    /// Field data with a text as character codes, which need no escape sequences.
+    /// Field data with a string as character codes, which require no escape sequences.
     std::string field_data(const std::string &text)
     {
       std::ostringstream stream;

@@ -209,8 +209,9 @@ namespace Squeal
     declarations.enter("Accuracy study");
     declarations.add(
       "Mesh factors", factors, "none",
-      "Mesh refinement factors relative to the section Geometry, in every direction, separated by commas. They scale element size, layers "
-      "and nodes per pin face. At least two factors are required; three factors also yield an order of convergence.",
+      "Mesh refinement factors relative to the section Geometry, in every direction, separated by commas. They scale the element size and "
+      "the numbers of layers, pin rings and nodes per pin face. At least two factors are required; three factors also yield an order of "
+      "convergence.",
       {0.1, 10.}, 20);
     add_list(declarations, "Elements", elements, "Elements to be compared.");
     add_list(declarations, "Outlines", outlines,

@@ -20,13 +20,13 @@ namespace Squeal
       "Element", element,
       "Element type, described here for hexahedra. `trilinear`: 8 nodes, too stiff in bending. `incompatible modes`: 8 nodes and "
       "additional quadratic displacements inside each element (Wilson, Taylor), accurate in bending with the same number of unknowns. "
-      "`quadratic`: 27 nodes; the elements follow curved boundaries.");
+      "`quadratic`: 27 nodes; the elements follow the cylinders disc_bore, disc_rim and pin_side.");
     declarations.add(
       "Coarser mesh", coarser_mesh,
       "Second mesh, from which the discretisation error of each mode is estimated. Give parameters of the section Geometry with their "
-      "values for the coarser mesh, for example disc_size = 0.019, pad_size = 0.012, or a file (.geo, .msh). The estimate is at least as "
-      "large as the error if the elements of the coarser mesh are about twice as large. If Accuracy is set, the program chooses the "
-      "coarser mesh. Empty: no error estimate.");
+      "values for the coarser mesh, for example disc_size = 0.019, pad_size = 0.012, or a file (.geo, .msh). The elements of the coarser "
+      "mesh should be about twice as large; with smaller elements, the estimate may be too small. If Accuracy is set, the program chooses "
+      "the coarser mesh. Empty: no error estimate.");
 
     declarations.enter("Band");
     declarations.add(
@@ -36,10 +36,10 @@ namespace Squeal
       {0.});
     declarations.add(
       "Maximum rate", maximum_rate, "1/s",
-      "Largest |Re lambda| of the modes in the band. Modes that decay faster are not listed; modes that grow faster are listed. The "
-      "argument principle counts the modes up to this rate (Sweep/Count modes at; stability run on a system file, on one process); the "
-      "stability run fails if the count differs from the number of modes found. 0: modes with |lambda| up to 1.005 times the circular "
-      "frequency at the end of the band are listed, and counts use a rate of 0.1 times this frequency.",
+      "Largest |Re lambda| of the modes that are counted by the argument principle (Sweep/Count modes at; stability run on a system file, "
+      "on one process). The stability run fails if the count differs from the number of modes found. Modes that decay faster than this "
+      "rate are not listed. 0: counts use a rate of 0.1 times the circular frequency at the end of the band, and the listed modes are all "
+      "modes with |lambda| up to 1.005 times this frequency.",
       {0.});
   }
 
@@ -64,7 +64,7 @@ namespace Squeal
     declarations.add("Tolerance", real_tolerance, "none", "Maximum relative residual of a real mode.", {1e-14, 1e-4});
     declarations.add(
       "Maximum number of modes", maximum_modes, "none",
-      "Maximum number of coupled modes in the band; if the band contains more modes, the run stops before they are computed. 500 modes "
+      "Maximum number of coupled modes in the band. If the band contains more modes, the run stops before computing any. 500 modes "
       "require minutes and gigabytes; twice as many modes take up to eight times as long.",
       {1});
 
@@ -86,11 +86,12 @@ namespace Squeal
 
     declarations.enter("Linear algebra");
     declarations.add("Factorization", library,
-                     "Sparse direct solver for symmetric matrices. `automatic`: CHOLMOD on one process, MUMPS on several.");
+                     "Sparse direct solver for positive definite matrices. `automatic`: CHOLMOD on one process, MUMPS on several.");
     declarations.add(
       "Threads", n_threads, "none",
       "Number of threads per process, used for concurrent friction coefficients, matrix products, solves and large factorisations. 0: "
-      "OMP_NUM_THREADS, or the number of cores of the process. The number of threads changes results only by rounding errors.",
+      "OMP_NUM_THREADS, or the number of cores that the process may use. The number of threads affects results only through rounding "
+      "errors.",
       {0, 1024});
     declarations.add("BLAS threads", blas_threads, "none",
                      "Number of threads of dense kernels per process; more than one thread is useful only on idle cores.", {1, 256});
@@ -101,22 +102,24 @@ namespace Squeal
     declarations.enter("Output");
     declarations.add("Mode shapes", fields, "Complex modes that are written as fields.");
     declarations.add("Component mode shapes", component_fields,
-                     "Also writes the mode shapes of disc and pins alone, with free and with sliding contact nodes.");
+                     "Also writes the mode shapes of the free disc, and of the pins with free and with sliding contact nodes.");
     declarations.add("Real mode shapes", real_fields, "Also writes the shapes of coupled modes without friction.");
     declarations.add("Animation frames", animation_frames, "none",
                      "Number of frames per period in the animation of an unstable mode; 0: no animation.", {0, 1000});
     declarations.add("Animation periods", animation_periods, "none", "Number of periods in an animation.", {1, 1000});
-    declarations.add("Animation growth", animation_growth,
-                     "Scales the mode by e^(R t): by a factor of e in 1 / (2 pi divergence rate) periods, or 16 periods at a divergence "
-                     "rate of 1 %.");
+    declarations.add(
+      "Animation growth", animation_growth,
+      "Scales the mode by e^(R t). The amplitude grows by a factor of e in 1 / (2 pi divergence rate) periods, that is, in 16 periods at a "
+      "divergence rate of 1 %.");
     declarations.add(
       "Write matrices", write_matrices,
-      "Writes the node coordinates and, in Matrix Market format, M, C (material damping) and K, and for the closed contact nodes C_b "
-      "(contact damping), P_n, P_t, P_b, K_n and T_c.");
+      "Writes the node coordinates and, in Matrix Market format, M, C (damping of materials and dashpots), K and, if present, G "
+      "(gyroscopic forces), and for the closed contact nodes C_b (contact damping), P_n, P_t, P_b, K_n and T_c.");
     declarations.add(
       "Write system", write_system,
-      "Writes the coupled system to the folder system of the results, as input for the parameter System. `full`: all terms. `reduced`: "
-      "the reduced model of a sweep, accurate to Sweep/Tolerance between the first and the last value; of a robustness study, accurate to "
-      "Robustness/Tolerance within the ranges of the samples; or of each basis of Study = reduction.");
+      "Writes the coupled system to the folder system of the results, as input for the parameter System. `full`: all terms. `reduced`: one "
+      "reduced model. For a sweep, it is accurate to Sweep/Tolerance between the first and the last value; for a robustness study, it is "
+      "accurate to Robustness/Tolerance within the ranges of the samples. Study = reduction writes one model for each basis, in separate "
+      "folders.");
   }
 } // namespace Squeal

@@ -18,7 +18,7 @@ namespace Squeal
 {
   namespace
   {
-    constexpr const char *as_csv_file = "save it as a CSV file in UTF-8, with commas between values and with decimal points";
+    constexpr const char *as_csv_file = "save the file as CSV in UTF-8, with commas between values and with decimal points";
 
     std::string where_in(const std::string &file, const std::size_t line)
     {
@@ -71,7 +71,7 @@ namespace Squeal
     {
       if (std::count(line.begin(), line.end(), '"') % 2 != 0)
         throw ParameterError("a quotation mark is not closed in this line", where,
-                             "write each " + row + " on one line, and enclose the whole of a value that contains commas in quotes");
+                             "write each " + row + " on one line, and enclose every value that contains commas in quotation marks");
       using Separator = boost::escaped_list_separator<char>;
       std::vector<std::string> result;
       for (const std::string &field : boost::tokenizer<Separator>(line, Separator('\0', ',', '"')))

@@ -62,7 +62,7 @@ namespace Squeal
         return noun + (in ? " in" : "") + (bounds().empty() ? "" : " ") + bounds() + unit;
       }
 
-      /// Parses a number. Throws ParameterError naming @p path if the text or the value is invalid.
+      /// Parses a number. Throws a ParameterError that names @p path if the string or the value is invalid.
       double parse(const std::string &path, const std::string &text) const
       {
         constexpr int     largest_integer = std::numeric_limits<int>::max();

@@ -81,13 +81,14 @@ namespace Squeal
         return;
       const double n = number(rest.substr(in + 4), entry);
       if (n != std::floor(n) || n < 2. || n > most_designs)
-        refuse("the number of levels in " + in_quotes(entry) + " is " + exact_text(n),
+        refuse("the number of levels in " + in_quotes(entry) + " is " + exact_text(n) + ", not an integer from 2 to " +
+                 std::to_string(most_designs),
                "give an integer from 2 to " + std::to_string(most_designs));
       for (int i = 0; i < static_cast<int>(n); ++i)
         variable.levels.push_back(i + 1 < n ? variable.at(i / (n - 1.)) : exact_text(variable.last));
     }
 
-    /// Path and index of "Section/Name[3]"; the index is zero if the name has none.
+    /// Path and index of "Section/Name[3]"; the index is zero if the name has no index.
     std::pair<std::string, unsigned int> split_index(const std::string &name, const std::string &where = where_variables)
     {
       const auto bracket = name.find('[');
@@ -245,7 +246,7 @@ namespace Squeal
       return sobol_points(n, dimension, designs.seed);
     }
 
-    /// Position and length of the k-th number in a text.
+    /// Position and length of the k-th number in a string.
     std::pair<std::size_t, std::size_t> place_of_number(const std::string &text, const unsigned int k)
     {
       const auto   is_of_name = [](const char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '.'; };
@@ -268,7 +269,7 @@ namespace Squeal
         }
       throw ParameterError(
         Squeal::text("the value ", in_quotes(text), " has ", n, n == 1 ? " number" : " numbers", ", but number ", k, " is varied"),
-        where_variables, "give an index up to the number of numbers, counted from 1");
+        where_variables, "lower the index, or remove it to vary the whole value");
     }
   } // namespace
 

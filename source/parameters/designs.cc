@@ -12,7 +12,8 @@ namespace Squeal
     declarations.add(
       "Plan", choice,
       "Method of choosing the designs. `full grid`: all combinations of the levels. `one at a time`: the given model, then every level of "
-      "each variable. `Latin hypercube` and `Sobol sequence`: samples of the ranges. `file`: rows of a CSV file.");
+      "each variable while the other variables are unchanged. `Latin hypercube` and `Sobol sequence`: samples of the ranges and lists. "
+      "`file`: rows of a CSV file.");
     declarations.add(
       "Variables", variables,
       "Varied parameters and their values, as `Section/Name = values; ...`. Values are a list `a, b, c` (`a | b` if values contain "
@@ -24,9 +25,9 @@ namespace Squeal
       "parameter file, then in the current directory.");
     declarations.add("Number of designs", n_samples, "none", "Number of samples of a Latin hypercube or a Sobol sequence.", {1., 1e5});
     declarations.add("Seed", seed, "none", "Seed of the random numbers: equal seeds give equal designs.", {0., 2147483647.});
-    declarations.add("Processes", n_processes, "none",
-                     "Number of designs that are solved concurrently on this machine, or per MPI process; 0: one for each core.",
-                     {0., 1024.});
+    declarations.add(
+      "Processes", n_processes, "none",
+      "Number of designs that each MPI process solves concurrently; 0: as many as the cores and the available memory permit.", {0., 1024.});
   }
 
   void SearchParameters::declare(Declarations &declarations)
@@ -53,9 +54,9 @@ namespace Squeal
   {
     if (n_samples > n_evaluations)
       throw ParameterError(text("the number of samples, ", n_samples, ", exceeds the number of evaluations, ", n_evaluations),
-                           "parameter Search/Samples", "lower it or raise Search/Evaluations");
+                           "parameter Search/Samples", "lower Search/Samples, or raise Search/Evaluations");
     if (smallest_step > first_step)
       throw ParameterError("the smallest step, " + exact_text(smallest_step) + ", is larger than the first step, " + exact_text(first_step),
-                           "parameter Search/Smallest step", "lower it or raise Search/First step");
+                           "parameter Search/Smallest step", "lower Search/Smallest step, or raise Search/First step");
   }
 } // namespace Squeal

@@ -100,7 +100,7 @@ namespace Squeal
         });
     }
 
-    /// True if a Gmsh mesh has physical volumes, whose names are stored as text even in binary files.
+    /// True if a Gmsh mesh has physical volumes, whose names are stored in plain text even in binary files.
     bool has_volumes(const std::string &mesh)
     {
       std::ifstream stream(mesh, std::ios::binary);
@@ -188,9 +188,10 @@ namespace Squeal
     declarations.add(
       "File", file,
       "Geometry or mesh of disc and pins: a Gmsh script (.geo) or a Gmsh mesh (.msh). The file is searched for in the folder of the "
-      "parameter file, in the current directory, then among the supplied geometries. A file with physical volumes is a solid model and is "
-      "used unchanged. A file with only physical surfaces and curves is a plan: a planar geometry that is meshed and extruded. A .geo can "
-      "use every parameter below as a variable, and its own variables (DefineConstant, DefineNumber) become parameters of this section.");
+      "parameter file, in the current directory, then among the supplied geometries. A file with physical volumes is a solid model. A file "
+      "with only physical surfaces and curves is a plan: a planar geometry that is meshed and extruded. A .geo can use the dimensions, "
+      "positions and mesh parameters below as variables, and its own numeric variables (DefineConstant, DefineNumber) become parameters of "
+      "this section.");
     declarations.add("Disc inner radius", disc_inner_radius, "m", "Radius of the bore of the disc.", {0.});
     declarations.add("Disc outer radius", disc_outer_radius, "m", "Radius of the rim of the disc.", {0.});
     declarations.add("Disc thickness", disc_thickness, "m", "Thickness of the disc, which is symmetric about z = 0.", {0.});
@@ -208,7 +209,7 @@ namespace Squeal
     declarations.add("Bottom pin angles", bottom.angles, "degree", "Angular positions of the pins on the lower face, one for each radius.");
     declarations.add("Nodes per pin face", nodes_per_pin_face, "none",
                      "Number of nodes on the contact face of a pin, 3 k (k + 1) + 1: 7, 19, 37, 61, ...", {1});
-    declarations.add("Pin layers", pin_layers, "none", "Number of element layers over the height of a pin.", {1});
+    declarations.add("Pin layers", pin_layers, "none", "Number of element layers along the height of a pin.", {1});
     declarations.add("Disc layers", disc_layers, "none", "Number of element layers through the thickness of the disc.", {1});
     declarations.add(
       "Element size", element_size, "m",
@@ -218,11 +219,11 @@ namespace Squeal
     declarations.add(
       "Outlines", outlines,
       "Approximation of round pins, bore and rim of a plan by straight edges. `inscribed`: nodes on the circle, so that the area is too "
-      "small. `true area`: nodes moved outwards, so that area and moments of area are the same as for the circle. Quadratic elements "
+      "small. `true area`: nodes moved outwards, so that the area is the same as for the circle. Quadratic elements "
       "follow the circle.");
     declarations.add(
       "Pin rings", pin_rings, "none",
-      "Number of rings of elements along the outline of every pin of a plan, around the inner blocks of elements; each ring adds 6 k nodes "
+      "Number of rings of elements along the outline of every pin of a plan, around the inner blocks of elements. Each ring adds 6 k nodes "
       "to the face, with k from Nodes per pin face = 3 k (k + 1) + 1.",
       {0, 20});
     declarations.add(
@@ -234,7 +235,7 @@ namespace Squeal
     declarations.add(
       "Allow shell commands", allow_shell_commands,
       "Allows a .geo to start programs, to create, write and remove files, and to use the network. If the operating system cannot forbid "
-      "these actions, a note is printed. Set it to true only if you trust every line.");
+      "these actions, a note is printed. Set this parameter to true only if you trust every line of the file.");
     declarations.add("Meshing time limit", meshing_time_limit, "s", "Time limit for Gmsh.", {0.});
     declarations.add("Meshing memory limit", meshing_memory_limit, "GB", "Memory limit for Gmsh.", {0.});
     for (Variable &variable : variables)
@@ -255,7 +256,7 @@ namespace Squeal
     check_positive(pairing_tolerance, "Pairing tolerance");
     check_positive(meshing_time_limit, "Meshing time limit");
     if (!(meshing_memory_limit >= least_memory_limit))
-      refuse(text("Geometry/Meshing memory limit is ", exact_text(meshing_memory_limit), " GB, which is not enough for Gmsh"),
+      refuse(text("Geometry/Meshing memory limit is ", exact_text(meshing_memory_limit), " GB, which is below the minimum"),
              "Meshing memory limit", text("set it to at least ", exact_text(least_memory_limit), " GB"));
     check_positive(pin_layers, "Pin layers");
     check_positive(disc_layers, "Disc layers");

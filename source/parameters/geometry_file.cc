@@ -20,7 +20,7 @@ namespace Squeal
 
   namespace
   {
-    using Pattern = boost::xpressive::sregex; // std::regex would overflow the stack on long texts
+    using Pattern = boost::xpressive::sregex; // std::regex would overflow the stack on long strings
     using Match   = boost::xpressive::smatch;
     using Matches = boost::xpressive::sregex_iterator;
 
@@ -97,7 +97,7 @@ namespace Squeal
       return "";
     }
 
-    /// One item of DefineConstant[...]: name, name = value, or name = {value, options}.
+    /// Variable from one item of DefineConstant[...]: name, name = value, or name = {value, options}; no value for strings and lists.
     std::optional<GeometryVariable> constant(const std::string &item)
     {
       const Pattern assignment = Pattern::compile(R"re(([A-Za-z_]\w*)\s*(?:=\s*(.*))?)re");

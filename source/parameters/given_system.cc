@@ -33,8 +33,8 @@ namespace Squeal
     declarations.add(
       "System", file,
       "Folder that contains system.json and its matrices, or path of system.json. The run uses this system instead of a mesh. Available "
-      "for stability, reduction, sweep, sensitivity, geometry (designs), search (with uncertain parameters), robustness and updating. "
-      "Empty: the system is computed from the geometry.");
+      "for Study = stability, reduction, sweep, sensitivity, geometry (designs), search (Goal = probability or quantile), robustness and "
+      "updating. Empty: the system is computed from the geometry.");
     declarations.add_text(
       "System values", "Parameter values that replace the values in the system file, for example mu = 0.3, omega = 12.6.",
       [this] {
@@ -52,7 +52,7 @@ namespace Squeal
             const auto sides = trimmed_parts(part, "=");
             const auto value = sides.size() == 2 ? parse_number(sides[1]) : std::nullopt;
             if (!value || sides[0].empty() || !values.emplace(sides[0], *value).second)
-              throw ParameterError(in_quotes(part) + " is not of the form name = number, or its parameter is set twice",
+              throw ParameterError(in_quotes(part) + " is not of the form name = number, or sets a parameter for the second time",
                                    "parameter System values", "write name = number, separated by commas, and give each name once");
           }
       });

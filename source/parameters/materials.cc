@@ -62,14 +62,15 @@ namespace Squeal
       declarations.add("Young modulus", material.young_modulus, "Pa", "Young's modulus E.", {0.});
       declarations.add("Poisson ratio", material.poisson_ratio, "none", "Poisson's ratio.", {-1., 0.5});
       declarations.add("Density", material.density, "kg/m^3", "Mass density.", {0.});
-      declarations.add("Rayleigh alpha", material.rayleigh_alpha, "1/s",
-                       "Coefficient alpha of mass-proportional damping, C = alpha M + beta K: the damping ratio of a mode with circular "
-                       "frequency omega is alpha / (2 omega).",
-                       {0.});
+      declarations.add(
+        "Rayleigh alpha", material.rayleigh_alpha, "1/s",
+        "Coefficient alpha of mass-proportional damping, C = alpha M + beta K. If alpha is the same in all bodies, it adds alpha / (2 "
+        "omega) to the damping ratio of a mode with circular frequency omega.",
+        {0.});
       declarations.add(
         "Rayleigh beta", material.rayleigh_beta, "s",
-        "Coefficient beta of stiffness-proportional damping of the material, excluding mounts: the damping ratio of a mode with circular "
-        "frequency omega is beta omega / 2.",
+        "Coefficient beta of stiffness-proportional damping of the material, excluding mounts. If beta is the same in all bodies and "
+        "springs have little effect, it adds beta omega / 2 to the damping ratio of a mode with circular frequency omega.",
         {0.});
     }
 
@@ -212,7 +213,7 @@ namespace Squeal
     declarations.enter("Mounts");
     declare_list(declarations, "Elastic mounts", mounts,
                  "Elastic foundations as a list `surface: radial, tangential, axial; ...`: name of the surface and stiffness per area in "
-                 "cylindrical directions about the disc axis. Empty: the disc has no mount. Units: N/m^3.",
+                 "cylindrical directions about the disc axis. Empty: no elastic mounts. Units: N/m^3.",
                  mount_list, {&Mount::radial, &Mount::tangential, &Mount::axial}, &Mount::surface);
     declare_list(
       declarations, "Dashpots", dashpots,

@@ -35,22 +35,23 @@ namespace Squeal
     declarations.add(
       "Radial dissipation", radial_dissipation,
       "Contact damping c_b [N s/m] of each node along b. `none`: no damping. `consistent`: c_b = mu |R_n0| / w_0 (linearised Coulomb "
-      "friction). `published`: c_b = |R_n0| / w_0 (in the paper: R_n0 / w_0). The reaction R_n0 is determined by Steady sliding/Contact "
-      "state.");
+      "friction, with mu multiplied by the friction factor of the pair). `published`: c_b = |R_n0| / w_0 (in the paper: R_n0 / w_0). The "
+      "reaction R_n0 is determined by Steady sliding/Contact state.");
     declarations.add(
       "Friction slope", friction_slope, "s/m",
       "Slope dmu/dw of the friction coefficient at the sliding speed w_0. At each node, the slope adds damping along the sliding direction "
-      "with the coefficient c_t = slope |R_n0|; a negative slope destabilises.",
+      "with the coefficient c_t = slope |R_n0| (for a friction factor of 1). A negative slope destabilises.",
       {-10., 10.});
   }
 
   void OperationParameters::check() const
   {
     if (!SlidingVelocity(*this).turns_about_z() && rotating_disc)
-      throw ParameterError("gyroscopic forces require a disc that turns about the z axis, but Operation/Sliding direction is " +
-                             sliding_direction,
-                           "parameters Operation/Gyroscopic forces and Sliding direction",
-                           "set Operation/Gyroscopic forces = false, or Operation/Sliding direction = -y, x, 0");
+      throw ParameterError(
+        "gyroscopic forces require the sliding direction -y, x, 0 (rotation about the z axis), but Operation/Sliding direction is " +
+          sliding_direction,
+        "parameters Operation/Gyroscopic forces and Sliding direction",
+        "set Operation/Gyroscopic forces = false, or Operation/Sliding direction = -y, x, 0");
   }
 
   bool OperationParameters::has_contact_damping() const

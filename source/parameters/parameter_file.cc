@@ -24,7 +24,7 @@ namespace Squeal
 
     constexpr const char *blanks = " \t\r\n\v\f";
 
-    // Limits far above the needs of a run, which stop endless device files and multiplying includes
+    // Stop at endless device files and multiplying includes; the limits are far above the needs of a run
     constexpr std::streamsize largest_file       = 1 << 24; // [byte]
     constexpr unsigned int    most_files         = 1000;
     constexpr std::size_t     most_open_sections = 100;
@@ -34,7 +34,7 @@ namespace Squeal
       return "file " + legible(file) + ", line " + std::to_string(line);
     }
 
-    /// Text of a file without its byte order mark; @p where describes it in messages.
+    /// Text of a file without its byte order mark; @p where describes the file in messages.
     std::string read_text(const std::string &file, const std::string &where)
     {
       std::error_code ignored;
@@ -65,7 +65,7 @@ namespace Squeal
     constexpr const char *how_to_quote =
       R"(enclose it in double quotes; inside, write \" for a quote, \\ for a backslash and \n for a line break)";
 
-    /// Position of the closing quote in a text that begins with a quote; the end of the text if the quote is not closed.
+    /// Position of the closing quote in a string that begins with a quote; the end of the string if the quote is not closed.
     std::size_t closing_quote(const std::string &text)
     {
       std::size_t i = 1;

@@ -26,7 +26,7 @@ namespace Squeal
     /// Maximum number of compared characters of an unknown name; all known names are shorter.
     constexpr std::size_t longest_name = 200;
 
-    /// Largest α, relative to the radius of the band, at which overdamped waves far above the band have no eigenvalue in it [-].
+    /// Largest α, relative to the radius of the band, at which overdamped waves above the band have no eigenvalue in the band [-].
     constexpr double most_damping_by_mass = 4.;
 
     /// Case-insensitive Levenshtein distance.
@@ -104,7 +104,7 @@ namespace Squeal
                            "the nearest known name is `" + nearest + "`; squeal --print-parameters lists all names");
     }
 
-    /// Paths of all parameters and their sections.
+    /// Paths of all parameters and of their sections.
     std::vector<std::string> known_names(const Declarations &declarations)
     {
       std::vector<std::string> names;
@@ -327,7 +327,7 @@ namespace Squeal
     for (const auto &[section, material] : materials.all())
       if (const double alpha = material.rayleigh_alpha; alpha > most_damping_by_mass * radius)
         throw ParameterError("mass-proportional damping of " + exact_text(alpha) +
-                               " 1/s moves real eigenvalues -omega^2/alpha of waves far above the band into the band",
+                               " 1/s moves real eigenvalues -omega^2/alpha of waves above the band into the band",
                              "parameter " + section + "/Rayleigh alpha",
                              text("give at most ", most_damping_by_mass * radius, " 1/s, or set Damping/Modal damping ratio instead"));
   }

@@ -110,11 +110,11 @@ namespace Squeal
       "Distributions", distributions,
       "Uncertain parameters, as `Section/Name = distribution; ...`: uniform A to B; normal MEAN, DEVIATION, truncated at three standard "
       "deviations or, with `in A to B`, at A and B; lognormal MEAN, DEVIATION (of the parameter, not of its logarithm); table A, B, C with "
-      "equally probable values. % means percent of the nominal value. `for each pin` at the end draws an independent value for each pin. "
-      "Names are the same as in Designs/Variables, or names of parameters of the system file.");
+      "equally probable values. % means percent of the nominal value. If an entry ends with `for each pin`, an independent value is drawn "
+      "for each pin. Names are written as in Designs/Variables; with a system file, they are names of its parameters.");
     declarations.add("Correlations", correlations,
                      "Correlation coefficients of the normal scores of two parameters (normal copula), as `name, name = value; ...`.");
-    declarations.add("Number of samples", n_samples, "none", "Number of independent samples, from which the probabilities are computed.",
+    declarations.add("Number of samples", n_samples, "none", "Number of independent samples from which the probabilities are computed.",
                      {10., 1e6});
     declarations.add("Seed", seed, "none", "Seed of the random numbers: equal seeds give equal samples.", {0., 2147483647.});
     declarations.add("Tolerance", tolerance, "none", "Maximum estimated relative error of lambda at every sample.", {1e-12, 0.1});

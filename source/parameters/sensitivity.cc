@@ -14,7 +14,7 @@ namespace Squeal
     declarations.add(
       "Largest number of modes", modes, "none",
       "Maximum number of modes whose derivatives are computed at Operation/Friction coefficient: growing modes by descending divergence "
-      "rate; if no mode grows, the least damped modes.",
+      "rate or, if no mode grows, all modes by descending divergence rate.",
       {1, 1000});
     declarations.add("Thresholds", thresholds,
                      "Computes the thresholds between Sweep/First and Sweep/Last friction coefficient, and their derivatives.");
@@ -22,23 +22,25 @@ namespace Squeal
       "Geometry", geometry,
       "Derivatives with respect to dimensions of the built-in geometry, disc_pins.geo. `sizes`: lengths. `sizes and places`: also the "
       "position of each pin. Each derivative requires two assemblies.");
-    declarations.add("Tolerance", tolerance, "none",
-                     "The basis is enriched until the derivatives of a mode change by less than this value, relative to the largest "
-                     "derivative of the mode.",
-                     {1e-10, 1e-1});
+    declarations.add(
+      "Tolerance", tolerance, "none",
+      "The basis is enriched until the derivatives of each mode change by at most this fraction of its largest derivative. A warning is "
+      "printed if the basis cannot be enriched further.",
+      {1e-10, 1e-1});
   }
 
   void IngredientsParameters::declare(Declarations &declarations)
   {
     declarations.enter("Ingredients");
     declarations.add("Frequency tolerance", frequency_tolerance, "%",
-                     "Largest acceptable change of a frequency in the cheapest model, relative to the given model.", {0., 100.});
+                     "Largest acceptable change in a frequency in the cheapest model, as a percentage of the frequency in the given model.",
+                     {0., 100.});
     declarations.add("Divergence tolerance", divergence_tolerance, "percentage points",
-                     "Largest acceptable change of a divergence rate in the cheapest model, relative to the given model.", {0., 100.});
+                     "Largest acceptable difference in a divergence rate between the cheapest and the given model.", {0., 100.});
     declarations.add("Trial friction slope", trial_slope, "s/m",
-                     "Trial slope of the friction coefficient if the model has Operation/Friction slope = 0; 0: no trial.", {-1e3, 1e3});
+                     "Trial slope of the friction coefficient if Operation/Friction slope = 0; 0: no trial.", {-1e3, 1e3});
     declarations.add("Trial damping ratio", trial_damping_ratio, "none",
-                     "Trial damping ratio of all modes if the model has no Damping/Modal damping ratio; 0: no trial.", {0., 0.99});
+                     "Trial damping ratio of all modes if Damping/Modal damping ratio is empty; 0: no trial.", {0., 0.99});
   }
 
   void IngredientsParameters::check() const

@@ -28,9 +28,9 @@ namespace Squeal
     declarations.enter("Steady sliding");
     declarations.add(
       "Contact state", state,
-      "Contact state about which the system is linearised. `equal load`: all contact nodes are closed and carry equal shares of the load "
-      "of their side. `steady sliding`: the quasi-static solution with unilateral contact and friction, in which nodes may lift off. All "
-      "other parameters of this section apply to steady sliding only.");
+      "Contact state about which the system is linearised. `equal load`: all contact nodes are closed, and the load of each side is shared "
+      "equally by its nodes, or in proportion to their areas if the faces do not match. `steady sliding`: the quasi-static solution with "
+      "unilateral contact and friction, in which nodes may lift off. All other parameters of this section apply to steady sliding only.");
     declarations.add(
       "Control", control,
       "Prescribed quantity. `load per side`: the force Operation/Load per side on the rigid backplate of each side. `displacement`: the "
@@ -56,9 +56,9 @@ namespace Squeal
     declare_list(
       declarations, "Gaps", gaps,
       "Initial gaps of pins (height tolerance, wear), as a list `pin: gap; pin: gap, sliding taper, radial taper; ...`. A gap is measured "
-      "along the travel of the backplate and is positive if the pin does not touch. The tapers are the increases of the gap per distance "
-      "from the centre of the face, along the sliding direction and radially outwards (for a shoe on a rim, along the axis; if the disc "
-      "does not rotate about z, along b). Units: m, none, none.",
+      "along the travel of the backplate and is positive if the pin does not touch the disc. The tapers are the increases of the gap per "
+      "distance from the centre of the face, along the sliding direction and radially outwards (for a shoe on a rim, along the axis; if "
+      "the disc does not rotate about z, along b). Units: m, none, none.",
       gap_list, {&PinGap::gap, &PinGap::sliding_taper, &PinGap::radial_taper}, &PinGap::pin);
   }
 
@@ -74,7 +74,7 @@ namespace Squeal
                            "parameter Steady sliding/Displacement",
                            "give a positive travel, or set Steady sliding/Control = load per side");
     if ((control == BackplateControl::pressure) == pressed_faces.empty())
-      throw ParameterError(pressed_faces.empty() ? "no face is pressed" :
+      throw ParameterError(pressed_faces.empty() ? "Steady sliding/Control is `pressure`, but no face is pressed" :
                                                    "pressed faces are given, but `" + to_string(control) + "` is prescribed",
                            "parameter Steady sliding/Pressed faces",
                            "name the faces if Steady sliding/Control = pressure, and leave the list empty "

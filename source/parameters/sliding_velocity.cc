@@ -44,7 +44,7 @@ namespace Squeal
       auto                              function = std::make_shared<dealii::FunctionParser<3>>(3);
       static std::mutex                 one_stream; // std::cerr is shared by all threads
       const std::lock_guard<std::mutex> lock(one_stream);
-      std::ostringstream                unread; // discards exception texts, which deal.II prints
+      std::ostringstream                unread; // discards the exception messages that deal.II prints
       std::streambuf                   *shown = std::cerr.rdbuf(unread.rdbuf());
       try
         {

@@ -65,7 +65,7 @@ namespace Squeal
     declarations.add("First friction coefficient", friction_coefficients.first, "none", "Start of the sweep.", coefficients);
     declarations.add("Last friction coefficient", friction_coefficients.last, "none", "End of the sweep.", coefficients);
     declarations.add("Number of friction coefficients", friction_coefficients.number, "none",
-                     "Number of equally spaced values in the sweep; steps in which modes coalesce are refined.", {1, 100000});
+                     "Number of equally spaced values in the sweep; the steps are refined where modes coalesce.", {1, 100000});
     declarations.add("Tolerance", tolerance, "none",
                      "Maximum estimated relative error of lambda, for every mode at every value of the sweep.", {1e-10, 1e-2});
     declarations.add(
@@ -76,19 +76,20 @@ namespace Squeal
     declarations.add("Threshold tolerance", threshold_tolerance, "none",
                      "Maximum width of the interval of friction coefficients that encloses a threshold.", {1e-13, 1e-2});
     declarations.add("Compare dissipation", compare_dissipation,
-                     "With radial dissipation, repeats the sweep without radial dissipation and shows both results.");
-    declarations.add("Mode shapes at", mode_shapes, "none",
-                     "Friction coefficients, separated by commas, at which the leading mode is written as a field.", coefficients,
-                     most_coefficients);
+                     "If Operation/Radial dissipation is not none, repeats the sweep without it and shows both results.");
+    declarations.add(
+      "Mode shapes at", mode_shapes, "none",
+      "Friction coefficients, separated by commas, at which the mode with the largest divergence rate is written as a field if it grows.",
+      coefficients, most_coefficients);
     declarations.add(
       "Complex plane at", planes, "none",
-      "Friction coefficients, separated by commas, at which all modes of the band are written, as in a run at one friction coefficient, "
-      "and drawn in the complex plane; empty: the values of Mode shapes at.",
+      "Friction coefficients, separated by commas, at which all modes of the band are written to a table and drawn in the complex plane; "
+      "empty: the values of Mode shapes at.",
       {}, most_coefficients);
     declarations.add(
       "Count modes at", counts, "none",
       "Friction coefficients, separated by commas, at which the modes of the band are counted by the argument principle, independently of "
-      "the eigensolvers.",
+      "the solver for complex modes.",
       {}, most_coefficients);
     declarations.add(
       "Map parameter", map_parameter,
@@ -98,7 +99,8 @@ namespace Squeal
     declarations.add("Number of map values", map_values.number, "none",
                      "Number of loads or speeds in the map; the ratio of successive values is constant.", {1, 10000});
     declarations.add("Map friction coefficients", map_friction_coefficients, "none",
-                     "Number of friction coefficients in the map, equally spaced over the sweep.", {1, 10000});
+                     "Number of friction coefficients in the map, equally spaced from the first to the last value of the sweep.",
+                     {1, 10000});
     declarations.add("Parameter", parameter,
                      "With System: name, first value, last value and number of values of the varied parameter, for example omega, 6.28, "
                      "25.1, 31. Empty: the parameter mu, from First to Last friction coefficient.");

@@ -17,9 +17,10 @@ namespace Squeal
       "Sensors", sensors,
       "CSV file of sensors and measured shapes; modes are then paired by shapes instead of labels. Columns: `x [m]`, `y [m]`, `z [m]`, "
       "`direction x`, `direction y`, `direction z`, and a column for each shape, whose name is the label of the mode in the file of "
-      "measured modes (for an imaginary part, the label followed by ` imaginary`). The file is searched for in the same folders.");
+      "measured modes (for an imaginary part, the label followed by ` imaginary`). The file is searched for like the file of measured "
+      "modes.");
     declarations.add("Least MAC", least_overlap, "-",
-                     "Minimum modal assurance criterion (MAC) of a measured shape and its computed counterpart. If the MAC with every "
+                     "Minimum modal assurance criterion (MAC) between a measured shape and its computed counterpart. If the MAC with every "
                      "computed mode is smaller, the shape has no counterpart, and the run fails.",
                      {0., 1.});
     declarations.add("Tolerance", tolerance, "none", "The fit ends when its steps are smaller than this fraction of the ranges.",

@@ -15,8 +15,8 @@ namespace Squeal
   {
     using Complex = std::complex<double>;
 
-    /// Number s of random vectors. New basis vectors are selected with another s vectors, because the first set would miss the residuals
-    /// that it underestimates.
+    /// Number s of random vectors. New basis vectors are selected with s other vectors, because the first set would miss the residuals that
+    /// it underestimates.
     constexpr int size_of_sketch = 128;
 
     /// Diagonal of Xᴴ Y for matrices stored as real parts, then imaginary parts; negative rounding errors are set to zero.
@@ -224,7 +224,7 @@ namespace Squeal
       return block.term != nullptr ? DenseMatrix(rows * motions.at(&block.term->source(!block.in_right))) : DenseMatrix(rows);
     };
 
-    // Scale every vector of Tᵀ W by its energy, because motions of light bodies may exceed modes of the band by many orders of magnitude
+    // Scale every basis vector to unit S-norm, because these norms may differ by many orders of magnitude if bodies are light
     DenseMatrix H(r, n_columns);
     for (const Block &b : blocks)
       H.middleCols(b.first, b.n) =
@@ -446,7 +446,7 @@ namespace Squeal
 
   DenseMatrix ProjectedResiduals::coordinates(const ModesAt &modes) const
   {
-    // Coordinates in an M-orthonormal basis
+    // Scale the modes to unit strain energy; the basis is M-orthonormal
     const auto scaled = [&](const ComplexDenseMatrix &X) -> ComplexDenseMatrix {
       const Eigen::VectorXcd factors =
         (X.colwise().norm().transpose().array() * as_column(modes.lambda).array().abs()).inverse().matrix().cast<Complex>();

@@ -32,7 +32,7 @@ namespace Squeal
       double       axis_distance, angle; ///< from the parameters [m], [degree]
     };
 
-    /// Pins with positions from the parameters; empty if the mesh has other pins.
+    /// Pins with positions from the parameters; empty if the mesh does not have exactly these pins.
     std::vector<PinPlace> places(const Mesh &mesh, const std::vector<unsigned int> &component, const GeometryParameters &parameters)
     {
       std::vector<PinPlace> pins;
@@ -115,7 +115,7 @@ namespace Squeal
       return pins;
     }
 
-    /// ρ of a pin: 1 inside it, 0 at the nearest other pin or rim and beyond.
+    /// ρ of a pin: 1 inside the pin; falls to 0 at the distance of the nearest other pin or rim.
     double weight(const PinPlace &pin, const Point &x)
     {
       const double outside = std::hypot(x[0] - pin.x, x[1] - pin.y) - pin.radius;

@@ -121,7 +121,7 @@ namespace Squeal
     const DenseMatrix Y   = gram(M_modes, all);
     const auto        n   = static_cast<Eigen::Index>(modes.eigenvalues.size());
 
-    // Components of ψ and φ outside the modes, and the responses to them
+    // Components of ψ and φ outside the modes, and the responses to these components
     std::vector<MultiVector> powers = {all - *modes.vectors * Y};
     for (int step = 0; step < krylov_steps; ++step)
       {

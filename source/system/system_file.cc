@@ -24,10 +24,10 @@ namespace Squeal
   {
     using Json = nlohmann::ordered_json;
 
-    /// Largest |A − Aᵀ| or |A + Aᵀ| for a declared symmetry, relative to the largest entry [-].
+    /// Largest entry of (A − Aᵀ)/2 for a symmetric matrix, or of (A + Aᵀ)/2 for a skew matrix, relative to the largest entry of A [-].
     constexpr double symmetry_tolerance = 1e-12;
 
-    /// Number of values of every parameter at which the coefficients are checked.
+    /// Number of values in the range of each parameter at which the coefficients are checked.
     constexpr int n_samples = 65;
 
     /// A JSON value with its position in the file, for messages.
@@ -287,7 +287,7 @@ namespace Squeal
         return read_matrix_market(path.string());
       }
 
-      /// All entries of a matrix; each file is read once.
+      /// All entries of a matrix or factor; each file is read once.
       const SparseRows &entries_of(const JsonEntry &file)
       {
         const std::string name = file.as<std::string>("the name of a file");
@@ -328,7 +328,7 @@ namespace Squeal
             else if (defect > symmetry_tolerance * size)
               entry["symmetry"].refuse(text("the matrix is not ", claim, ": the entries of its ", to_string(part.symmetry), " part reach ",
                                             defect, ", and its largest entry is ", size),
-                                       "correct the matrix, or write none");
+                                       "correct the matrix, or set the symmetry to none");
           }
       }
 
@@ -469,7 +469,8 @@ namespace Squeal
             for (const FileParameter &one : parameters)
               known += (known.empty() ? "" : ", ") + one.name;
             throw ParameterError("the system has no parameter " + in_quotes(name), "file " + path,
-                                 known.empty() ? "remove this parameter; the system has none" : "use a parameter of the system: " + known);
+                                 known.empty() ? "remove this parameter; the system has no parameters" :
+                                                 "use a parameter of the system: " + known);
           }
         if (!(parameter->lower <= value && value <= parameter->upper))
           throw ParameterError(text(name, " = ", exact_text(value), " is outside its range from ", exact_text(parameter->lower), " to ",

@@ -45,7 +45,7 @@ namespace Squeal
     const auto write_text = [&](const std::string &name, const std::string &content) {
       write(name, [&content](std::ostream &stream) { stream << content; });
     };
-    std::map<const void *, std::string> names; // file names of the objects written so far
+    std::map<const void *, std::string> names; // file names of matrices and factors that have been written
     const auto                          factor_file = [&](const LowRankFactor &factor) {
       std::string &name = names[&factor];
       if (name.empty())

@@ -368,7 +368,7 @@ namespace Squeal
     /// Relative difference below which scales count as equal [-].
     constexpr double same_scale = 1e-13;
 
-    /// Terms whose coefficients have the same ratio to their mean in all members.
+    /// Terms of the same power and symmetry whose coefficients have the same ratios to their means.
     struct Group
     {
       const Term                                                         *first;

@@ -37,7 +37,7 @@ namespace Squeal
   {
     trilinear,          ///< 8 nodes, straight edges
     incompatible_modes, ///< trilinear with additional quadratic displacements inside each element (model/cell_stiffness.h)
-    quadratic           ///< 27 nodes, edges that follow named cylinders
+    quadratic           ///< 27 nodes, curved edges on the cylinders disc_bore, disc_rim and pin_side
   };
 
   template <>

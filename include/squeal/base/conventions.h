@@ -11,7 +11,7 @@ namespace Squeal
   /// Divergence rate below which slight structural damping stabilises a mode [-].
   constexpr double weak_divergence = 1e-4;
 
-  /// Largest |Re λ| in the band, as a fraction of its upper end ω [-].
+  /// Default of the largest |Re λ| in the band, as a fraction of the upper end of the band [-].
   inline constexpr double largest_rate_of_band = 0.1;
 
   /**
@@ -45,7 +45,7 @@ namespace Squeal
     }
   };
 
-  /// Fraction of the end of the band below which real eigenvalues are creep motions and are not listed [-].
+  /// Real eigenvalues with a modulus below this fraction of the end of the band are creep motions and are not listed [-].
   inline constexpr double zero_frequency = 1e-4;
 
   /// Circular frequency [rad/s] of a frequency in Hz.

@@ -7,8 +7,8 @@
 
 namespace Squeal
 {
-  /// An error message for the user: what is wrong, where, and what to change. Thrown by all checks of input, meshes and solver results;
-  /// main() prints it and returns 1.
+  /// An error message for the user: what is wrong, where, and what to change. Thrown by checks of input, meshes and solver results; main()
+  /// prints the message and returns 1.
   struct Error : std::runtime_error
   {
     /**
@@ -26,7 +26,7 @@ namespace Squeal
     const std::string reason, where, change;
   };
 
-  /// An error in the parameter file or on the command line.
+  /// An error in the parameter file, in a file that it names, or on the command line.
   struct ParameterError : Error
   {
     using Error::Error;
@@ -37,7 +37,7 @@ namespace Squeal
     using Error::Error;
   };
 
-  /// A solver did not converge, or the number of modes differs from the count.
+  /// A computation failed or gave an unusable result, for example fewer modes than counted.
   struct SolverError : Error
   {
     using Error::Error;

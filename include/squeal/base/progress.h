@@ -42,8 +42,8 @@ namespace Squeal
   };
 
   /**
-   * Progress messages: one line per step with its elapsed time, and on a terminal a live counter, which a separate thread updates while
-   * libraries compute. Only the process with a stream prints.
+   * Progress messages: one line per step with its elapsed time, and on a terminal a live counter, which a separate thread updates during
+   * long computations. Only the process with a stream prints.
    */
   class Progress
   {

@@ -15,8 +15,8 @@ namespace Squeal
 
   unsigned int n_task_threads();
 
-  /// Calls task(0) to task(n - 1), in any order and concurrently. Tasks must not communicate and must not write data that another task
-  /// reads. Rethrows the exception of the failing task with the smallest index when all tasks have ended.
+  /// Calls task(0) to task(n - 1), in any order and, with several threads, concurrently. Tasks must not communicate and must not write data
+  /// that another task reads. Rethrows the exception of the failing task with the smallest index when all tasks have ended.
   void run_tasks(int n, const std::function<void(int)> &task);
 
   /// Calls f(first, n) as tasks for blocks of @p size elements of 0, ..., total - 1; the last block has the remainder. Calls f(0, 0) once

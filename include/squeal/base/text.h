@@ -20,7 +20,7 @@ namespace Squeal
     return stream.str();
   }
 
-  /// Shortest text that reads back as exactly this number; zero has no sign.
+  /// Shortest decimal string from which exactly this number is read; zero has no sign.
   std::string exact_text(double value);
 
   /// Several numbers, separated by ", ".
@@ -29,21 +29,22 @@ namespace Squeal
   /// A number without an exponent: all digits before the point, and at least @p n_digits significant digits.
   std::string decimal_text(double value, int n_digits = 4);
 
-  /// A finite number with optional surrounding blanks; no value for any other text. Zero has no sign.
+  /// A finite number with optional surrounding blanks; no value for any other string. Zero has no sign.
   std::optional<double> parse_number(const std::string &text);
 
-  /// Words of a text, separated by single blanks.
+  /// Words of a string, separated by single blanks.
   std::string single_spaced(const std::string &text);
 
-  /// User input for a message: control characters as `?`, long texts truncated.
+  /// User input for a message: control characters are replaced by `?`, and long input is truncated.
   std::string legible(const std::string &text);
 
-  /// legible() text in back-quotes.
+  /// Result of legible() in back-quotes.
   std::string in_quotes(const std::string &text);
 
   /// A command line in POSIX shell syntax, with words quoted if necessary.
   std::string shell_command(const std::vector<std::string> &words);
 
-  /// First pair of lines in which two texts differ, for a message: "`a = 1` there, `a = 2` here", with "nothing" for a text that has ended.
+  /// First pair of lines in which two texts differ, for a message: "`a = 1` there, `a = 2` here", with "nothing" for a blank line or the
+  /// end of a text.
   std::string first_difference(const std::string &there, const std::string &here);
 } // namespace Squeal

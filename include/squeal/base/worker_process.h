@@ -24,7 +24,7 @@ namespace Squeal
      *
      * @param arguments command-line arguments without the name of the program
      * @param log       file for its output
-     * @param n_threads value of OMP_NUM_THREADS, unless the user has set it, to limit the threads to the number of cores
+     * @param n_threads value of OMP_NUM_THREADS unless the user has set this variable; limits the threads to the number of cores
      *
      * Throws FileError if it cannot be started.
      */

@@ -13,7 +13,7 @@ namespace Squeal
    * Adds the stiffness of one cell divided by Young's modulus, K_ij = ∫ ε(φ_i) : C/E : ε(φ_j) dV.
    *
    * Hexahedra with incompatible modes (E. L. Wilson, R. L. Taylor et al. 1973; R. L. Taylor, P. J. Beresford, E. L. Wilson 1976) have nine
-   * additional internal displacements, (1 − ξ_a²) e_b with ξ in [−1, 1]³, which are condensed:
+   * additional internal displacements, (1 − ξ_a²) e_b with ξ in [−1, 1]³, which are eliminated by static condensation:
    *
    *   K = K_uu − K_uα K_αα⁻¹ K_αu.
    *

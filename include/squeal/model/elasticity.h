@@ -26,7 +26,7 @@ namespace Squeal
     inline constexpr const char *angular_velocity = "angular velocity of the disc"; ///< Ω [rad/s], positive about e_z
   }                                                                                 // namespace BodyParameter
 
-  /// A nonzero coefficient of a mount in a direction relative to the axis of the disc, which is the parameter of a term.
+  /// A nonzero coefficient of a mount in one direction about the axis of the disc; the coefficient is the parameter of a term.
   struct MountParameter
   {
     std::string name;  ///< name in ParameterValues
@@ -58,7 +58,7 @@ namespace Squeal
   /// Terms of a volume: stiffness, mass, and damping proportional to each of them.
   std::vector<Term> volume_terms(const Model &model, unsigned int volume, const Material &material);
 
-  /// Values of the parameters of body_terms(), except mounts with the value zero.
+  /// Values of the parameters of body_terms(); zero coefficients of mounts are omitted.
   ParameterValues body_values(const Model &model, const MaterialParameters &materials);
 
   /**

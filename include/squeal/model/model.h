@@ -89,8 +89,8 @@ namespace Squeal
    * The discretised bodies: isoparametric cells and outer faces, with nodal displacement dofs. Clamped and tied dofs have no number and no
    * rows in the matrices.
    *
-   * The model is distributed: a process has the cells that it owns and all cells at nodes that it owns, with their faces. Process 0
-   * partitions the mesh.
+   * The model is distributed: a process has the cells that it owns and all other cells that contribute to its rows, with their faces.
+   * Process 0 partitions the mesh.
    */
   class Model
   {
@@ -164,7 +164,7 @@ namespace Squeal
       return n_all_dofs;
     }
 
-    /// Notes on the coupling of tied faces, for the user; on process 0.
+    /// Notes for the user on the coupling of tied faces; on process 0 only.
     const std::vector<std::string> &notes() const
     {
       return tied_notes;

@@ -82,7 +82,7 @@ namespace Squeal
    * accepted at the points, otherwise terms are added.
    *
    * Sparse LU: the winding number of det Q is computed directly. A step is reduced until |Δ ln det Q| of both halves (modulus and phase) is
-   * below the largest phase step, so that close zeros cannot be missed.
+   * below the largest phase step, so that zeros close to the contour are detected.
    *
    * Without damping, det Q(−λ̄) is the conjugate of det Q(λ), and only half of the contour is followed.
    *

@@ -14,7 +14,8 @@
 
 namespace Squeal
 {
-  /// Modes of a coupled system without friction, and the inverse for every μ; computed from terms, without a mesh.
+  /// Modes of a coupled system without friction, and an inverse that is updated for each friction coefficient; computed from terms, without
+  /// a mesh.
   struct SystemModes
   {
     double                          shift = 0.; ///< shift of the inverse [rad/s]; positive if a body has rigid-body motions

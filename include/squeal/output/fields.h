@@ -28,7 +28,7 @@ namespace Squeal
     std::complex<double>              lambda;       ///< [rad/s]
     std::vector<std::complex<double>> displacement; ///< u on the free dofs, rows of this process
     std::vector<std::complex<double>> reactions;    ///< r_n of each pair of contact nodes, negative in compression [N per unit amplitude]
-    std::string                       title = {};   ///< text that describes the mode in its files
+    std::string                       title = {};   ///< description of the mode in its files
     std::vector<double> energy_input        = {};   ///< contribution of each pair to the divergence rate, per area [1/m²]; empty: unknown
   };
 
@@ -36,7 +36,7 @@ namespace Squeal
   struct RealModeField
   {
     std::string              name;         ///< name of its file, without extension
-    std::string              title;        ///< text that describes the mode in its file
+    std::string              title;        ///< description of the mode in its file
     std::vector<double>      displacement; ///< u on the free dofs, rows of this process
     std::optional<Component> component;    ///< bodies that are written; no value: all bodies
   };
@@ -73,7 +73,7 @@ namespace Squeal
    * `displacement_real`, `displacement_imag`, `amplitude` (root of the sum of |u|² over the components), `phase` (argument of each
    * component [rad]) and the cell fields of a piece; files `NAME_contact.vtu` of the contact faces contain `normal_reaction_real` and
    * `normal_reaction_imag` [N] in the scale of the displacements, `closed` (1: the node belongs to S_0) and, if known, `energy_input`
-   * [1/m²]. The field data contain the title of the mode as the text `mode`.
+   * [1/m²]. The field data contain the title of the mode as the string `mode`.
    */
   class FieldWriter
   {

@@ -43,10 +43,10 @@ namespace Squeal
 
   /**
    * Result folder of a run. Files are written to its subfolder `.unfinished` and moved to the folder when the run is complete, the run
-   * record last. A failed run does not change former results. The folder is locked against concurrent runs.
+   * record last. A run that fails earlier does not change former results. The folder is locked against concurrent runs.
    *
-   * Former results that the record lists are replaced or removed; the user's own files are kept. The program never writes to a folder that
-   * contains other files but no record.
+   * Former results that the record lists are replaced or removed; the user's own files are kept, and renamed if a result has the same name.
+   * A folder with other files is rejected if it has neither a record nor the subfolder of an unfinished run.
    */
   class ResultFolder
   {
@@ -56,11 +56,11 @@ namespace Squeal
      *
      * @param is_root process that creates, moves and removes files
      *
-     * Throws FileError if @p directory contains anything other than results, is not writable, or is in use.
+     * Throws FileError if @p directory contains files but no results, is not writable, or is in use.
      */
     ResultFolder(const std::string &directory, bool is_root);
 
-    /// Removes uncommitted files.
+    /// Removes uncommitted files, unless moving them failed.
     ~ResultFolder();
 
     ResultFolder(const ResultFolder &)            = delete;
@@ -78,7 +78,8 @@ namespace Squeal
      *
      * @param afterwards called on all processes once the results are in place
      *
-     * Throws FileError if files are missing or cannot be moved; in the latter case, the message names the folder that contains them.
+     * Throws FileError if files are missing or changed, or cannot be moved; if they cannot be moved, the message names the folder that
+     * contains them.
      */
     std::vector<std::string> commit(const std::function<void()> &afterwards = {});
 

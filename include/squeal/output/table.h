@@ -12,15 +12,15 @@
 
 namespace Squeal
 {
-  /// A text as a field of comma-separated values, quoted if it contains a comma, quote or line break.
+  /// A string as a field of comma-separated values, quoted if it contains a comma, quote or line break.
   std::string csv_field(const std::string &text);
 
-  /// A table entry: empty, a text, a count, or a number.
+  /// A table entry: empty, a string, a count, or a number.
   struct Entry : std::variant<std::monostate, std::string, long, double>
   {
     Entry() = default;
 
-    /// Entry for a value of any type; types other than numbers and texts are converted by their to_string().
+    /// Entry for a value of any type; types other than numbers and strings are converted by their to_string().
     template <typename Value>
     Entry(const Value &value)
     {
@@ -76,7 +76,7 @@ namespace Squeal
 
     void write_csv(std::ostream &stream) const;
 
-    /// Prints aligned columns; texts are aligned to the left, numbers to the right.
+    /// Prints aligned columns, with text to the left and numbers to the right.
     void print(std::ostream &stream) const;
 
   private:

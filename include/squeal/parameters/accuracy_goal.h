@@ -21,7 +21,7 @@ namespace Squeal
     std::vector<std::string> bases           = {"real + 1st-ord. two-sided", "residual-grown"};
     double                   grown_tolerance = 1e-4;   ///< tolerance of residual-grown bases [-]
     double                   largest_dofs    = 150000; ///< maximum number of dofs of a mesh, including clamped dofs
-    double                   margin          = 0.1;    ///< relative extension of the band, so that all modes have counterparts [-]
+    double                   margin          = 0.1;    ///< relative extension of the band, so that modes near its end have counterparts [-]
 
     void declare(Declarations &declarations);
 
@@ -65,12 +65,13 @@ namespace Squeal
 
   /**
    * Parameters with the element, mesh, solver and tolerances of the accuracy goal; unchanged without a goal. doc/accuracy.md lists cost and
-   * accuracy for the default model. The element size of the disc is a fraction of the shorter of the bending and Rayleigh wavelengths at
-   * the end of the band. Layers of the disc have about this thickness or less, and tall pins have proportionally more layers.
+   * accuracy for the default model. The element size of the disc is at most a fraction of the shorter of the bending and Rayleigh
+   * wavelengths at the end of the band. Layers of the disc have about this thickness or less, and tall pins have proportionally more
+   * layers.
    */
   Parameters with_goal(const Parameters &given);
 
   /// The same model on the coarser mesh of a goal or, without a goal, on the coarser mesh from the parameters. The band is slightly wider,
-  /// because coarse meshes have higher frequencies. Throws ParameterError if Discretization/Coarser mesh is invalid.
+  /// because frequencies are higher on coarse meshes. Throws ParameterError if Discretization/Coarser mesh is invalid.
   Parameters with_coarser_mesh(const Parameters &given);
 } // namespace Squeal

@@ -16,7 +16,7 @@ namespace Squeal
   {
     Element element           = Element::trilinear;
     double  maximum_frequency = 5000.; ///< upper end of the band [Hz]
-    double  maximum_rate      = 0.;    ///< largest |Re λ| [1/s]; 0: see Band
+    double  maximum_rate      = 0.;    ///< largest |Re λ| of counted modes [1/s]; 0: default of Band
 
     /// Coarser mesh: values of `Geometry` parameters, "disc_size = 0.012, ...", or the name of a geometry or mesh file; empty: no coarser
     /// mesh.

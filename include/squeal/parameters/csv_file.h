@@ -7,18 +7,18 @@
 
 namespace Squeal
 {
-  /// Table of texts from a CSV file.
+  /// Content of a CSV file as strings.
   struct CsvFile
   {
     std::vector<std::string>              names;       ///< column names
     std::string                           where_names; ///< file and line of the column names, for messages
-    std::vector<std::vector<std::string>> rows;        ///< one text for each column, without surrounding blanks
+    std::vector<std::vector<std::string>> rows;        ///< one string for each column, without surrounding blanks
     std::vector<std::string>              where;       ///< file and line of each row, for messages
 
     /// Index of a column; names.size() if it is missing.
     std::size_t column(const std::string &name) const;
 
-    /// Number in a cell. Throws ParameterError, naming the line, unless the cell is a finite number.
+    /// Number in a cell. Throws a ParameterError that names the line if the cell is not a finite number.
     double number(std::size_t row, std::size_t column) const;
 
     /// Throws ParameterError if two columns have the same name.
@@ -34,7 +34,7 @@ namespace Squeal
    * @param parameter "Section/Name" of the parameter that names the file, for messages
    * @param row       meaning of a row, for messages: "design"
    *
-   * Throws FileError if the file cannot be read, and ParameterError, naming the line, if it is not comma-separated UTF-8 text.
+   * Throws FileError if the file cannot be read, and a ParameterError that names the line if it is not comma-separated UTF-8 text.
    */
   CsvFile read_csv(const std::string &path, const std::string &parameter, const std::string &row);
 } // namespace Squeal

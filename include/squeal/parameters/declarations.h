@@ -25,9 +25,9 @@ namespace Squeal
   {
     std::string path;          ///< "Section/Name"
     std::string documentation; ///< ends with "Units: m." for numbers
-    std::string accepted;      ///< "a number in 0 ... 10", "one of positive, negative", ...; empty: any text
+    std::string accepted;      ///< "a number in 0 ... 10", "one of positive, negative", ...; empty: see the documentation
 
-    std::function<std::string()> print; ///< value as text that parse() reads back unchanged
+    std::function<std::string()> print; ///< value as a string that parse() reads back unchanged
 
     /// Sets the value. Throws ParameterError, for example "Operation/Friction coefficient must lie in 0 ... 10, not -0.1".
     std::function<void(const std::string &)> parse;
@@ -73,7 +73,7 @@ namespace Squeal
                     const std::function<std::string()>             &print,
                     const std::function<void(const std::string &)> &parse);
 
-    /// A text with its own format.
+    /// A string in a format that @p print and @p parse define.
     void add_text(const std::string                              &name,
                   const std::string                              &documentation,
                   const std::function<std::string()>             &print,

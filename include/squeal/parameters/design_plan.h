@@ -12,8 +12,8 @@ namespace Squeal
   /// Designs, defined by the values of their variables.
   struct DesignPlan
   {
-    std::vector<std::string>              names;   ///< variables: "Section/Name" or "Section/Name[k]", or several of them joined by "+"
-    std::vector<std::vector<std::string>> designs; ///< values of the variables for each design; an empty text means unchanged
+    std::vector<std::string>              names;   ///< variables: "Section/Name" or "Section/Name[k]", or several of these joined by "+"
+    std::vector<std::vector<std::string>> designs; ///< values of the variables for each design; an empty string means unchanged
 
     std::string              where_names; ///< source of the names for messages: parameter, or file and line
     std::vector<std::string> where;       ///< file and line of each design; empty: as where_names
@@ -38,7 +38,7 @@ namespace Squeal
   std::vector<std::vector<double>> sobol_points(std::size_t n, std::size_t dimension, unsigned int seed);
 
   /**
-   * Designs from the section `Designs`, identical on every process and machine.
+   * Designs from the section `Designs`, identical on every process.
    *
    * Latin hypercube (M. D. McKay, R. J. Beckman, W. J. Conover 1979): each of n equal parts of every range contains one sample at a random
    * position. Sobol sequence (I. M. Sobol 1967), with all samples shifted by one random vector modulo 1 (R. Cranley, T. N. L. Patterson
@@ -51,8 +51,8 @@ namespace Squeal
   /// The plan as a CSV file for Designs/Plan = file.
   std::string as_csv(const DesignPlan &plan);
 
-  /// @p parameters with the values of a design, without a check of combinations. Throws ParameterError for an unknown parameter, suggesting
-  /// the nearest known name, and for an invalid value.
+  /// @p parameters with the values of a design, without a check of combinations. Throws ParameterError for an invalid value, and for an
+  /// unknown parameter with the nearest known name.
   Parameters with_design(const Parameters &parameters, const std::vector<std::string> &names, const std::vector<std::string> &values);
 
   /// Current value of the first parameter of a variable. Throws ParameterError as with_design() does.
@@ -64,8 +64,7 @@ namespace Squeal
   /// @p text with the number from number_of() replaced. Throws ParameterError if there are fewer numbers.
   std::string with_number(const std::string &text, unsigned int k, const std::string &value);
 
-  /// Path of the file of designs: in the folder of the parameter file, or in the current directory; empty if the designs do not come from a
-  /// file.
+  /// Path of the file of designs: in the folder of the parameter file or in the current directory; empty unless Designs/Plan = file.
   std::string designs_file(const Parameters &parameters);
 
   /// Designs from the CSV file Designs/File: names of the variables in the first line, then one design per line. Throws the errors of

@@ -14,7 +14,7 @@ namespace Squeal
     full_grid,
     one_at_a_time,   ///< the given model, then every level of each variable with the other variables unchanged
     latin_hypercube, ///< one sample in each of n equal parts of every range
-    sobol,           ///< Sobol sequence (I. M. Sobol), randomly shifted
+    sobol,           ///< Sobol sequence, shifted at random unless the seed is 0
     file             ///< rows of a CSV file
   };
 
@@ -33,7 +33,7 @@ namespace Squeal
     std::string  file;
     unsigned int n_samples   = 20; ///< number of samples of a Latin hypercube or a Sobol sequence
     unsigned int seed        = 1;
-    unsigned int n_processes = 0; ///< concurrent solutions of designs; 0: one per core
+    unsigned int n_processes = 0; ///< designs that each MPI process solves concurrently; 0: limited by cores and memory
 
     bool is_sampled() const
     {

@@ -19,7 +19,7 @@ namespace Squeal
   enum class Outlines
   {
     inscribed, ///< nodes on the circle
-    true_area  ///< nodes moved outwards so that area and moments of area agree with the circle
+    true_area  ///< nodes moved outwards so that the area is the same as for the circle
   };
 
   template <>
@@ -68,7 +68,7 @@ namespace Squeal
     /// Sets file and directory, and the variables of the file if it is an existing script.
     void set_file(const std::string &name, const std::string &parameter_directory);
 
-    /// Script variables for these parameters, with their values as text.
+    /// Script variables that these parameters define, with their values as strings.
     std::map<std::string, std::string> script_variables() const;
 
     /// Names of the script_variables() that affect the geometry: names that occur in a Gmsh script, the dimensions, layers, rings and
@@ -105,8 +105,8 @@ namespace Squeal
 
   /**
    * Geometry with a mesh refined by @p factor in every direction: the element size is divided by the factor, and the numbers of layers,
-   * rings and elements k of the pin-face blocks (3 k (k + 1) + 1 nodes) are multiplied by the factor and rounded, but at least one. Grading
-   * ratios of layers and rings are reduced accordingly. Unchanged for a factor of 1.
+   * rings and elements k of the pin-face blocks (3 k (k + 1) + 1 nodes) are multiplied by the factor and rounded. Positive numbers remain
+   * at least one. Grading ratios of layers and rings are adapted. Unchanged for a factor of 1.
    *
    * Throws the errors of check_follows().
    */

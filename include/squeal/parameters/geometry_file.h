@@ -12,7 +12,7 @@ namespace Squeal
    * Path of a geometry. A relative name is searched for in the folder of the parameter file, then in the current directory; a name without
    * a directory is also searched for among the supplied geometries.
    *
-   * Throws MeshError, listing the searched folders, if there is no such file.
+   * Throws a MeshError that lists the searched folders if there is no such file.
    */
   std::string find_geometry(const std::string &name, const std::string &parameter_directory);
 
@@ -29,7 +29,7 @@ namespace Squeal
     std::string onelab_name; ///< option Name of DefineNumber; empty for DefineConstant
   };
 
-  /// Text, without comments, of a Gmsh script and of the scripts that it includes by literal names; nothing is run.
+  /// Text, without comments, of a Gmsh script and of the scripts that it includes or merges by literal names; nothing is run.
   class GeometryScript
   {
   public:
@@ -39,7 +39,7 @@ namespace Squeal
     /// Variables in DefineConstant[...], and in DefineNumber[...] with the option Name; strings and lists are skipped.
     std::vector<GeometryVariable> variables() const;
 
-    /// The script itself, then existing files in its Include and Merge commands.
+    /// The script itself, then existing files that its Include and Merge commands name, also indirectly.
     std::vector<std::string> files() const;
 
     /// File, line and text of the first line that contains one of @p words; each entry may contain several words separated by single
@@ -58,12 +58,12 @@ namespace Squeal
     std::vector<std::string> merged; ///< merged files that are not scripts
   };
 
-  /// A geometry and all included files, to be stored with results.
+  /// A geometry and its included and merged files, to be stored with results.
   struct GeometryCopy
   {
     struct File
     {
-      std::string from, to; ///< current path; name in the folder of the copy
+      std::string from, to; ///< path of the file; name of its copy in the results
     };
 
     std::vector<File> files; ///< empty for a supplied geometry

@@ -28,6 +28,6 @@ namespace Squeal
     void declare(Declarations &declarations);
   };
 
-  /// Range of a parameter, parsed from "name, first, last, number". Throws ParameterError naming @p where.
+  /// Range of a parameter, parsed from "name, first, last, number". Throws a ParameterError that names @p where.
   NamedRange parsed_range(const std::string &text, const std::string &where);
 } // namespace Squeal

@@ -44,8 +44,8 @@ namespace Squeal
     double mean_poisson_ratio() const;
   };
 
-  /// Springs or dashpots between a named surface and the ground, per area [N/m³] or [N s/m³], in the radial, tangential (circumferential)
-  /// and axial directions about the z axis.
+  /// Coefficients of springs or dashpots between a named surface and the ground, per area [N/m³] or [N s/m³], in the radial, tangential
+  /// (circumferential) and axial directions about the z axis.
   struct Mount
   {
     std::string surface;

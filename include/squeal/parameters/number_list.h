@@ -15,7 +15,7 @@
 namespace Squeal
 {
   /**
-   * Splits a list at commas into texts. Throws ParameterError if some commas look like decimal commas, as in "0,3, 0,4", "0,4, 1" and
+   * Splits a list into strings at commas. Throws ParameterError if some commas look like decimal commas, as in "0,3, 0,4", "0,4, 1" and
    * "0,05"; uniform lists such as "0,30" and "1,2,3" are accepted.
    *
    * @param what  name of the list, for messages: "Sweep/Count modes at"
@@ -26,7 +26,7 @@ namespace Squeal
   /// Hint for an error message: "; write a decimal point: 0.4" if a number seems to have a decimal comma; empty otherwise.
   std::string decimal_point_hint(const std::string &text);
 
-  /// Throws ParameterError, naming @p parameter ("Section/Name"), if a number occurs twice.
+  /// Throws a ParameterError that names @p parameter ("Section/Name") if a number occurs twice.
   void check_distinct(const std::vector<double> &numbers, const char *parameter);
 
   /// Format of a list of entries such as "disc_bore: 0, 7.8e10, 1.88e10; disc_rim: ...".
@@ -39,7 +39,7 @@ namespace Squeal
     std::set<std::size_t> n_numbers; ///< permitted numbers of values in an entry
     char                  separator = ';', between_numbers = ',';
 
-    /// Throws ParameterError that quotes this format; a decimal comma in @p list adds a hint.
+    /// Throws a ParameterError that quotes this format; a decimal comma in @p list adds a hint.
     [[noreturn]] void refuse(const std::string &what, const std::string &list = "") const;
   };
 

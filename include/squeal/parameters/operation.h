@@ -9,7 +9,7 @@
 
 namespace Squeal
 {
-  /// Sense of rotation of the disc about e_z, which determines the sign of the sliding velocity.
+  /// Sense of the disc motion, which determines the sign of the sliding velocity.
   enum class Rotation
   {
     positive,

@@ -19,8 +19,9 @@ namespace Squeal
 
   /**
    * Statements of a parameter file in deal.II's format, in file order: `subsection NAME`, `end`, `set NAME = VALUE`, `include FILE`,
-   * comments after `#`, continuation lines after a backslash; VALUE and FILE may be in double quotes, see written_value(). An included file
-   * is searched for in the folder of the including file, then in the current directory. Text is UTF-8, with or without a byte order mark.
+   * comments after `#`, continuation of a line after a backslash at its end; VALUE and FILE may be in double quotes, see written_value().
+   * An included file is searched for in the folder of the including file, then in the current directory. Text is UTF-8, with or without a
+   * byte order mark.
    *
    * Throws FileError if a file cannot be read or is too large, and ParameterError if its text is invalid or it includes itself.
    */
@@ -30,7 +31,7 @@ namespace Squeal
   /// without quotes.
   std::string written_value(const std::string &value);
 
-  /// Value of @p text: the quoted text, or the text without surrounding blanks. Throws ParameterError, naming @p where, if quotes or
+  /// Value of @p text: the quoted text, or the text without surrounding blanks. Throws a ParameterError that names @p where if quotes or
   /// escapes are invalid.
   std::string read_value(const std::string &text, const std::string &where);
 } // namespace Squeal

@@ -59,8 +59,8 @@ namespace Squeal
      */
     static Parameters read(const std::string &file, const std::vector<std::string> &overrides);
 
-    /// Changes the value of a parameter as a function of its current value, without checking combinations. Throws ParameterError, naming @p
-    /// where, if the parameter does not exist or the value is invalid.
+    /// Changes the value of a parameter as a function of its current value, without checking combinations. Throws a ParameterError that
+    /// names @p where if the parameter does not exist or the value is invalid.
     void set(const std::string &path, const std::string &where, const std::function<std::string(const std::string &)> &new_value);
 
     /// Writes a parameter file with all values, optionally with documentation and accepted values.

@@ -21,7 +21,7 @@ namespace Squeal
   inline constexpr EnumName<ReductionProblem> enum_table<ReductionProblem>[] = {{ReductionProblem::frictionless, "frictionless"},
                                                                                 {ReductionProblem::friction, "friction"}};
 
-  /// Number of component modes in a basis: all up to a frequency, or given numbers.
+  /// Number of component modes in a basis: all modes up to a frequency, or given numbers of modes.
   struct ModeTruncation
   {
     double frequency    = 0.; ///< [Hz]; 0: use the numbers

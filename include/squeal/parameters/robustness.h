@@ -37,7 +37,7 @@ namespace Squeal
   {
     std::string  name; ///< name in the parameter file, as in Designs/Variables, or in the system file
     Distribution distribution;
-    bool         is_relative  = false; ///< numbers are per cent of the nominal value
+    bool         is_relative  = false; ///< numbers are percentages of the nominal value
     bool         for_each_pin = false;
   };
 
@@ -47,14 +47,14 @@ namespace Squeal
     double      value; ///< correlation of the normal copula [-]
   };
 
-  /// Scatter of modes due to uncertain parameters (section `Robustness`).
+  /// Variation of modes due to uncertain parameters (section `Robustness`).
   struct RobustnessParameters
   {
     std::string         distributions, correlations; ///< not yet parsed
     unsigned int        n_samples   = 2000;          ///< independent samples
     unsigned int        seed        = 1;
     double              tolerance   = 1e-4; ///< limit of the estimated |δλ| / |λ| at every sample [-]
-    bool                has_indices = true; ///< compute Sobol' indices, which need additional samples
+    bool                has_indices = true; ///< compute Sobol' indices, which require additional samples
     std::vector<double> frequency_bands;    ///< limits of bands with separate probabilities [Hz]
     unsigned int        n_worst  = 5;       ///< number of worst samples written as parameter files
     unsigned int        n_onsets = 0;       ///< number of samples whose modes are tracked over the friction coefficient

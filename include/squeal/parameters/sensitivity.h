@@ -27,7 +27,7 @@ namespace Squeal
     unsigned int          modes      = 10; ///< maximum number of modes whose derivatives are computed
     bool                  thresholds = true;
     GeometrySensitivities geometry   = GeometrySensitivities::sizes;
-    double                tolerance  = 1e-4; ///< relative change of derivatives below which the basis is no longer extended [-]
+    double                tolerance  = 1e-4; ///< relative change in the derivatives below which the basis is no longer extended [-]
 
     void declare(Declarations &declarations);
   };
@@ -35,10 +35,10 @@ namespace Squeal
   /// Required accuracy of a model, and trial values of missing features (section `Ingredients`).
   struct IngredientsParameters
   {
-    double frequency_tolerance  = 1.;   ///< largest change of a frequency [%]
-    double divergence_tolerance = 0.05; ///< largest change of a divergence rate [percentage points]
-    double trial_slope          = 0.;   ///< friction slope to try if the model has none [s/m]; 0: not tried
-    double trial_damping_ratio  = 0.;   ///< ζ of all modes to try if the model has no modal damping [-]; 0: not tried
+    double frequency_tolerance  = 1.;   ///< largest change in a frequency [%]
+    double divergence_tolerance = 0.05; ///< largest change in a divergence rate [percentage points]
+    double trial_slope          = 0.;   ///< trial friction slope for a model without a friction slope [s/m]; 0: not tried
+    double trial_damping_ratio  = 0.;   ///< trial ζ of all modes for a model without modal damping [-]; 0: not tried
 
     void declare(Declarations &declarations);
 

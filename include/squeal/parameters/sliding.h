@@ -13,7 +13,7 @@ namespace Squeal
   /// Contact state for the linearisation.
   enum class ContactState
   {
-    equal_load,    ///< all nodes of a side are closed and carry equal shares of the load
+    equal_load,    ///< all nodes are closed and share the load of their side equally or, on non-matching faces, by area
     steady_sliding ///< quasi-static solution with unilateral contact and friction
   };
 

@@ -32,7 +32,7 @@ namespace Squeal
     /// Equally spaced values.
     std::vector<double> linear() const;
 
-    /// Values with a constant ratio.
+    /// Geometrically spaced values.
     std::vector<double> geometric() const;
   };
 
@@ -43,7 +43,7 @@ namespace Squeal
     ValueRange  values;
   };
 
-  /// Modes over the friction coefficient (section `Sweep`).
+  /// Modes as functions of the friction coefficient (section `Sweep`).
   struct SweepParameters
   {
     ValueRange          friction_coefficients = {0., 0.45, 90};
@@ -51,7 +51,7 @@ namespace Squeal
     unsigned int        maximum_basis         = 1500;
     double              threshold_tolerance   = 1e-6; ///< tolerance of thresholds in the friction coefficient [-]
     bool                compare_dissipation   = true; ///< repeat the sweep without radial dissipation
-    std::vector<double> mode_shapes;                  ///< friction coefficients for output of the leading mode
+    std::vector<double> mode_shapes;                  ///< friction coefficients for output of the leading mode, if it grows
     std::vector<double> planes;                       ///< friction coefficients for output of all modes; empty: mode_shapes
     std::vector<double> counts;                       ///< friction coefficients for mode counts by the argument principle
 

@@ -70,7 +70,8 @@ namespace Squeal
       return stiffness_matrix;
     }
 
-    /// The model in modal coordinates of its undamped, frictionless modes V, with basis T V; computed once.
+    /// The model in the coordinates of its undamped, frictionless modes V, with basis T V; computed on demand and kept until the basis
+    /// changes.
     struct Modal;
     const Modal &modal() const;
 

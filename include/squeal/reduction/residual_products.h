@@ -42,7 +42,7 @@ namespace Squeal
   public:
     /**
      * @param inverse factor of S; a positive @p shift s [rad/s] requires a system without damping
-     * @param values  parameter values; terms that vanish at these values, except friction, must also vanish in products()
+     * @param values  parameter values; weighted terms that vanish at these values, except friction, must also vanish in products()
      *
      * The arguments must outlive the object.
      */
@@ -85,10 +85,10 @@ namespace Squeal
     };
 
     /**
-     * S⁻¹ W C, n × p: components of right and left displacement residuals outside the basis, as principal axes in the norm of S; axes below
-     * @p tolerance times the largest axis are dropped. Each mode, scaled to unit strain energy, is weighted by the error of its λ. The axes
-     * are computed from the small matrices, so that the number of solves equals the number of axes, not of residuals. The result may
-     * contain components in the span of the basis; it is empty if all residuals vanish. Not available for a member of a family. Collective.
+     * S⁻¹ W C, n × p: principal axes, in the norm of S, of the right and left displacement residuals of modes with unit strain energy. Axes
+     * shorter than @p tolerance times the longest axis are dropped. The axes are computed from the small matrices, so that the number of
+     * solves equals the number of axes, not of residuals. The result may contain components in the span of the basis; it is empty if all
+     * residuals vanish. Not available for a member of a family. Collective.
      */
     std::optional<MultiVector> principal_responses(const ReducedModel &model, const std::vector<ModesAt> &modes, double tolerance) const;
 

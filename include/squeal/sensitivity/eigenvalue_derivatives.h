@@ -85,7 +85,7 @@ namespace Squeal
                                                      const std::vector<std::complex<double>> &lambda);
 
   /// Value at 0 of the even part of a function, extrapolated from its means at ±h, ±2h and ±3h. The error is the difference from the
-  /// extrapolation of two means; it is an upper bound unless the function has a singularity nearby.
+  /// extrapolation of two means, which usually overestimates the error of the value.
   struct ValueAtCentre
   {
     std::complex<double> value;

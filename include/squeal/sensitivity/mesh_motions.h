@@ -14,7 +14,7 @@ namespace Squeal
   struct MeshMotion
   {
     std::string              parameter; ///< name, for example "Geometry/Pin height"
-    std::string              pin;       ///< the only pin that moves; empty: all
+    std::string              pin;       ///< pin that moves; empty: the parameter applies to the disc or to all pins
     std::string              unit;
     double                   value;
     std::vector<Mesh::Point> velocity;      ///< dx/dp of each node [m per unit]

@@ -36,7 +36,7 @@ namespace Squeal
    *
    *   φ_iᵀ C_m' φ_j = (φ_iᵀ K' φ_j − β_ij φ_iᵀ M' φ_j) g_ij + (d_i + d_j)/2 φ_iᵀ M' φ_j
    *
-   * Equal frequencies need no special treatment, because g is smooth; pairs of undamped modes contribute nothing. Contributions of a damped
+   * The formula also holds for multiple eigenvalues. Pairs of undamped modes contribute nothing. Contributions of a damped
    * mode and modes beyond the computed modes are found in a Krylov space of (K_c + s² M_c)⁻¹ M_c, started from the components of the
    * vectors outside the computed modes.
    */

@@ -17,6 +17,6 @@ namespace Squeal
    */
   Coefficient parsed_coefficient(const std::string &expression, const std::vector<std::string> &parameters);
 
-  /// True if a text is a valid parameter name in expressions.
+  /// True if a string is a valid parameter name in expressions.
   bool is_parameter_name(const std::string &text);
 } // namespace Squeal

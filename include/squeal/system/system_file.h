@@ -39,7 +39,7 @@ namespace Squeal
     static RowMap rows_of(int n_points, MPI_Comm communicator);
   };
 
-  /// Q(λ; p) = Σ_k θ_k(p) λ^(p_k) A_k in a folder: `system.json` with parameters and terms, and a Matrix Market file for each matrix.
+  /// Q(λ; p) = Σ_k θ_k(p) λ^(p_k) A_k in a folder: `system.json` with parameters and terms, and Matrix Market files with the matrices.
   struct SystemFile
   {
     std::string                path; ///< path of system.json
@@ -59,24 +59,24 @@ namespace Squeal
     /// `mu` if the system has this parameter, otherwise its first parameter; empty if there are no parameters.
     std::string default_varied() const;
 
-    /// Values of all parameters and weights; @p others replace values of the file. Throws ParameterError if a parameter does not exist or
-    /// its value is out of range.
+    /// Values of all parameters and weights; @p others replace values of the file. Throws ParameterError if a parameter does not exist, its
+    /// value is out of range, or a coefficient is not finite.
     ParameterValues values(const std::map<std::string, double> &others = {}) const;
   };
 
   /**
    * Reads a system. Collective.
    *
-   * Throws FileError or ParameterError, naming file and entry, for unreadable files, syntax errors, inconsistent sizes, non-finite entries,
-   * violated symmetries, unknown parameters, coefficients that are not finite in the range of their parameters, a missing mass, dofs that
-   * occur in no matrix, and zero displacements.
+   * Throws a FileError or ParameterError that names file and entry for unreadable files, syntax errors, inconsistent sizes, non-finite
+   * entries, violated symmetries, unknown parameters, coefficients that are not finite at sampled parameter values, a missing mass, dofs
+   * that occur in no matrix, and zero displacements.
    */
   SystemFile read_system(const std::string &path, MPI_Comm communicator);
 
   /// Function that writes a file of the folder.
   using WriteFile = std::function<void(const std::string &name, const std::function<void(std::ostream &)> &content)>;
 
-  /// Files of a reduced model: its basis, n × r, and a table of estimated errors at points, with their tolerance.
+  /// Files of a reduced model: its basis, n × r, and a table of estimated errors at parameter points, with the tolerance of these errors.
   struct Reduction
   {
     std::string basis, points; ///< file names

@@ -73,7 +73,7 @@ namespace Squeal
     virtual std::string text() const = 0;
   };
 
-  /// θ(p) of a term: a monomial of named parameters such as −μ ρ, another function of the parameters, or a product of such functions.
+  /// θ(p) of a term: a monomial of named parameters such as −μ ρ, another function of named parameters, or a product of such functions.
   class Coefficient
   {
   public:
@@ -98,11 +98,11 @@ namespace Squeal
   enum class TermKind
   {
     body,  ///< elasticity, inertia and material damping
-    mount, ///< springs and dashpots between bodies and the ground
+    mount, ///< springs and dashpots to the ground, and added masses
     rotation,
     friction,        ///< forces μ r_n along t
     circulatory,     ///< skew parts of unsymmetric matrices
-    contact_damping, ///< forces at the contact nodes proportional to relative velocities
+    contact_damping, ///< forces at the contact nodes, proportional to relative velocities
     modal_damping
   };
 
@@ -116,7 +116,7 @@ namespace Squeal
   /// low-rank matrix L diag(d) Rᵀ, where d is a list parameter.
   struct Term
   {
-    std::string                          name;      ///< name for messages
+    std::string                          name;      ///< name in messages and files
     int                                  power = 0; ///< p_k: 0, 1 or 2
     Coefficient                          coefficient;
     std::shared_ptr<const SparseMatrix>  matrix; ///< A, n × n; null if A has low rank
@@ -201,15 +201,15 @@ namespace Squeal
   /// Nonzero terms with this power of λ.
   std::vector<const Term *> terms_of(const std::vector<Term> &terms, const ParameterValues &values, int power);
 
-  /// M, C and K of Q(λ) = λ² M + λ C + K as sparse matrices; a matrix without terms is null. Throws SolverError naming a term without
+  /// M, C and K of Q(λ) = λ² M + λ C + K as sparse matrices; a matrix without terms is null. Throws a SolverError that names a term without
   /// sparse form.
   SecondOrderSystem sparse_matrices(const std::vector<Term> &terms, const ParameterValues &values);
 
   /// Σ ‖θ A‖_∞ ≥ ‖Σ θ A‖_∞ over the terms with a power of λ; all these terms must have a sparse form.
   double norm_bound(const std::vector<Term> &terms, const ParameterValues &values, int power);
 
-  /// The same Q at these values with as few terms as possible: one sparse term with a coefficient of one for each power and symmetry,
-  /// unless it is zero. Low-rank terms are not allowed.
+  /// The same Q at these values with as few terms as possible: one sparse term with a coefficient of one for each power and symmetry;
+  /// powers without nonzero terms are omitted. Low-rank terms are not allowed.
   std::vector<Term> merged(const std::vector<Term> &terms, const ParameterValues &values);
 
   /// Common terms of several systems, the members of a family, which differ only in coefficients.
@@ -221,8 +221,8 @@ namespace Squeal
   };
 
   /**
-   * Terms Σ θ_k A_k of a family with as few matrices as possible. Terms whose coefficients θ_k have the same ratio in all members are
-   * summed, with the means of θ_k over the members. All terms must be sparse.
+   * Terms Σ θ_k A_k of a family with as few matrices as possible. Terms of the same power and symmetry whose coefficients θ_k have the same
+   * ratio in all members are summed, with the means of θ_k over the members. All terms must be sparse.
    *
    * @param members values of the parameters of the terms for each member, at least one
    */
