@@ -59,7 +59,7 @@ namespace Squeal
       return result;
     }
 
-    /// Replaces @p found if @p onset has a smaller friction coefficient; gives the first onset of several charts.
+    /// Replaces @p found if @p onset has a smaller friction coefficient, to find the first onset of several charts.
     void keep_first(const std::optional<GrowthOnset> &onset, const std::vector<std::string> &labels, boost::optional<DesignGrowth> &found)
     {
       if (!onset || (found && found->friction_coefficient <= onset->friction_coefficient))
