@@ -15,7 +15,7 @@ namespace Squeal
 
   namespace
   {
-    /// Minimum number of initial designs that detect terms with proportional coefficients and train the initial basis.
+    /// Minimum number of initial designs, which are used to detect terms with proportional coefficients and to train the basis.
     constexpr std::size_t fewest_first_designs = 4;
 
     /// Values of the variables of a design.
@@ -63,7 +63,7 @@ namespace Squeal
       Estimate     squeal;      ///< probability that a mode grows
       double       doubtful;    ///< fraction of undecided samples [-]
       double       quantile;    ///< quantile of the largest divergence rates of the samples [-]
-      double       worst_error; ///< largest estimated error of λ [-]
+      double       worst_error; ///< largest estimated error of λ in the step that solved the design [-]
       int          n_vectors;   ///< size of the basis
       int          worst;       ///< sample with the largest rate; −1 if no sample meets the tolerance
 

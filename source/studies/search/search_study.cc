@@ -44,7 +44,7 @@ namespace Squeal
           run.progress.note(text("  continuing an interrupted search: ", n_known, " designs are finished"));
       }
 
-      /// Objective at a point that has been evaluated.
+      /// Objective at an evaluated point; empty for other points.
       std::optional<double> value(const SearchPoint &point) const
       {
         const auto place = std::find(plan.designs.begin(), plan.designs.end(), values_at(point));
