@@ -10,7 +10,7 @@ namespace Squeal
     /// Maximum number of modes listed in a warning.
     constexpr std::size_t n_named = 5;
 
-    /// Warns of modes that are not converged; lists the first ones as "A0-4 at 2315 Hz (0.3 %, 0.05 points)".
+    /// Warns of unstable modes that are not converged; lists the first ones as "A0-4 at 2315 Hz (0.3 %, 0.05 points)".
     void warn_of_unconverged(const std::vector<DiscretisationError> &errors,
                              const FrictionModes                    &friction,
                              const AccuracyLimits                   &limits,
@@ -96,8 +96,8 @@ namespace Squeal
         writer.write_animation("unstable_modes", animated, animation_options(output));
       std::string growth; // the amplitude grows by e^{2π ξ n} in n periods
       if (const double exponent = 2. * M_PI * highest; output.animation_growth && highest > 0.)
-        growth = text("; the fastest grows by a factor of ", std::exp(exponent * output.animation_periods), ", or by a factor of e in ",
-                      1. / exponent, " periods");
+        growth = text("; during the animation, the fastest mode grows by a factor of ", std::exp(exponent * output.animation_periods),
+                      ", or by a factor of e in ", 1. / exponent, " periods");
       run.progress.finish(text(list.size(), " modes, ", animated.size(), " animated", growth));
     }
 
@@ -210,7 +210,7 @@ namespace Squeal
   {
     auto result = discretisation_errors(coarser.modes, modes_at(coarser.points, frictionless, friction), error_by_difference(goal),
                                         friction.modes.estimated_errors);
-    // Modes that are undecided because of rounding errors remain undecided
+    // Modes that are undecided without the discretisation error remain undecided
     for (std::size_t j = 0; j < result.size(); ++j)
       if (friction.verdicts[j] == Verdict::undecided)
         result[j].verdict = Verdict::undecided;

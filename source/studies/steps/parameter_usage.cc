@@ -158,7 +158,7 @@ namespace Squeal
   Reason no_sliding_speed(const Parameters &parameters)
   {
     return unless(parameters.has_friction() && (parameters.has_contact_damping() || parameters.operation.rotating_disc),
-                  "neither contact damping nor gyroscopic forces");
+                  "the problem has neither contact damping nor gyroscopic forces");
   }
 
   std::vector<UnusedParameter> unused_among(const std::vector<std::string> &paths, const Parameters &parameters)

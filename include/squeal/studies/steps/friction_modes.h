@@ -12,9 +12,9 @@ namespace Squeal
   /// Frictionless modes of the linearised model, with component modes and labels.
   struct FrictionlessModes : SystemModes
   {
-    Linearisation  linearisation;
-    ComponentModes disc, pins_free, pins_sliding; ///< extend slightly beyond the band, to label modes near its end; see imported_modes()
-    std::vector<ModeLabel> labels;                ///< labels of the coupled modes
+    Linearisation          linearisation;
+    ComponentModes         disc, pins_free, pins_sliding; ///< disc and sliding pins: slightly beyond the band; see imported_modes()
+    std::vector<ModeLabel> labels;                        ///< labels of the coupled modes
 
     /// Component modes for the labels of coupled modes.
     std::vector<const ComponentModes *> references() const

@@ -90,6 +90,6 @@ namespace Squeal
     void finish(const std::function<void()> &afterwards = {});
   };
 
-  /// Meshes the model and runs the study; a dry run only meshes.
+  /// Meshes the model or reads the system file, and runs the study; a dry run stops before the study.
   void run_study(Run &run);
 } // namespace Squeal

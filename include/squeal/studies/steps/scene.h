@@ -35,7 +35,7 @@ namespace Squeal
     ContactDamping            damping; ///< damping of all pairs; zero at open pairs
   };
 
-  /// Contact state from @p sliding. Without it, all nodes carry equal shares of the load, which affects only contact damping.
+  /// Contact state from @p sliding. Without it, all nodes are closed, and equal_load_shares() gives the reactions for the contact damping.
   StateOfContact state_of_contact(const Model                       &model,
                                   const ContactInterface            &interface,
                                   const std::optional<SlidingState> &sliding,
@@ -75,7 +75,6 @@ namespace Squeal
   /// Assembles the model and linearises it about the requested contact state, as steps of the run.
   Linearisation linearised_scene(Scene &scene, Run &run);
 
-  /// Couples the closed nodes of a state or, without a state, all nodes with equal shares of the load. @p operation determines the contact
-  /// damping.
+  /// Couples the closed nodes of a state or, without a state, all nodes. @p operation determines the contact damping.
   Linearisation linearise(const Scene &scene, const std::optional<SlidingState> &sliding, const OperationParameters &operation);
 } // namespace Squeal

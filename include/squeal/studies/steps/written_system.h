@@ -22,8 +22,8 @@ namespace Squeal
     void name(const std::string &of_terms, FileParameter parameter);
   };
 
-  /// μ and, if the contact state and modal damping do not depend on them, the nonzero constants of materials, mounts, contact springs and
-  /// rotation that are factors of terms, with a range of 0.01 to 100 times their values.
+  /// μ and, without steady sliding and modal damping, the nonzero constants of materials, mounts, contact springs and rotation that are
+  /// factors of terms, with ranges of 0.01 to 100 times their values. With contact damping, the rotation speed is fixed.
   NamedParameters named_parameters(const Linearisation &linearisation, const FileParameter &friction, const Parameters &parameters);
 
   /// Parameters fixed at these values.
