@@ -98,7 +98,7 @@ namespace Squeal
     auto worst = std::find_if(places.begin(), places.end(), [&](const auto &place) { return !model.known.at(place).lambda.empty(); });
     if (worst == places.end())
       throw SolverError("a reduced system requires modes, but the sweep has no modes in the band", "parameter Output/Write system",
-                        "raise Band/Maximum frequency, or set it to full");
+                        "raise Band/Maximum frequency, or set Output/Write system = full");
     std::set<SweepModel::Place> chosen  = {*worst};
     MultiVector                 set     = snapshot(model.known.at(*worst), full.map());
     const auto                  inertia = inertia_square(full, worst->second, model.largest_circular_frequency);
@@ -130,7 +130,8 @@ namespace Squeal
               cut /= 10.;
             else
               throw SolverError("the reduced model does not reproduce the modes of the sweep within Sweep/Tolerance",
-                                "parameter Output/Write system", "narrow the range of the sweep, raise Sweep/Tolerance, or set it to full");
+                                "parameter Output/Write system",
+                                "narrow the range of the sweep, raise Sweep/Tolerance, or set Output/Write system = full");
           }
         else if (places.size() < model.known.size())
           {
