@@ -155,7 +155,7 @@ namespace Squeal
       const ChartCount &first = sweep.chart.counts.front();
       result.n_modes          = first.n_modes + first.n_overdamped;
       result.n_counted        = n_counted - model.frictionless.real.n_rigid_body;
-      // Compare only without damping and friction, which move modes across the end of the band
+      // Compare only without damping and friction, which may move modes across the end of the band
       if (first.friction_coefficient == 0. && !model.frictionless.linearisation.coupled.has_damping())
         result.is_complete = result.is_complete && result.n_modes == result.n_counted;
     }

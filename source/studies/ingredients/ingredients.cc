@@ -31,7 +31,7 @@ namespace Squeal
     Reason no_open_node(const Parameters &, const std::optional<SlidingState> &state)
     {
       if (!state)
-        return "all nodes are closed with Steady sliding/Contact state = equal load";
+        return "all nodes are closed, because Steady sliding/Contact state = equal load";
       return std::count(state->closed.begin(), state->closed.end(), false) > 0 ? nullptr : "no node lifts off";
     }
 

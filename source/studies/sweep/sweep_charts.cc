@@ -258,7 +258,7 @@ namespace Squeal
         result += text(rate > 0. ? text(", divergence rate exceeds ", 100. * rate, " %") : " begins", " at ", parameter, " = ",
                        onset.friction_coefficient, is_uncertain ? text(" +- ", onset.uncertainty) : "", " (", to_string(of_onset), ")");
       }
-    return text(result, "; largest at ", parameter, " = ", at, ": ", label, " at ", decimal_text(most.frequency), " Hz with ",
-                decimal_text(100. * most.divergence_rate), " %");
+    return text(result, "; largest divergence rate at ", parameter, " = ", at, ": ", label, " at ", decimal_text(most.frequency),
+                " Hz with ", decimal_text(100. * most.divergence_rate), " %");
   }
 } // namespace Squeal

@@ -72,7 +72,7 @@ namespace Squeal
    */
   SolvedModel solve_variant(const ReferenceModel &reference, const Variation &variation, const Run &run);
 
-  /// Type of a change of the model.
+  /// Type of a model change.
   enum class ChangeKind
   {
     removes, ///< simplifies the model: a candidate for the cheapest model
@@ -186,7 +186,7 @@ namespace Squeal
   ChangesTogether cheapest_changes(const std::vector<CheaperChange>                            &changes,
                                    const std::function<double(const std::vector<int> &chosen)> &severity_of);
 
-  /// Result of a change of the model, or the reason why it could not be made.
+  /// Result of a model change, or the reason why the change could not be made.
   struct IngredientResult
   {
     const Ingredient *ingredient; ///< null for combined changes

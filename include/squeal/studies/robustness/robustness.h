@@ -136,11 +136,11 @@ namespace Squeal
                                     const KeepPoint                   &keep,
                                     const std::string                 &name);
 
-  /// Function that receives the model of a contact set and all samples solved so far, after its samples are solved.
+  /// Function that receives the model of a contact set after the samples of this set are solved, and all samples solved so far.
   using KeepModel = std::function<void(std::size_t contact_set, const SweepModel &, const std::vector<std::optional<Sample>> &)>;
 
-  /// Solves all samples with one reduced model for each contact set, as steps of the run. If @p checkpoint is not null, it supplies the
-  /// samples that an interrupted run has stored, and stores the new ones.
+  /// Solves all samples, with one reduced model for each contact set or, without a definite part, at full order. Steps of the run. If @p
+  /// checkpoint is not null, it supplies the samples that an interrupted run has stored, and stores the new ones.
   SolvedSamples solve_samples(const SampledSystems &systems,
                               int                   n_samples,
                               double                tolerance,

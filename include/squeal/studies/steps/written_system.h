@@ -36,7 +36,7 @@ namespace Squeal
   ShapePoints displacements_of_nodes(const Model &model);
 
   /// Writes the coupled system of a mesh as a system file in a folder of the results, as a step of the run: its terms with
-  /// named_parameters(), the bodies as groups of dofs, and the free nodes as points. Only for `Output/Write system = full`.
+  /// named_parameters(), the bodies as groups of dofs, and the nodes that are not clamped as points. Only for `Output/Write system = full`.
   void write_scene_system(const Linearisation &linearisation, const FileParameter &friction, const std::string &folder, Run &run);
 
   /// Assembles the model at the given operation and writes its system like the function above, as steps of the run.
