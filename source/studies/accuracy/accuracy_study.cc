@@ -259,7 +259,7 @@ namespace Squeal
     if (!solutions.left_out.empty())
       run.store_table("accuracy_left_out", left_out_table(solutions.left_out));
     report(reference, maximum_frequency, run);
-    run.screen << "\n  Pareto front of time and largest frequency error\n\n";
+    run.screen << "\n  Pareto front of CPU time and largest frequency error\n\n";
     pareto_table(methods).print(run.screen);
     run.screen << '\n';
     run.finish();

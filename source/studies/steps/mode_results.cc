@@ -240,7 +240,7 @@ namespace Squeal
     const bool has_goal = run.parameters.goal != AccuracyGoal::as_given;
     run.progress.note(
       text(has_goal ? text("  accuracy: ", to_string(run.parameters.goal), " requested; errors estimated from a coarser mesh") :
-                      "  discretisation error as difference from the coarser mesh, not extrapolated",
+                      "  discretisation errors are differences from the coarser mesh, not extrapolated",
            ": frequencies within ", decimal_text(100. * frequency), " %, divergence rates within ", decimal_text(100. * divergence),
            " percentage points", n_lost > 0 ? text(", ", n_lost, n_lost == 1 ? " mode" : " modes", " without counterpart excluded") : ""));
     std::string converged;

@@ -37,7 +37,7 @@ namespace Squeal
         {"Geometry/Outlines",
          [](const Parameters &p) -> Reason {
            return p.discretization.element == Element::quadratic ? "quadratic elements follow the circles" :
-                                                                   unless(p.geometry.is_plan(), "the geometry is a solid");
+                                                                   unless(p.geometry.is_plan(), "the geometry is a solid model");
          }},
 
         {"Disc material/Rayleigh alpha", no_damping},
