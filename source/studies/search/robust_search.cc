@@ -26,7 +26,7 @@ namespace Squeal
     {
       std::vector<std::string>                                           pins; ///< volumes of pins that may have individual values
       std::function<Parameters(const DesignValues &)>                    design;
-      std::function<Parameters(const SamplePlan &, int sample)>          sample;  ///< throws ParameterError for illegal values
+      std::function<Parameters(const SamplePlan &, int sample)>          sample;  ///< throws ParameterError for invalid values
       std::function<double(const Parameters &, const std::string &name)> nominal; ///< nominal value of a parameter
       std::function<SampledSystems(const SamplePlan &)>                  systems;
     };
@@ -210,7 +210,7 @@ namespace Squeal
           if (!number.is_relative && nominal_in(lowest, number) != nominal_in(highest, number))
             throw ParameterError(in_quotes(number.parameter) + " varies from design to design, but its distribution is absolute",
                                  number.where, "give the distribution in % of the nominal value");
-        // Reject illegal samples at the ends of the ranges before the first solution
+        // Reject invalid samples at the ends of the ranges before the first solution
         for (const DesignValues &corner : {lowest, highest})
           {
             const SamplePlan samples = samples_of({corner}, inner);

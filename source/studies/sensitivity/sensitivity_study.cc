@@ -20,7 +20,7 @@ namespace Squeal
       const ModeSensitivity      *of;
       const SensitivityParameter *parameter;
       Complex                     derivative; ///< dλ/dp
-      std::optional<Complex>      change;     ///< change in it due to the last extension of the basis
+      std::optional<Complex>      change;     ///< change in the derivative due to the last extension of the basis
 
       double growth_per_percent() const
       {

@@ -107,7 +107,7 @@ namespace Squeal
         return std::max(result, 0.);
       }
 
-      /// Modes of both branches at a friction coefficient, with their point.
+      /// Point at a friction coefficient; stores its modes on the branches. Null if these modes cannot be identified.
       const ChartPoint *sample(const double mu)
       {
         const int        i = nearest_point(chart, mu, branches);

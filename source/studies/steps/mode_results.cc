@@ -119,8 +119,8 @@ namespace Squeal
       run.progress.finish(text(list.size(), " modes"));
     }
 
-    /// Points of this process. The component of a point is the group of the dof with the largest weight in its displacement; points without
-    /// a group have the last index.
+    /// Points of this process. The component of a point is the group of the dof with the largest weight in its displacement; for points
+    /// without a group, it is the number of groups.
     std::vector<Node> nodes_of(const ShapePoints &points, const std::vector<DofGroup> &groups)
     {
       const SparseMatrix       &displacements = *points.displacements;

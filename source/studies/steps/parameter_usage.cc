@@ -112,7 +112,7 @@ namespace Squeal
       return false;
     }
 
-    /// Reason why a run does not use a parameter other than a geometry parameter; empty if the run uses it.
+    /// Reason why a run does not use a parameter, apart from variables of geometry scripts; empty if the run uses it.
     std::string why_unused(const std::string &path, const Parameters &parameters)
     {
       if (parameters.system && !is_used_with_system(path, parameters))

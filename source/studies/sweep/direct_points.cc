@@ -181,7 +181,7 @@ namespace Squeal
       result.uncertainties.push_back(result.errors[j] * std::abs(result.lambda[j]));
     result.right = gathered(*modes.real_part, *modes.imaginary_part, listed);
     result.left  = gathered(*modes.left_real_part, *modes.left_imaginary_part, listed);
-    // Correct λ to first order with the residuals, because ψ is the left vector of the mode φ
+    // First-order corrections of λ from the residuals of φ, with the left vectors ψ
     const int         n         = static_cast<int>(modes.lambda.size());
     const MultiVector residuals = force_residuals(system, values, modes.lambda, *modes.real_part, *modes.imaginary_part);
     result.corrections          = -result.left.transpose() * gathered(view(residuals, 0, n), view(residuals, n, n), listed);

@@ -266,7 +266,7 @@ namespace Squeal
         return result;
       }
 
-      /// Model on the mesh with nodes displaced by a change of a parameter.
+      /// Model on the mesh with nodes displaced by a change in a parameter.
       Model moved_model(const std::size_t p, const double change, const Parameters &design) const
       {
         Mesh mesh = scene.mesh;

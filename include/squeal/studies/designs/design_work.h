@@ -136,8 +136,8 @@ namespace Squeal
   std::vector<UnusedParameter> unused_variables(const Parameters &parameters, const DesignPlan &plan);
 
   /// Throws ParameterError if a variable is not a parameter or has no effect, or if a value is rejected both individually and in every
-  /// design that contains it. In a file of designs, variables may lack effect unless two designs differ only in such variables. Other
-  /// invalid combinations are reported in the rows of their designs.
+  /// design that contains it. In a file of designs, variables without effect are allowed unless two designs differ only in such variables.
+  /// Other invalid combinations are reported in the rows of their designs.
   void check_designs(const Parameters &parameters, const DesignPlan &plan);
 
   /// Throws ParameterError if a variable of a search is not a parameter or has no effect, or if an end of its range cannot be set.

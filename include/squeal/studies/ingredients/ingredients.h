@@ -120,10 +120,10 @@ namespace Squeal
     double                              overlap    = 0.;    ///< overlap of both shapes, see PairedMode [-]
     bool                                in_cluster = false; ///< the mode has no individual counterpart by shape
 
-    /// Change of the frequency [%]; for a mode without counterpart, the distance from @p band_end, the end of the band [rad/s].
+    /// Change in the frequency [%]; for a mode without counterpart, the distance from @p band_end, the end of the band [rad/s].
     double frequency(double band_end) const;
 
-    /// Change of the divergence rate [percentage points]; empty without counterpart.
+    /// Change in the divergence rate [percentage points]; empty without counterpart.
     std::optional<double> divergence() const;
 
     /// True if one of the two modes is unstable with a divergence rate of at least weak_divergence, and the other is not unstable or is
@@ -131,7 +131,7 @@ namespace Squeal
     bool changes_verdict() const;
   };
 
-  /// Largest change of a quantity, and its mode; null if there is none.
+  /// Largest change in a quantity, and its mode; null if there is none.
   struct LargestChange
   {
     double            amount = 0.;

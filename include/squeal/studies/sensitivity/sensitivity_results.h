@@ -15,8 +15,8 @@ namespace Squeal
     double           step;                              ///< change in the parameter from `before` to `after` [unit of the parameter]
   };
 
-  /// A parameter p and its effect on the terms of the bodies and the contact: dQ/dp is the sum of the derivative along the rates and of the
-  /// derivative terms.
+  /// A parameter p and its effect on the terms of the bodies and the contact. For the bodies, dQ/dp is the sum of the derivative along
+  /// `body_rates` and the terms in `derivative`.
   struct SensitivityParameter
   {
     std::string path;  ///< name, for example "Pin material/Young modulus"
@@ -123,7 +123,7 @@ namespace Squeal
   struct ThresholdSensitivity
   {
     const Threshold    *threshold;
-    std::string         obstacle;    ///< reason why there are no derivatives; empty if there are
+    std::string         obstacle;    ///< reason why there are no derivatives; otherwise empty
     std::vector<double> derivatives; ///< dμ_c/dp for each parameter; empty with an obstacle
     std::vector<double> errors;      ///< estimated errors
   };

@@ -28,7 +28,7 @@ namespace Squeal
     }
   };
 
-  /// Contact state for given friction coefficient, load and speed.
+  /// Contact state at a given friction coefficient, load and speed.
   struct StateOfContact
   {
     std::vector<unsigned int> closed;  ///< indices of the closed pairs: S_0
@@ -57,7 +57,7 @@ namespace Squeal
   };
 
   /// Prints a summary of the input before the computation: sizes, masses, and expected memory. Warns of implausible values. Throws
-  /// MeshError if the model exceeds the memory, or if the disc is a body of revolution about an axis other than z.
+  /// MeshError if the model exceeds the memory, or if the disc turns about z, but is a body of revolution about another axis.
   void summarise_scene(const Mesh &mesh, Run &run);
 
   /// Meshes the model, checks the mesh and pairs the contact nodes, without assembly. Throws Error if parameters do not fit the mesh.

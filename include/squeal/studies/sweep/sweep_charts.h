@@ -15,7 +15,7 @@ namespace Squeal
     {
       main,                ///< operation in the parameter file
       without_dissipation, ///< operation in the parameter file, without radial dissipation
-      map                  ///< operation at another load or speed
+      map                  ///< another load, speed or second parameter
     };
 
     Kind                kind;

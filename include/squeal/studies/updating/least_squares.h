@@ -23,7 +23,7 @@ namespace Squeal
 
   struct Fit
   {
-    std::vector<double> x; ///< best point found, n
+    std::vector<double> x; ///< best point found, n values
     Residuals           residuals;
     bool                has_converged;
     int                 n_iterations;
