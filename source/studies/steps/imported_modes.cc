@@ -57,7 +57,8 @@ namespace Squeal
       throw SolverError(
         "stiffness or mass has no symmetric terms, the symmetric stiffness has negative eigenvalues, or both are singular for the same motion",
         "file " + run.parameters.system.path(),
-        "mark destabilising terms with \"kind\": \"friction\", eliminate constraints, correct the signs of terms, or, for Study = updating, give complex modes only");
+        "mark destabilising terms with \"kind\": \"friction\", eliminate constraints, correct the signs of terms, "
+        "or, for Study = updating, give complex modes only");
     const auto count = number_of_modes(system, (1. + margin) * omega_max, solvers, run.progress);
 
     FrictionlessModes result;
