@@ -74,7 +74,7 @@ class Ingredients(ProgramTest):
     def test_what_a_scene_cannot_have(self):
         study = self.run_scene("plain", "Study=ingredients")
         why = {ingredient: row["reason not tried"] for (ingredient, _), row in self.rows(study).items()}
-        self.assertIn("equal shares of the load", why["lift-off"])
+        self.assertIn("equal load", why["lift-off"])
         self.assertIn("Ingredients/Trial friction slope", why["friction slope"])
         self.assertEqual(why["radial dissipation"], "")
         self.assertIn("the given model", (study / "cheapest.prm").read_text(encoding="utf-8"))

@@ -22,7 +22,7 @@ namespace Squeal
 
     ConvergedMode converged(const int                              number,
                             const std::vector<const SolvedMesh *> &members,
-                            const std::vector<ModePairing>        &pairings) // of each member except the last with the last
+                            const std::vector<ModePairing>        &pairings) // pairings of each coarser mesh with the finest
     {
       const SolvedMesh   &finest = *members.back();
       ConvergedMode       mode{finest.labels[number], false, {}, {}, {}};

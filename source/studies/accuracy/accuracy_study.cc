@@ -167,7 +167,7 @@ namespace Squeal
                 rows.push_back({&family, &family.modes[j], partner >= 0 ? &reference.modes[partner] : nullptr});
               }
         }
-      // Order of sequences of three or more meshes; empty if none was observed
+      // Observed order of convergence, which requires three meshes; empty if there is none
       const auto order = [](const std::optional<Extrapolation> &sequence) {
         return sequence && !sequence->observed_orders.empty() ? Entry(sequence->observed_orders.back()) : Entry();
       };
@@ -223,11 +223,11 @@ namespace Squeal
       run.count("modes of the reference with an observed order", n_orders);
       run.measure("error of the finest mesh of the reference, rms [-]", reference.error);
       run.screen << '\n';
-      run.progress.note(text("  reference: ", reference.name, ", extrapolated from ", reference.members.size(), " meshes up to ",
+      run.progress.note(text("  reference: ", reference.name, ", extrapolated from ", reference.members.size(), " meshes with up to ",
                              reference.members.back()->n_dofs, " dofs; error of its finest mesh about ",
                              decimal_text(100. * reference.error), " % (rms)"));
       run.progress.note(text("  ", n, " modes: ", n_orders, " with an observed order of convergence of the frequency, ", n_in_cluster,
-                             " in clusters that mix differently on each mesh"));
+                             " in clusters whose modes mix differently on each mesh"));
     }
     Reason no_grown_basis(const Parameters &p)
     {
@@ -241,8 +241,8 @@ namespace Squeal
     }
   } // namespace
 
-  /// `Study = accuracy`: solves the model on coarser and finer meshes, with every element, at full order and with reduced bases. Reports
-  /// costs and, relative to the extrapolated modes of the best family, the errors of every mode and their contributions.
+  /// `Study = accuracy`: solves the model on several meshes, with the requested elements, at full order and with reduced bases. Reports
+  /// costs and, relative to the extrapolated modes of the best family, the errors of the modes and their contributions.
   static void run_accuracy_study(Scene &, Run &run)
   {
     const double       maximum_frequency = run.parameters.discretization.maximum_frequency;
@@ -259,7 +259,7 @@ namespace Squeal
     if (!solutions.left_out.empty())
       run.store_table("accuracy_left_out", left_out_table(solutions.left_out));
     report(reference, maximum_frequency, run);
-    run.screen << "\n  Pareto front of time and largest frequency error\n\n";
+    run.screen << "\n  Pareto front of CPU time and largest frequency error\n\n";
     pareto_table(methods).print(run.screen);
     run.screen << '\n';
     run.finish();

@@ -74,7 +74,7 @@ namespace Squeal
       error_controlled_sweep(*model->reduced, points, training, options, keep, run.communicator, run.progress);
     if (found.n_left > 0)
       throw SolverError(text("the common basis is not accurate enough: ", found.why_stopped), "designs on one mesh",
-                        "solve the designs individually");
+                        "raise Sweep/Tolerance");
     run.progress.finish(
       text(points.size(), " operating points, ", model->reduced->size(), " vectors, estimated error ", found.worst_error));
   }

@@ -16,7 +16,7 @@ namespace Squeal
   {
     constexpr std::size_t n_shown = 20;
 
-    /// Overlap rounded to its significant digits; empty if there is none.
+    /// Overlap rounded to six decimals; empty if there is none.
     Entry overlap_cell(const boost::optional<double> &overlap)
     {
       return overlap ? Entry(std::round(1e6 * *overlap) / 1e6) : Entry();
@@ -98,7 +98,7 @@ namespace Squeal
     const std::string limit = text(100. * weak_divergence, " %");
     return result.weak_onset ? text("divergence rate exceeds ", limit, " at mu = ", result.weak_onset->friction_coefficient, " (",
                                     result.weak_onset->label, ")") :
-                               "divergence rate always below " + limit;
+                               "divergence rate does not exceed " + limit;
   }
 
   Table design_table(const std::vector<std::string> &names, const std::vector<DesignResult> &designs)

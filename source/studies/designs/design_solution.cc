@@ -59,7 +59,7 @@ namespace Squeal
       return result;
     }
 
-    /// Replaces @p found if @p onset has a smaller friction coefficient; gives the first onset of several charts.
+    /// Replaces @p found if @p onset has a smaller friction coefficient, to find the first onset of several charts.
     void keep_first(const std::optional<GrowthOnset> &onset, const std::vector<std::string> &labels, boost::optional<DesignGrowth> &found)
     {
       if (!onset || (found && found->friction_coefficient <= onset->friction_coefficient))
@@ -155,7 +155,7 @@ namespace Squeal
       const ChartCount &first = sweep.chart.counts.front();
       result.n_modes          = first.n_modes + first.n_overdamped;
       result.n_counted        = n_counted - model.frictionless.real.n_rigid_body;
-      // Compare only without damping and friction, which move modes across the end of the band
+      // Compare only without damping and friction, which may move modes across the end of the band
       if (first.friction_coefficient == 0. && !model.frictionless.linearisation.coupled.has_damping())
         result.is_complete = result.is_complete && result.n_modes == result.n_counted;
     }

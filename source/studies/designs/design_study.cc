@@ -191,7 +191,7 @@ namespace Squeal
     });
   }
 
-  /// `Study = geometry` for a system file: modes at lists of parameter values, from one reduced model.
+  /// `Study = geometry` for a system file: modes for the parameter values of each design.
   static void run_designs_of_system(Run &run)
   {
     SystemFile       file = read_system(run);

@@ -59,8 +59,8 @@ namespace Squeal
     /// Maximum number of designs that a process solves in turn; constant, because results must not depend on the number of processes.
     constexpr std::size_t largest_batch = 25;
 
-    /// Assigns designs to worker processes: batches of nearly equal size of designs on a common mesh, and other designs individually.
-    /// Rejected designs need no process.
+    /// Assigns designs to worker processes: designs on a common mesh in batches of nearly equal size, other designs individually. Rejected
+    /// designs need no process.
     std::vector<std::vector<int>> batches_of(const Run &run, const DesignWork &work)
     {
       std::map<std::string, std::vector<int>> families;

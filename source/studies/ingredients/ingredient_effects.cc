@@ -12,8 +12,8 @@ namespace Squeal
     /// |λ_1 − λ_2| / |λ_1| up to which modes with the same label may be counterparts regardless of their shapes [-].
     constexpr double same_name_within = 0.1;
 
-    /// Pairs modes that have the same label but no counterpart by shape so that their λ are close. These are modes of a doublet or of equal
-    /// pins, whose shapes a change may mix.
+    /// Pairs modes without counterpart by shape that have the same label and close λ, for example modes of a doublet or of equal pins,
+    /// whose shapes a change may mix.
     void pair_by_name(std::vector<PairedMode> &pairs, const FrictionModes &first, const FrictionModes &second)
     {
       std::vector<int>  left_1, left_2;

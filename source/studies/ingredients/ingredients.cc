@@ -31,7 +31,7 @@ namespace Squeal
     Reason no_open_node(const Parameters &, const std::optional<SlidingState> &state)
     {
       if (!state)
-        return "all nodes are closed with equal shares of the load";
+        return "all nodes are closed, because Steady sliding/Contact state = equal load";
       return std::count(state->closed.begin(), state->closed.end(), false) > 0 ? nullptr : "no node lifts off";
     }
 
@@ -44,7 +44,7 @@ namespace Squeal
 
     using P = const Parameters &;
 
-    /// Ingredient that sets the parameter found by @p member to @p value. It is present if @p is_present is true or, by default, if the
+    /// Ingredient that sets the parameter returned by @p member to @p value. It is present if @p is_present is true or, by default, if the
     /// parameter has this value.
     template <typename Member, typename Value>
     Ingredient option(const char                                    *name,

@@ -259,7 +259,7 @@ namespace Squeal
                             largest_changes(result.effect));
     }
 
-    /// Writes the non-default parameters that are used as a parameter file.
+    /// Writes a parameter file with the non-default parameters that have an effect.
     void write_changed_parameters(std::ostream &stream, Parameters parameters)
     {
       Declarations declarations;
@@ -318,7 +318,7 @@ namespace Squeal
   } // namespace
 
   /// `Study = ingredients`: varies each model feature individually and reports the effects on every mode and on the verdict, and the costs.
-  /// Writes the cheapest model that preserves the verdict within the required accuracy as a parameter file.
+  /// Writes a parameter file of the cheapest model found that preserves the verdict and meets the required accuracy.
   static void run_ingredients_study(Scene &scene, Run &run)
   {
     const Parameters    &p         = run.parameters;
@@ -339,7 +339,8 @@ namespace Squeal
     for (const std::string &line : lines)
       run.progress.note(line);
     for (const IngredientResult *back : cheapest.put_back)
-      run.progress.note("    not included, because its effect is too large in combination: " + back->name + " = " + back->tried);
+      run.progress.note("    not included, because the combined effect of all changes is too large or cannot be computed: " + back->name +
+                        " = " + back->tried);
     note_missing(results, run);
     run.screen << '\n';
     ingredient_table(results, reference, true).print(run.screen);
@@ -355,7 +356,7 @@ namespace Squeal
   extern const Study ingredients_study = [] {
     Study study{"ingredients", run_ingredients_study, {"Ingredients/"}};
     study.rules = {{"Output/", [](const Parameters &) { return "not written by Study = ingredients"; }}};
-    // Count these parameters as used, because variants change contact states, dissipation, speeds and solvers
+    // Count these parameters as used, because variants with another contact state, dissipation or solver use them
     const auto of_use = [](const Parameters &) -> Reason { return nullptr; };
     for (const char *path : {"Operation/Load per side", "Operation/Rotation speed", "Steady sliding/", "Complex modes/"})
       study.rules.push_back({path, of_use});

@@ -21,7 +21,7 @@ namespace Squeal
       return result;
     }
 
-    /// Broadcasts costs, because all processes must decide on the basis of the same times.
+    /// Broadcasts costs, because decisions that depend on times must agree on all processes.
     void agree(MPI_Comm communicator, StepCosts &costs)
     {
       for (Cost StepCosts::*step : {&StepCosts::mesh, &StepCosts::assembly, &StepCosts::sliding, &StepCosts::modes, &StepCosts::friction})
@@ -29,7 +29,7 @@ namespace Squeal
           Squeal::agree(communicator, &(costs.*step.*quantity), 1);
     }
 
-    /// Steady sliding state; empty for equal shares of the load.
+    /// Steady sliding state; empty for other contact states.
     std::optional<SlidingState> sliding_state(const Scene &scene, StepCosts &costs, Run &run)
     {
       costs.sliding = {};

@@ -186,7 +186,7 @@ namespace Squeal
     }
   } // namespace
 
-  /// `Study = reduction`: compares modes of reduced bases, including the bases of Tables 2, 4 and 5 of the paper, with full-order modes.
+  /// `Study = reduction`: compares modes of reduced bases, for example those of Tables 2, 4 and 5 of the paper, with full-order modes.
   /// Reports sizes, ranks, errors by groups of modes, error estimates with their verdicts, and costs.
   static void run_reduction_study(Scene &scene, Run &run)
   {
@@ -225,7 +225,7 @@ namespace Squeal
       const auto &pairs = p.contact.pairs;
       if (std::any_of(pairs.begin(), pairs.end(), [](const ContactPair &pair) { return pair.normal_stiffness > 0.; }))
         throw ParameterError("reduced bases require rigid contact, but a pair has a normal stiffness", "parameter Contact/Pairs",
-                                         "remove the normal stiffness, or choose Study = stability or sweep");
+                                         "remove the normal stiffness, or set Study = stability or sweep");
       reduction_plan(p);
     };
     study.run_of_system = run_reduction_of_system;

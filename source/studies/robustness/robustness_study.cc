@@ -99,7 +99,7 @@ namespace Squeal
       label();
       if (result.n_left > 0)
         model.run.warn(text(result.n_left, " samples have no results within the tolerance of ", tolerance, ": ", result.why_stopped,
-                            "; they count as undecided. Raise the tolerance"));
+                            "; they count as undecided. Remove this cause, or raise the tolerance"));
       return result.n_growths;
     }
 
@@ -284,8 +284,8 @@ namespace Squeal
     return result;
   }
 
-  /// `Study = robustness`: complex modes for samples of uncertain parameters, from one reduced model, with estimated errors for each sample.
-  /// Reports the probability of squeal and the influence of the parameters.
+  /// `Study = robustness`: complex modes for samples of uncertain parameters, from one reduced model for each contact set, with estimated
+  /// errors. Reports the probability of squeal and the influence of the parameters.
   static void run_robustness_study(Scene &scene, Run &run)
   {
     check_bands(run.parameters);

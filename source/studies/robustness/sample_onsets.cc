@@ -21,7 +21,7 @@ namespace Squeal
       std::vector<double> onsets;          ///< onsets of the samples in which the divergence rate is exceeded, ascending
       double              uncertainty;     ///< largest uncertainty of an onset
 
-      /// @p p-quantile of the onsets over all samples; empty if the fraction of samples with an onset is smaller than @p p.
+      /// @p p-quantile of the onsets over all samples; empty if too few samples have an onset.
       Entry quantile_of_all(const double p) const
       {
         std::vector<double> all = onsets;
@@ -191,7 +191,7 @@ namespace Squeal
     run.progress.finish(text(followed.size(), " samples, ", how, ", ", n_onsets, " onsets"));
     if (n_missed > 0)
       run.warn(
-        text(n_missed, " points of samples with onsets have no results within the tolerance of ", options.tolerance, ": ", why_stopped,
+        text(n_missed, " points of the followed samples have no results within the tolerance of ", options.tolerance, ": ", why_stopped,
              "; distributions of onsets exclude these samples. Raise Sweep/Tolerance, or Sweep/Maximum basis if it limits the basis"));
   }
 

@@ -85,7 +85,7 @@ namespace Squeal
         rename = [&scales = systems.scales[contact_set], names = first.names, without_scales](const Coefficient &coefficient) {
           Coefficient result = in_names(coefficient, without_scales);
           for (const auto &[name, scale] : scales)
-            if (coefficient.contains(name)) // always to the first power
+            if (coefficient.contains(name)) // scales have the exponent one
               result = result * Coefficient(scale.first) * in_names(scale.second, names);
           return result;
         };

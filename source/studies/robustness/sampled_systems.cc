@@ -51,7 +51,7 @@ namespace Squeal
               text_without_coefficients(with_design(parameters, {number.parameter}, {exact_text(samples.values(0, j))})) != scene)
             throw ParameterError(
               in_quotes(number.parameter) +
-                " cannot vary between samples, because it is not a coefficient of terms, or its term is zero in the model",
+                " cannot vary between samples, because it is not a coefficient of a term, or its term is zero in the model",
               number.where,
               "vary moduli, densities, Rayleigh coefficients, mounts, friction coefficient, load, speed or slope with "
               "nonzero nominal values, or use Study = geometry for other parameters");

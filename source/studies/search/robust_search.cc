@@ -15,7 +15,7 @@ namespace Squeal
 
   namespace
   {
-    /// Minimum number of initial designs that detect terms with proportional coefficients and train the initial basis.
+    /// Minimum number of initial designs, which are used to detect terms with proportional coefficients and to train the basis.
     constexpr std::size_t fewest_first_designs = 4;
 
     /// Values of the variables of a design.
@@ -26,7 +26,7 @@ namespace Squeal
     {
       std::vector<std::string>                                           pins; ///< volumes of pins that may have individual values
       std::function<Parameters(const DesignValues &)>                    design;
-      std::function<Parameters(const SamplePlan &, int sample)>          sample;  ///< throws ParameterError for illegal values
+      std::function<Parameters(const SamplePlan &, int sample)>          sample;  ///< throws ParameterError for invalid values
       std::function<double(const Parameters &, const std::string &name)> nominal; ///< nominal value of a parameter
       std::function<SampledSystems(const SamplePlan &)>                  systems;
     };
@@ -63,7 +63,7 @@ namespace Squeal
       Estimate     squeal;      ///< probability that a mode grows
       double       doubtful;    ///< fraction of undecided samples [-]
       double       quantile;    ///< quantile of the largest divergence rates of the samples [-]
-      double       worst_error; ///< largest estimated error of λ [-]
+      double       worst_error; ///< largest estimated error of λ in the step that solved the design [-]
       int          n_vectors;   ///< size of the basis
       int          worst;       ///< sample with the largest rate; −1 if no sample meets the tolerance
 
@@ -210,7 +210,7 @@ namespace Squeal
           if (!number.is_relative && nominal_in(lowest, number) != nominal_in(highest, number))
             throw ParameterError(in_quotes(number.parameter) + " varies from design to design, but its distribution is absolute",
                                  number.where, "give the distribution in % of the nominal value");
-        // Reject illegal samples at the ends of the ranges before the first solution
+        // Reject invalid samples at the ends of the ranges before the first solution
         for (const DesignValues &corner : {lowest, highest})
           {
             const SamplePlan samples = samples_of({corner}, inner);

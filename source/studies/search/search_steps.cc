@@ -96,7 +96,7 @@ namespace Squeal
       }
     catch (const nlopt::roundoff_limited &)
       {
-        return "rounding errors exceed the change of the objective";
+        return "rounding errors exceed the change in the objective";
       }
     catch (const std::exception &failure)
       {

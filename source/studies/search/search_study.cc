@@ -44,7 +44,7 @@ namespace Squeal
           run.progress.note(text("  continuing an interrupted search: ", n_known, " designs are finished"));
       }
 
-      /// Objective at a point that has been evaluated.
+      /// Objective at an evaluated point; empty for other points.
       std::optional<double> value(const SearchPoint &point) const
       {
         const auto place = std::find(plan.designs.begin(), plan.designs.end(), values_at(point));
@@ -216,11 +216,11 @@ namespace Squeal
 
     // ----------------------------------------------------------------- results
     write_designs(evaluations.plan.names, evaluations.results, run);
-    run.progress.note(
-      text("  search: design ", winner.number, " of ", evaluations.results.size(),
-           " is the best: ", decimal_text(std::abs(objective(evaluations.results[order.front()], parameters))), " for the best sample, ",
-           decimal_text(std::abs(objective(winner, parameters))),
-           options.goal == SearchGoal::onset ? " for this design (mu of 0.01 %)" : " for this design (largest divergence rate in %)"));
+    run.progress.note(text("  search: design ", winner.number, " of ", evaluations.results.size(),
+                           " is the best: ", decimal_text(std::abs(objective(evaluations.results[order.front()], parameters))),
+                           " for the best sample, ", decimal_text(std::abs(objective(winner, parameters))),
+                           options.goal == SearchGoal::onset ? " for this design (mu at a divergence rate of 0.01 %)" :
+                                                               " for this design (largest divergence rate in %)"));
     for (std::size_t i = 0; i < ends.size(); ++i)
       run.progress.note(text("    from design ", order[i] + 1, ": ", ends[i]));
     run.store_table("search", search_table(evaluations, points.size()));

@@ -10,11 +10,11 @@ namespace Squeal
     /// Relative step of central differences with respect to operation parameters [-].
     constexpr double operation_step = 1e-4;
 
-    /// Minimum reference value for steps of friction coefficient [-] and slope [s/m].
+    /// Minimum reference value of these steps, for small friction coefficients [-] and slopes [s/m].
     constexpr double least_of_operation = 1e-2;
 
     /// f' = −K' u + μ (P_t')ᵀ r of reaction_rates() for each parameter, n × parameters. If the disc is held only by its drive, inertia
-    /// balances the friction moment. The change of this inertia load is neglected, because torsion of a body of revolution moves no contact
+    /// balances the friction moment. The change in this inertia load is neglected, because torsion of a body of revolution moves no contact
     /// node along its normal.
     MultiVector force_rates(const SlidingModel                      &sliding,
                             const SlidingState                      &state,

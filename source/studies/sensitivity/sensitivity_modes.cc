@@ -50,7 +50,7 @@ namespace Squeal
       return partner < 0 ? result : ModeGroup{{mode, partner}, Differentiated::pair};
     }
 
-    /// Growing modes of the band by divergence rate; if there are none, all modes by divergence rate.
+    /// Growing modes of the band or, if no mode grows, all its modes, by descending divergence rate; at most @p most.
     std::vector<int> modes_of_interest(const SweepModel &model, const ChartPoint &point, const std::size_t most)
     {
       std::vector<int> result = model.in_band(point);
@@ -156,7 +156,7 @@ namespace Squeal
         if (change <= wanted.tolerance)
           break;
         if (n_growths == most_growths)
-          why_stopped = text("after ", most_growths, " extensions of the basis they still change by ", change);
+          why_stopped = text("after ", most_growths, " extensions of the basis, they still change by ", change);
         else
           why_stopped = model.grow({{model.modes_at(point, modes)}}, run.parameters.sweep.maximum_basis);
         if (!why_stopped.empty())
@@ -167,7 +167,7 @@ namespace Squeal
                              n_growths, n_growths == 1 ? " extension" : " extensions"));
     if (!why_stopped.empty())
       run.warn("derivatives of modes do not meet Sensitivity/Tolerance: " + why_stopped +
-               "; raise it, or Sweep/Maximum basis if it limits the basis");
+               "; raise Sensitivity/Tolerance, or Sweep/Maximum basis if it limits the basis");
     return result;
   }
 } // namespace Squeal

@@ -10,8 +10,8 @@ namespace Squeal
 {
   namespace
   {
-    /// Step of Poisson's ratio relative to the distance from its limits, and of other constants relative to their size [-]. The relative
-    /// error of a central difference is about its square.
+    /// Step of Poisson's ratio relative to the distance from its limits, and of orthotropic constants relative to their value, or to 1 for
+    /// ratios [-]. The relative error of a central difference is about the square of this step.
     constexpr double relative_step = 1e-4;
 
     /// A constant of an orthotropic material that is not a factor of terms. E1 is a factor: all moduli are proportional to it.
@@ -175,7 +175,7 @@ namespace Squeal
     for (const MountParameter &mount : mount_parameters(materials))
       result.push_back({mount.path, "", mount.unit, mount.value, {{mount.name, {1.}}}, {}});
 
-    // Omit contact stiffnesses in steady sliding with contact damping, which would depend on them as well
+    // Omit contact stiffnesses in steady sliding with contact damping, because the damping would depend on them
     const auto &pairs = parameters.contact.pairs;
     for (unsigned int pair = 0; pair < pairs.size(); ++pair)
       if (pairs[pair].normal_stiffness > 0. && !(parameters.needs_steady_sliding() && parameters.has_contact_damping()))
@@ -242,7 +242,6 @@ namespace Squeal
                 parameter.derivative.back().matrix = difference;
               }
           }
-        // Merge the terms of all bodies
         parameter.derivative = merged(parameter.derivative, bodies.values);
         for (Term &term : parameter.derivative)
           term.matrix = without_zeros(*term.matrix);

@@ -13,21 +13,21 @@ namespace Squeal
 
     constexpr double one_percent = 0.01;
 
-    /// Change of a mode per 1 % and per unit of a parameter.
+    /// Change in a mode per 1 % and per unit of a parameter.
     struct SensitivityRow
     {
       int                         mode; ///< index of the mode, from 0
       const ModeSensitivity      *of;
       const SensitivityParameter *parameter;
       Complex                     derivative; ///< dλ/dp
-      std::optional<Complex>      change;     ///< change by the last extension of the basis
+      std::optional<Complex>      change;     ///< change in the derivative due to the last extension of the basis
 
       double growth_per_percent() const
       {
         return one_percent * parameter->value * derivative.real();
       }
 
-      /// 100 dξ, ξ = R/ω.
+      /// Change in the divergence rate: 100 dξ, with ξ = R/ω.
       double divergence_per_percent() const
       {
         const Complex &lambda = of->lambda;
@@ -187,7 +187,7 @@ namespace Squeal
     {
       const ModalQuantities q = modal_quantities(mode.lambda);
       run.screen << '\n';
-      run.progress.note(text("  changes per 1 % of each parameter for ", to_string(mode.label), " at ", decimal_text(q.frequency), " Hz, ",
+      run.progress.note(text("  changes per 1 % of a parameter for ", to_string(mode.label), " at ", decimal_text(q.frequency), " Hz, ",
                              mode.is_unstable ?
                                text("which grows with a divergence rate of ", decimal_text(100. * q.divergence_rate), " %") :
                                "the least damped mode, because none grows",
@@ -209,7 +209,7 @@ namespace Squeal
     }
   } // namespace
 
-  /// `Study = sensitivity`: derivatives of λ and of thresholds with respect to all continuous parameters, from right and left vectors.
+  /// `Study = sensitivity`: derivatives of λ and of thresholds with respect to parameters of the model, from right and left vectors.
   static void run_sensitivity_study(Scene &scene, Run &run)
   {
     const Parameters &p  = run.parameters;

@@ -9,8 +9,8 @@ namespace Squeal
   {
     using Complex = std::complex<double>;
 
-    /// First step of μ around a coalescence relative to the distance from the next event of either branch, small enough for δ² to be nearly
-    /// linear [-].
+    /// First step of μ around a coalescence, relative to the distance from the next threshold of either branch [-]. It is so small that δ²
+    /// is nearly linear.
     constexpr double first_distance = 0.03;
 
     /// Maximum number of attempts to follow the modes, each with a tenth of the previous step.
@@ -95,7 +95,7 @@ namespace Squeal
       std::vector<ThresholdSample> samples;
 
     private:
-      /// Distance from the next event of either branch, and from the ends of the chart.
+      /// Distance from the next threshold of either branch or from the nearest end of the chart.
       double room() const
       {
         const double mu     = threshold.friction_coefficient;
@@ -107,7 +107,7 @@ namespace Squeal
         return std::max(result, 0.);
       }
 
-      /// Modes of both branches at a friction coefficient, with their point.
+      /// Point at a friction coefficient; stores its modes on the branches. Null if these modes cannot be identified.
       const ChartPoint *sample(const double mu)
       {
         const int        i = nearest_point(chart, mu, branches);
@@ -119,7 +119,7 @@ namespace Squeal
         const auto        to    = followed(chart.points[i], from, there, model.sweep.largest_circular_frequency);
         if (!to)
           {
-            result.obstacle = "its modes cannot be identified nearby";
+            result.obstacle = "the modes cannot be identified near the threshold";
             return nullptr;
           }
         samples.push_back({mu, *to});
@@ -157,7 +157,7 @@ namespace Squeal
         samples.clear();
         if (!(step > 3. * threshold.uncertainty))
           {
-            result.obstacle = "another event of its modes, or an end of the sweep, is too close";
+            result.obstacle = "another threshold of these modes, or an end of the sweep, is too close";
             return;
           }
         std::vector<std::array<Complex, 3>> means(model.parameters.size(), std::array<Complex, 3>{});

@@ -96,7 +96,7 @@ namespace Squeal
       return rows;
     }
 
-    /// Balances of all growing modes; records the largest difference between their sum and ξ.
+    /// Balances of all growing modes; records the largest difference between the sum of a balance and ξ.
     PowerBalances power_balances(const Linearisation &linearisation, const FrictionModes &friction, Run &run)
     {
       const Scene  &scene = *linearisation.scene;
@@ -214,14 +214,13 @@ namespace Squeal
             stream << ',' << node.area << '\n';
           }
       });
-      run.progress.finish("M, C, K, C_b, P_n, P_t, P_b, K_n, T_c in Matrix Market format");
+      run.progress.finish("matrices in Matrix Market format");
     }
 
   } // namespace
 
-  /// `Study = stability`: component modes, real coupled modes and complex modes at one friction coefficient, for equal shares of the load
-  /// or for steady sliding, with tables and mode shapes; with an accuracy goal or a coarser mesh, also discretisation errors. A dry run
-  /// generates and checks the mesh, counts its dofs, and writes nothing.
+  /// `Study = stability`: component modes, real coupled modes and complex modes at one friction coefficient, with all contact nodes closed
+  /// or for steady sliding. Writes tables and mode shapes; with an accuracy goal or a coarser mesh, also discretisation errors.
   static void run_stability_study(Scene &scene, Run &run)
   {
     const Parameters          &parameters = run.parameters;

@@ -72,7 +72,8 @@ namespace Squeal
         const bool            is_disc = component == Component::disc;
         SymmetricModesOptions options =
           real_modes_options(run.parameters.solvers, name, is_disc ? stabilizing_shift(*scene.model, scene.system, omega_max) : pins_shift);
-        // Solve pins individually, because equal pins would cause clusters, in which every mode occurs once per pin and bending modes twice
+        // Solve pins individually, because equal pins would cause clusters, in which every mode occurs once per pin, and bending modes
+        // twice per pin
         options.by_parts = !is_disc;
         run.progress.update(name);
         return component_modes(*scene.model, scene.interface, linearisation.interface, scene.system, component, boundary,

@@ -10,7 +10,7 @@ namespace Squeal
     /// Maximum number of modes listed in a warning.
     constexpr std::size_t n_named = 5;
 
-    /// Warns of modes that are not converged; lists the first ones as "A0-4 at 2315 Hz (0.3 %, 0.05 points)".
+    /// Warns of unstable modes that are not converged; lists the first ones as "A0-4 at 2315 Hz (0.3 %, 0.05 points)".
     void warn_of_unconverged(const std::vector<DiscretisationError> &errors,
                              const FrictionModes                    &friction,
                              const AccuracyLimits                   &limits,
@@ -96,8 +96,8 @@ namespace Squeal
         writer.write_animation("unstable_modes", animated, animation_options(output));
       std::string growth; // the amplitude grows by e^{2π ξ n} in n periods
       if (const double exponent = 2. * M_PI * highest; output.animation_growth && highest > 0.)
-        growth = text("; the fastest grows by a factor of ", std::exp(exponent * output.animation_periods), ", or by a factor of e in ",
-                      1. / exponent, " periods");
+        growth = text("; during the animation, the fastest mode grows by a factor of ", std::exp(exponent * output.animation_periods),
+                      ", or by a factor of e in ", 1. / exponent, " periods");
       run.progress.finish(text(list.size(), " modes, ", animated.size(), " animated", growth));
     }
 
@@ -119,8 +119,8 @@ namespace Squeal
       run.progress.finish(text(list.size(), " modes"));
     }
 
-    /// Points of this process. The component of a point is the group of the dof with the largest weight in its displacement; points without
-    /// a group have the last index.
+    /// Points of this process. The component of a point is the group of the dof with the largest weight in its displacement; for points
+    /// without a group, it is the number of groups.
     std::vector<Node> nodes_of(const ShapePoints &points, const std::vector<DofGroup> &groups)
     {
       const SparseMatrix       &displacements = *points.displacements;
@@ -210,7 +210,7 @@ namespace Squeal
   {
     auto result = discretisation_errors(coarser.modes, modes_at(coarser.points, frictionless, friction), error_by_difference(goal),
                                         friction.modes.estimated_errors);
-    // Modes that are undecided because of rounding errors remain undecided
+    // Modes that are undecided without the discretisation error remain undecided
     for (std::size_t j = 0; j < result.size(); ++j)
       if (friction.verdicts[j] == Verdict::undecided)
         result[j].verdict = Verdict::undecided;
@@ -240,7 +240,7 @@ namespace Squeal
     const bool has_goal = run.parameters.goal != AccuracyGoal::as_given;
     run.progress.note(
       text(has_goal ? text("  accuracy: ", to_string(run.parameters.goal), " requested; errors estimated from a coarser mesh") :
-                      "  discretisation error as difference from the coarser mesh, not extrapolated",
+                      "  discretisation errors are differences from the coarser mesh, not extrapolated",
            ": frequencies within ", decimal_text(100. * frequency), " %, divergence rates within ", decimal_text(100. * divergence),
            " percentage points", n_lost > 0 ? text(", ", n_lost, n_lost == 1 ? " mode" : " modes", " without counterpart excluded") : ""));
     std::string converged;

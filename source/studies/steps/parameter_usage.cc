@@ -37,7 +37,7 @@ namespace Squeal
         {"Geometry/Outlines",
          [](const Parameters &p) -> Reason {
            return p.discretization.element == Element::quadratic ? "quadratic elements follow the circles" :
-                                                                   unless(p.geometry.is_plan(), "the geometry is a solid");
+                                                                   unless(p.geometry.is_plan(), "the geometry is a solid model");
          }},
 
         {"Disc material/Rayleigh alpha", no_damping},
@@ -112,7 +112,7 @@ namespace Squeal
       return false;
     }
 
-    /// Reason why a run does not use a parameter other than a geometry parameter; empty if the run uses it.
+    /// Reason why a run does not use a parameter, apart from variables of geometry scripts; empty if the run uses it.
     std::string why_unused(const std::string &path, const Parameters &parameters)
     {
       if (parameters.system && !is_used_with_system(path, parameters))
@@ -158,7 +158,7 @@ namespace Squeal
   Reason no_sliding_speed(const Parameters &parameters)
   {
     return unless(parameters.has_friction() && (parameters.has_contact_damping() || parameters.operation.rotating_disc),
-                  "neither contact damping nor gyroscopic forces");
+                  "the problem has neither contact damping nor gyroscopic forces");
   }
 
   std::vector<UnusedParameter> unused_among(const std::vector<std::string> &paths, const Parameters &parameters)

@@ -131,11 +131,12 @@ namespace Squeal
     ReductionPlan plan        = plan_for(problem, parameters, value);
     plan.parameters           = fixed(file.parameters, system.at(value));
     if (!problem.has_snapshots && (plan.rests_on(BasisSource::snapshots) || !problem.has_definite_part))
-      throw ParameterError(varied == nullptr ? "the basis POD needs a parameter, but the system has none" :
-                                               text("snapshots are outside the range of ", varied->name, " from ",
-                                                    exact_text(varied->lower), " to ", exact_text(varied->upper)),
-                           "parameter Reduction/Snapshots",
-                           "give values within the range of a parameter or, if the system has a definite part, remove the basis POD");
+      throw ParameterError(
+        varied == nullptr ? "the basis POD needs a parameter, but the system has none" :
+                            text("at least one snapshot is outside the range of ", varied->name, " from ", exact_text(varied->lower),
+                                 " to ", exact_text(varied->upper)),
+        "parameter Reduction/Snapshots",
+        "give values within the range of a parameter of the file or, if the system has a definite part, remove the basis POD");
     return plan;
   }
 

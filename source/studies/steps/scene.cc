@@ -14,17 +14,17 @@ namespace Squeal
 {
   namespace
   {
-    /// Poisson's ratio from which trilinear elements are reported to lock: relative to quadratic elements, bending frequencies of pins on
-    /// the default mesh rise by 1.4 % from a ratio of 0.25 to this value, and by 3.6 % to 0.499.
+    /// Minimum Poisson's ratio at which trilinear elements are reported to lock: relative to quadratic elements, bending frequencies of
+    /// pins on the default mesh rise by 1.4 % from a ratio of 0.25 to this value, and by 3.6 % to 0.499.
     constexpr double locking_poisson_ratio = 0.47;
 
     void warn_of_locking(Run &run)
     {
       for (const auto &[section, material] : run.parameters.materials.all())
         if (run.parameters.discretization.element == Element::trilinear && material.mean_poisson_ratio() >= locking_poisson_ratio)
-          run.progress.note(text("  note: trilinear elements lock at ", section, material.orthotropy ? ", mean " : "/",
-                                 "Poisson ratio = ", material.mean_poisson_ratio(), ": for ratios of ", locking_poisson_ratio,
-                                 " and more, bending frequencies may be more than 1 % too high, and growth rates are even less accurate; "
+          run.progress.note(text("  note: trilinear elements lock: the ", material.orthotropy ? "mean " : "", "Poisson ratio in ", section,
+                                 " is ", material.mean_poisson_ratio(), ": at ", locking_poisson_ratio,
+                                 " and above, bending frequencies may be more than 1 % too high, and growth rates are even less accurate; "
                                  "set Discretization/Element = incompatible modes"));
     }
 
@@ -95,7 +95,7 @@ namespace Squeal
     if (parameters.needs_steady_sliding())
       check_sliding(*scene.model, scene.interface, parameters.operation, parameters.sliding);
     if (parameters.sliding.state == ContactState::equal_load && parameters.has_contact_damping())
-      equal_load_shares(*scene.model, scene.interface, parameters.operation); // throws if a body has no direction of travel
+      equal_load_shares(*scene.model, scene.interface, parameters.operation); // throws if the load cannot be distributed
     const int n = scene.model->free_map().n(), n_coupled = scene.contact.kernel->n_columns();
     run.count("dofs, clamped included", scene.model->n_dofs());
     run.count("dofs", n);

@@ -29,7 +29,7 @@ namespace Squeal
     {
       std::vector<std::string> names;
       double                   inner_radius = std::numeric_limits<double>::infinity(), outer_radius = 0.; ///< of its nodes about z [m]
-      double                   height = 0., contact_area = 0., volume = 0.; ///< extent along z [m]; [m²]; [m³]
+      double                   height = 0., contact_area = 0., volume = 0.; ///< height along z [m], area [m²], volume [m³]
       double                   mass           = 0.;                         ///< mass of each body [kg]
       double                   bar_speed      = 0.;                         ///< √(E/ρ), speed of longitudinal waves in a bar [m/s]
       bool                     is_orthotropic = false;                      ///< if true, the bar lies along material axis 1
@@ -127,7 +127,6 @@ namespace Squeal
   {
     const Parameters &parameters = run.parameters;
 
-    // Bodies
     const std::vector<Body> bodies = summarise_bodies(mesh, parameters.materials);
     double                  pins   = 0.;
     for (std::size_t b = 0; b < bodies.size(); ++b)
@@ -140,7 +139,6 @@ namespace Squeal
     run.measure("disc mass [kg]", bodies[0].mass);
     run.measure("pins mass [kg]", pins);
 
-    // Memory
     ProblemSize size = expected_size(mesh, degree_of(parameters.discretization.element));
     if (parameters.solves_by(ComplexSolver::residual_iteration))
       size.contact_nodes = 0.; // no attachment modes
@@ -149,7 +147,6 @@ namespace Squeal
                            " GB are available"));
     run.measure("expected memory [byte]", bytes);
 
-    // Warnings
     const bool turns = SlidingVelocity(parameters.operation).turns_about_z();
     if (turns && !is_round_about_z(mesh, parameters.geometry.path()))
       run.warn("the disc turns about the z axis, but is not a body of revolution about this axis: check the geometry and "

@@ -22,7 +22,7 @@ namespace Squeal
     /// Parameter ranges extend by this factor below and above the value.
     constexpr double range_factor = 100.;
 
-    /// Converts to lower case and replaces each run of non-alphanumeric characters by _.
+    /// Converts to lower case, replaces each run of non-alphanumeric characters by _, and adds a prefix if the first character requires it.
     std::string identifier(const std::string &text)
     {
       std::string result = is_parameter_name(text.substr(0, 1)) ? "" : "of_";
@@ -222,7 +222,7 @@ namespace Squeal
     FileParameter result{SystemParameter::friction, mu};
     result.lower       = depends ? mu : 0.;
     result.upper       = depends ? mu : largest_friction_coefficient;
-    result.description = depends ? "friction coefficient; the contact state is valid at this value only" : "friction coefficient";
+    result.description = depends ? "friction coefficient; contact state and damping are valid at this value only" : "friction coefficient";
     return result;
   }
 

@@ -98,7 +98,7 @@ namespace Squeal
     auto worst = std::find_if(places.begin(), places.end(), [&](const auto &place) { return !model.known.at(place).lambda.empty(); });
     if (worst == places.end())
       throw SolverError("a reduced system requires modes, but the sweep has no modes in the band", "parameter Output/Write system",
-                        "raise Band/Maximum frequency, or set it to full");
+                        "raise Band/Maximum frequency, or set Output/Write system = full");
     std::set<SweepModel::Place> chosen  = {*worst};
     MultiVector                 set     = snapshot(model.known.at(*worst), full.map());
     const auto                  inertia = inertia_square(full, worst->second, model.largest_circular_frequency);
@@ -130,7 +130,8 @@ namespace Squeal
               cut /= 10.;
             else
               throw SolverError("the reduced model does not reproduce the modes of the sweep within Sweep/Tolerance",
-                                "parameter Output/Write system", "narrow the range of the sweep, raise Sweep/Tolerance, or set it to full");
+                                "parameter Output/Write system",
+                                "narrow the range of the sweep, raise Sweep/Tolerance, or set Output/Write system = full");
           }
         else if (places.size() < model.known.size())
           {
@@ -180,7 +181,7 @@ namespace Squeal
       result.uncertainties.push_back(result.errors[j] * std::abs(result.lambda[j]));
     result.right = gathered(*modes.real_part, *modes.imaginary_part, listed);
     result.left  = gathered(*modes.left_real_part, *modes.left_imaginary_part, listed);
-    // Correct λ to first order with the residuals, because ψ is the left vector of the mode φ
+    // First-order corrections of λ from the residuals of φ, with the left vectors ψ
     const int         n         = static_cast<int>(modes.lambda.size());
     const MultiVector residuals = force_residuals(system, values, modes.lambda, *modes.real_part, *modes.imaginary_part);
     result.corrections          = -result.left.transpose() * gathered(view(residuals, 0, n), view(residuals, n, n), listed);

@@ -7,7 +7,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Known friction coefficients of a line, split into parts with the same contact set.
+    /// Known friction coefficients of a line in the contact set of the model, split where values are missing.
     std::vector<std::vector<double>> stretches(const SweepModel &model, const int line)
     {
       std::vector<std::vector<double>> result;
@@ -126,14 +126,14 @@ namespace Squeal
       const int             n_real   = static_cast<int>(n_in_band(real.eigenvalues, limit)) - real.n_rigid_body;
       const ChartCount     &first    = chart.counts.front();
       if (first.friction_coefficient != 0.)
-        progress.note("  note: the sweep does not begin at mu = 0, so the number of modes is not compared with a count by inertia");
+        progress.note("  note: the number of modes is not compared with a count by inertia, because these branches do not begin at mu = 0");
       else if (first.n_modes + first.n_overdamped != n_real)
-        progress.note(text("  note: ", first.n_modes, " modes are in the band at mu = 0, but ", n_real,
-                           " real modes; damping may have moved modes across the end of the band"));
+        progress.note(text("  note: the band contains ", first.n_modes, " modes at mu = 0, but ", n_real,
+                           " real modes without damping; damping may have moved modes across the end of the band"));
       const auto n =
         std::count_if(chart.counts.begin(), chart.counts.end(), [](const ChartCount &count) { return count.n_modes != count.n_expected; });
       if (n > 0)
-        progress.note(text("  note: at ", n, " points the number of modes differs from the expected number (counts.csv)"));
+        progress.note(text("  note: at ", n, " points, the number of modes differs from the expected number (counts.csv)"));
     }
   } // namespace
 
@@ -163,7 +163,7 @@ namespace Squeal
     run.progress.finish(text(chart.branches.size(), " branches, ", chart.thresholds.size(), " thresholds, ", chart.crossings.size(),
                              " crossings of the end of the band, ", chart.points.size() - grid.size(), " refinements"));
     if (chart.n_doubtful_steps > 0)
-      run.progress.note(text("  note: in ", chart.n_doubtful_steps, " steps modes could be distinguished only by their frequencies"));
+      run.progress.note(text("  note: in ", chart.n_doubtful_steps, " steps, modes could be distinguished only by their frequencies"));
     return result;
   }
 
@@ -258,7 +258,7 @@ namespace Squeal
         result += text(rate > 0. ? text(", divergence rate exceeds ", 100. * rate, " %") : " begins", " at ", parameter, " = ",
                        onset.friction_coefficient, is_uncertain ? text(" +- ", onset.uncertainty) : "", " (", to_string(of_onset), ")");
       }
-    return text(result, "; largest at ", parameter, " = ", at, ": ", label, " at ", decimal_text(most.frequency), " Hz with ",
-                decimal_text(100. * most.divergence_rate), " %");
+    return text(result, "; largest divergence rate at ", parameter, " = ", at, ": ", label, " at ", decimal_text(most.frequency),
+                " Hz with ", decimal_text(100. * most.divergence_rate), " %");
   }
 } // namespace Squeal

@@ -278,7 +278,7 @@ namespace Squeal
                              " vectors, estimated error ", sweep.worst_error));
     run.count("basis vectors", model.reduced->size());
     run.measure("largest estimated error of lambda [-]", sweep.worst_error);
-    // Report conditioning at the last value, where friction makes eigenvalues most ill-conditioned. Twice the tolerance allows for rounding
+    // Report conditioning at the last value, where eigenvalues are usually most ill-conditioned. Twice the tolerance allows for rounding
     // errors in addition to errors of the basis
     if (last >= 0)
       {

@@ -121,8 +121,9 @@ namespace Squeal
     const SweepParameters &sweep  = run.parameters.sweep;
     NamedRange             result = sweep.varied_parameter();
     if (sweep.parameter.empty() && file.find(result.name) == nullptr)
-      throw ParameterError("no parameter is given for the sweep, and the system has no parameter mu", "parameter Sweep/Parameter",
-                           "give the varied parameter, its first and last value and the number of values: omega, 6.28, 25.1, 31");
+      throw ParameterError(
+        "no parameter is given for the sweep, and the system has no parameter mu", "parameter Sweep/Parameter",
+        "give the varied parameter, its first and last value and the number of values, for example omega, 6.28, 25.1, 31");
     std::map<std::string, double> given = run.parameters.system.values;
     for (const double value : {result.values.first, result.values.last})
       {

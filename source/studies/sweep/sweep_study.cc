@@ -13,11 +13,11 @@ namespace Squeal
 {
   namespace
   {
-    /// Stability at one friction coefficient and one load or speed.
+    /// Stability at one point of the map.
     struct MapCell
     {
       double                         friction_coefficient; ///< [-]
-      double                         value;                ///< load [N] or speed [rad/s]
+      double                         value;                ///< load [N], speed [rad/s] or second parameter
       std::size_t                    n_open;               ///< number of open contact nodes
       std::optional<ModalQuantities> leading;              ///< fastest growing, or least damped, mode; empty if not computed
       ModeLabel                      label;                ///< label of this mode
@@ -57,7 +57,7 @@ namespace Squeal
       return branch >= 0 ? main.labels[branch] : ModeLabel();
     }
 
-    /// Modes of a line at a requested friction coefficient; prints a note if their estimated error exceeds the tolerance.
+    /// Modes of a line at a requested friction coefficient; prints a note if the estimated error of a new point exceeds the tolerance.
     ChartPoint modes_at(SweepModel &model, const double mu, const int line = 0)
     {
       const bool       is_new    = model.known.count({line, mu}) == 0;
@@ -210,7 +210,7 @@ namespace Squeal
               std::none_of(plan.regimes.begin(), plan.regimes.end(), [&](const ContactRegime &regime) { return regime.closed == closed; }))
             run.progress.note(text("  note: at mu = ", mu, ", ", what_is_missing,
                                    ", because the contact set is none of the contact sets of the sweep. Raise Sweep/Number of friction "
-                                   "coefficients"));
+                                   "coefficients, or extend the range of the sweep to this value"));
     }
 
     // ------------------------------------------------------------------ tables
@@ -337,8 +337,8 @@ namespace Squeal
     run.finish();
   }
 
-  /// `Study = sweep`: complex modes and thresholds over a range of the friction coefficient, with and without radial dissipation, and maps
-  /// over load or speed.
+  /// `Study = sweep`: complex modes and thresholds over a range of the friction coefficient; optionally also without radial dissipation,
+  /// and maps over load or speed.
   static void run_sweep_study(Scene &scene, Run &run)
   {
     assemble_scene(scene, run);

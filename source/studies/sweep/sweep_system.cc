@@ -15,7 +15,7 @@ namespace Squeal
       if (plan.scene != nullptr)
         {
           FileParameter mu = friction_parameter(model.run.parameters);
-          if (mu.lower == mu.upper) // fixed, because the contact state depends on μ
+          if (mu.lower == mu.upper) // fixed, because the contact state or damping depends on μ
             first = last = most_damped(model.regime).friction_coefficient;
           mu.value = mu.upper = last;
           mu.lower            = first;

@@ -40,7 +40,7 @@ namespace Squeal
         return place == file.names.size() ? "" : file.rows[row][place];
       }
 
-      /// Number in a column; empty if the cell is empty.
+      /// Number in a column; empty if the column is missing or the cell is empty.
       std::optional<double> number(const char *column) const
       {
         return text(column).empty() ? std::nullopt : std::optional(file.number(row, file.column(column)));

@@ -21,7 +21,7 @@ namespace Squeal
 
   namespace
   {
-    /// Half step of the difference quotients, as a fraction of the range; the quotients are exact for factors of terms.
+    /// Half step of the difference quotients, as a fraction of the range [-].
     constexpr double step_of_rates = 1e-4;
 
     constexpr const char *where_fitted = "parameter Designs/Variables";
@@ -120,8 +120,8 @@ namespace Squeal
               for (const MeshMotion &motion : motions_of(p, base.geometry))
                 if (is_complex && motion.moves_contact)
                   refuse_fit("derivatives of complex modes with respect to " + in_quotes(parameters[p].name) +
-                               " are not available, because it moves contact nodes",
-                             "fit it to component and coupled modes only");
+                               " are not available, because this parameter moves contact nodes",
+                             "remove this parameter or the complex modes from the fit");
           }
       }
 
@@ -230,7 +230,7 @@ namespace Squeal
         return merged(result.terms, result.values);
       }
 
-      /// Difference quotients within the range; exact for factors of terms.
+      /// Difference quotients within the range; exact for quantities that are linear in the parameter.
       EquationRates rates_of(const std::size_t                  p,
                              const double                       value,
                              const Parameters                  &design,
@@ -266,7 +266,7 @@ namespace Squeal
         return result;
       }
 
-      /// Model on the mesh with nodes displaced by a change of a parameter.
+      /// Model on the mesh with nodes displaced by a change in a parameter.
       Model moved_model(const std::size_t p, const double change, const Parameters &design) const
       {
         Mesh mesh = scene.mesh;

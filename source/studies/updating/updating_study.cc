@@ -131,7 +131,7 @@ namespace Squeal
       Run                                                    &run;
       int                                                     n_evaluations = 0;
       std::map<std::vector<double>, std::vector<Counterpart>> computed_at; ///< computed counterparts at each point
-      std::string why_failed; ///< reason of the last failed evaluation; empty if none has failed
+      std::string why_failed; ///< error of the last failed evaluation; empty if no evaluation has failed
     };
 
     // --------------------------------------------------------------------- results
@@ -265,8 +265,8 @@ namespace Squeal
     {
       for (const UpdatedParameter &row : updated)
         if (row.status.rfind("at ", 0) == 0)
-          run.warn(text("the fitted ", row.parameter->name, " is ", row.status, " ", exact_text(row.value),
-                        ": widen its range, or correct other properties of the model"));
+          run.warn(text("status of the fitted ", row.parameter->name, ": ", row.status, " ", exact_text(row.value),
+                        "; widen its range, or correct other properties of the model"));
       for (const std::vector<std::size_t> &group : statistics.undetermined)
         {
           std::vector<std::string> names;
@@ -345,7 +345,7 @@ namespace Squeal
       run.finish();
     }
 
-    /// Modes of the file Updating/Measured modes or, if it is empty, of the file named by a system.
+    /// Modes of the file Updating/Measured modes or, if this parameter is empty, of the file that the system file names.
     MeasuredModes given_modes(const Parameters &parameters, const std::string &of_system = "")
     {
       const std::string &name      = parameters.updating.measured_modes;
@@ -445,7 +445,7 @@ namespace Squeal
       {"Output/", [](const Parameters &) { return "not written by Study = updating"; }},
       {"Updating/Least MAC", [](const Parameters &p) { return unless(!p.updating.sensors.empty(), "Updating/Sensors is empty"); }},
       {"Complex modes/Solver", [](const Parameters &) { return "complex modes are computed by residual iteration"; }},
-      {"Complex modes/Iteration tolerance", [](const Parameters &) { return "derivatives require the smallest tolerance"; }},
+      {"Complex modes/Iteration tolerance", [](const Parameters &) { return "the tolerance for derivatives is fixed"; }},
       {"Complex modes/Maximum basis", is_used},
       {"Complex modes/Shift inverse", [](const Parameters &) { return "only for the solver Krylov"; }},
       {"Complex modes/Tolerance", [](const Parameters &) { return "only for the solver Krylov"; }}};

@@ -22,7 +22,7 @@ namespace Squeal
     std::string family() const;
   };
 
-  /// Eigenvalues computed by one method: the counterparts of the full-order modes.
+  /// Eigenvalues computed by one method, one for each full-order mode.
   struct ModesByMethod
   {
     std::string                       method; ///< "full order", or the name of a basis
@@ -30,7 +30,8 @@ namespace Squeal
     Cost                              cost;   ///< from meshing to modes; memory of all processes
     std::vector<std::complex<double>> lambda; ///< [rad/s]
 
-    /// Estimated |δλ| / |λ| due to the eigensolver [-]: ½ √ε_res with eq. (16) of the paper, valid to first order for well separated modes.
+    /// Estimated |δλ| / |λ| due to the eigensolver [-]: estimates of the solver or, without them, ½ √ε_res with eq. (16) of the paper; zero
+    /// for reduced bases.
     std::vector<double> algebraic_errors;
   };
 
@@ -56,11 +57,11 @@ namespace Squeal
   struct SolvedMeshes
   {
     std::vector<SolvedMesh> meshes;   ///< the coarsest first
-    std::vector<LeftOut>    left_out; ///< meshes that cannot be generated or exceed the allowed number of dofs
+    std::vector<LeftOut>    left_out; ///< meshes that could not be solved or have too many dofs
   };
 
-  /// Solves the model on all requested meshes and elements, at full order and with the requested bases, each as a step of the run. Modes
-  /// are stored at the points of the first mesh.
+  /// Solves the model on all requested meshes and elements, at full order and with the requested bases, each as a step of the run. Mode
+  /// shapes are stored at the points of the first solved mesh.
   SolvedMeshes solve_meshes(Run &run);
 
   /// Limit of a quantity of a mode for vanishing mesh width.
@@ -85,13 +86,13 @@ namespace Squeal
   {
     std::string                     name;
     std::vector<const SolvedMesh *> members; ///< the finest last
-    std::vector<ConvergedMode>      modes;   ///< modes of the finest mesh, in their order
-    double                          error;   ///< rms of the frequency errors on the finest mesh, including their uncertainty [-]
+    std::vector<ConvergedMode>      modes;   ///< in the order of the modes on the finest mesh
+    double                          error;   ///< rms of the relative frequency errors on the finest mesh, including uncertainties [-]
   };
 
   /**
    * Extrapolates the frequencies and divergence rates of every family of two or more meshes to zero mesh width; modes are paired by shape
-   * with modes of the finest mesh. Two meshes are extrapolated with twice the degree of the element as order. In clusters, and for three or
+   * with modes of the finest mesh. With two meshes, the assumed order is twice the degree of the element. In clusters, and for three or
    * more meshes without a reliable order of convergence, the limit is the value of the finest mesh.
    */
   std::vector<ConvergedFamily> converged_families(const std::vector<SolvedMesh> &meshes, double maximum_frequency);
@@ -103,8 +104,8 @@ namespace Squeal
   struct ErrorKinds
   {
     double total          = 0.; ///< error relative to the extrapolated value
-    double discretisation = 0.; ///< error of full order on this mesh, relative to the extrapolated value
-    double reduction      = 0.; ///< error of the basis, relative to full order on this mesh
+    double discretisation = 0.; ///< error of the full-order value on this mesh, relative to the extrapolated value
+    double reduction      = 0.; ///< error of the basis, relative to the full-order value on this mesh
     double algebraic      = 0.; ///< error of the eigensolver, estimated from residuals
   };
 
@@ -131,7 +132,7 @@ namespace Squeal
     double                  rms_frequency;      ///< rms of the total errors [-]
     ErrorKinds              largest_divergence; ///< largest errors of modes outside clusters [-]
     int                     n_in_cluster, n_lost;
-    bool                    on_front = false; ///< Pareto-optimal: no faster method has a smaller largest frequency error
+    bool                    on_front = false; ///< Pareto-optimal in CPU time and largest frequency error, without lost modes
   };
 
   /// Compares all meshes and methods with the reference modes up to a frequency [Hz].

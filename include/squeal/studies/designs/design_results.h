@@ -18,8 +18,8 @@ namespace Squeal
   {
     double                  friction_coefficient = 0.;
     double                  uncertainty          = 0.;
-    std::string             event, mechanism, label; ///< label of the growing mode
-    boost::optional<double> overlap;                 ///< overlap with the reference mode of this label [-]; empty in a cluster
+    std::string             event, mechanism, label; ///< label of the mode that begins or ceases to grow
+    boost::optional<double> overlap;                 ///< overlap with the reference mode [-]; empty in a cluster or without reference mode
     std::string             partner;                 ///< label of the other mode; empty: none
     double                  frequency = 0.;          ///< [Hz]
 
@@ -35,12 +35,12 @@ namespace Squeal
   {
     std::string             label;     ///< label of the most similar reference mode; own_label if there is none
     std::string             own_label; ///< label from the component modes of the design
-    boost::optional<double> overlap;   ///< overlap with the reference mode [-]; empty in a cluster, whose shapes are mixed by rounding
-    double                  first_frequency = 0., last_friction_coefficient = 0., last_frequency = 0.; ///< [Hz]
+    boost::optional<double> overlap;   ///< overlap with the reference mode [-]; empty in a cluster or without reference mode
+    double                  first_frequency = 0., last_friction_coefficient = 0., last_frequency = 0.; ///< [Hz], [-], [Hz]
     double                  last_growth_rate = 0., last_divergence_rate = 0., last_error = 0.;         ///< [1/s], [-], [-]
-    std::string             verdict;                                                                   ///< for the last coefficient
-    double                  largest_divergence_rate = 0.;                                              ///< maximum over the sweep [-]
-    boost::optional<double> onset; ///< first friction coefficient at which it begins to grow
+    std::string             verdict;                      ///< verdict at the last friction coefficient
+    double                  largest_divergence_rate = 0.; ///< maximum over the sweep [-]
+    boost::optional<double> onset;                        ///< first friction coefficient at which the mode begins to grow
 
     template <class Archive>
     void serialize(Archive &archive, const unsigned int /*version*/)
@@ -71,7 +71,7 @@ namespace Squeal
     std::string label;
     double      frequency       = 0.; ///< [Hz]
     double      divergence_rate = 0.; ///< [-]
-    double      error           = 0.; ///< estimated |δλ| / |λ| [-]
+    double      error           = 0.; ///< estimated |δλ| / |λ| [-]; not set for onsets
 
     template <class Archive>
     void serialize(Archive &archive, const unsigned int /*version*/)
@@ -88,7 +88,7 @@ namespace Squeal
     DesignOutcome            outcome = DesignOutcome::failed;
     std::string              reason; ///< reason for rejection or failure
 
-    int    n_dofs = 0, n_modes = 0, n_counted = 0; ///< modes in the band at the smallest friction coefficient; real modes by inertia
+    int    n_dofs = 0, n_modes = 0, n_counted = 0; ///< number of modes at the smallest friction coefficient, and of real modes by inertia
     bool   is_complete = false;                    ///< the numbers of modes agree with all counts
     int    n_unstable = 0, n_undecided = 0;        ///< numbers of modes at the largest friction coefficient
     int    n_growing     = 0;                      ///< number of modes that grow at any friction coefficient
@@ -97,7 +97,7 @@ namespace Squeal
 
     boost::optional<DesignGrowth> onset;      ///< smallest friction coefficient at which a mode grows
     boost::optional<DesignGrowth> weak_onset; ///< smallest friction coefficient with a divergence rate above weak_divergence
-    boost::optional<DesignGrowth> worst;      ///< the largest divergence rate at any friction coefficient
+    boost::optional<DesignGrowth> worst;      ///< unstable mode with the largest divergence rate at any friction coefficient
     std::vector<DesignThreshold>  thresholds;
     std::vector<DesignMode>       modes;
     double                        seconds = 0.; ///< wall time [s]
@@ -120,7 +120,7 @@ namespace Squeal
 
   Table design_mode_table(const std::vector<DesignResult> &designs);
 
-  /// Solved designs without weak_onset, then other designs by descending weak_onset; as many as fit on the screen.
+  /// The quietest solved designs: first those without weak_onset, then the others by descending weak_onset; limited to one screen.
   Table quietest_designs(const std::vector<std::string> &names, const std::vector<DesignResult> &designs);
 
   /// Lines with the quietest design, the loudest design and the numbers of solved, rejected, failed and incomplete designs.

@@ -23,7 +23,7 @@ namespace Squeal
     /// Opens the checkpoint in a worker process of the study.
     explicit Checkpoint(const std::filesystem::path &folder);
 
-    /// Removes the folder if nothing has been stored; only the object that created the folder does so.
+    /// Removes the folder if nothing has been stored; only on the root process, and not in worker processes.
     ~Checkpoint();
 
     Checkpoint(const Checkpoint &)            = delete;
@@ -116,7 +116,7 @@ namespace Squeal
   /// Reference modes for the labels of designs, read from the file if it exists, otherwise computed from the given model.
   ReferenceModes design_reference(Scene &scene, Run &run, const std::filesystem::path &file);
 
-  /// Solves all designs that are not in the store, in separate processes with the same command-line @p arguments. Collective.
+  /// Solves the designs that are not in the store, in separate processes with the same command-line @p arguments. Collective.
   std::vector<DesignResult> solve_all(Scene                          &scene,
                                       Run                            &run,
                                       const DesignWork               &work,
@@ -135,9 +135,9 @@ namespace Squeal
   /// Variables of a plan that have no effect on any design, with reasons.
   std::vector<UnusedParameter> unused_variables(const Parameters &parameters, const DesignPlan &plan);
 
-  /// Throws ParameterError if a variable is not a parameter; if a variable without effect is the only difference of two designs; or if a
-  /// value is rejected both individually and in every design that contains it. Other invalid combinations are reported in the rows of their
-  /// designs.
+  /// Throws ParameterError if a variable is not a parameter or has no effect, or if a value is rejected both individually and in every
+  /// design that contains it. In a file of designs, variables without effect are allowed unless two designs differ only in such variables.
+  /// Other invalid combinations are reported in the rows of their designs.
   void check_designs(const Parameters &parameters, const DesignPlan &plan);
 
   /// Throws ParameterError if a variable of a search is not a parameter or has no effect, or if an end of its range cannot be set.

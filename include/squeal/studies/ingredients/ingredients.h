@@ -55,7 +55,7 @@ namespace Squeal
     /// All contact nodes stay closed, with the reactions of steady sliding.
     bool without_lift_off = false;
 
-    /// Reduced model instead of the full one: name of a recipe; empty: none.
+    /// Name of the recipe of a reduced basis; empty: full order.
     std::string basis = "";
 
     /// The basis contains real modes up to (1 + margin) times the end of the band.
@@ -72,7 +72,7 @@ namespace Squeal
    */
   SolvedModel solve_variant(const ReferenceModel &reference, const Variation &variation, const Run &run);
 
-  /// Type of a change of the model.
+  /// Type of a model change.
   enum class ChangeKind
   {
     removes, ///< simplifies the model: a candidate for the cheapest model
@@ -89,7 +89,7 @@ namespace Squeal
     /// Current value and trial value of the feature, in a few words.
     std::function<std::string(const Parameters &)> here, tried;
 
-    /// True if the model already has the trial value, so that the change would have no effect.
+    /// True if the change does not apply, for example because the model already has the trial value.
     std::function<bool(const Parameters &)> is_present;
 
     /// Makes the change in the parameters or, if no parameter can express it, in other members of the variation.
@@ -98,7 +98,7 @@ namespace Squeal
     ChangeKind kind;
     Departure  departure;
 
-    /// Returns the reason why the change is impossible, or null if it is possible. Null: always possible.
+    /// Returns the reason why the change is impossible; null if it is possible. Without this function, the change is always possible.
     Reason (*obstacle)(const Parameters &, const std::optional<SlidingState> &) = nullptr;
   };
 
@@ -120,18 +120,18 @@ namespace Squeal
     double                              overlap    = 0.;    ///< overlap of both shapes, see PairedMode [-]
     bool                                in_cluster = false; ///< the mode has no individual counterpart by shape
 
-    /// Change of the frequency [%]; for a mode without counterpart, the distance from @p band_end, the end of the band [rad/s].
+    /// Change in the frequency [%]; for a mode without counterpart, the distance from @p band_end, the end of the band [rad/s].
     double frequency(double band_end) const;
 
-    /// Change of the divergence rate [percentage points]; empty without counterpart.
+    /// Change in the divergence rate [percentage points]; empty without counterpart.
     std::optional<double> divergence() const;
 
-    /// True if one of the two modes is unstable with a divergence rate of at least weak_divergence, and the other does not grow or is
+    /// True if one of the two modes is unstable with a divergence rate of at least weak_divergence, and the other is not unstable or is
     /// missing.
     bool changes_verdict() const;
   };
 
-  /// Largest change of a quantity, and its mode; null if there is none.
+  /// Largest change in a quantity, and its mode; null if there is none.
   struct LargestChange
   {
     double            amount = 0.;
@@ -186,7 +186,7 @@ namespace Squeal
   ChangesTogether cheapest_changes(const std::vector<CheaperChange>                            &changes,
                                    const std::function<double(const std::vector<int> &chosen)> &severity_of);
 
-  /// Result of a change of the model, or the reason why it could not be made.
+  /// Result of a model change, or the reason why the change could not be made.
   struct IngredientResult
   {
     const Ingredient *ingredient; ///< null for combined changes

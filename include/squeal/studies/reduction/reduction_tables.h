@@ -14,9 +14,9 @@ namespace Squeal
   struct MeasuredBasis
   {
     const BasisRecipe     *recipe;
-    std::string            name;       ///< name of the basis, with the variant if there are several
+    std::string            name;       ///< name of the basis and of its variant
     std::string            truncation; ///< truncation of the component modes
-    ReducedBasis           basis;      ///< its vectors are freed after the measurement
+    ReducedBasis           basis;      ///< vectors may be freed after the measurement
     int                    n_r           = 0;
     double                 build_seconds = 0., solve_seconds = 0.;
     std::vector<ModeError> errors = {};
@@ -37,7 +37,7 @@ namespace Squeal
     std::vector<ModeLabel>                labels;      ///< labels of the modes
     std::vector<double>                   disc_shares; ///< the disc's share of the energy of each mode [-]; empty: there is no disc
     std::vector<std::string>              groups;
-    std::vector<std::vector<std::string>> joined; ///< groups that the paper lists together
+    std::vector<std::vector<std::string>> joined; ///< groups that the error table also lists together
     std::vector<bool>                     unstable;
     double                                seconds; ///< CPU time of the solution, including its factorisation
   };

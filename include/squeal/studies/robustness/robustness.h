@@ -17,7 +17,7 @@ namespace Squeal
     std::string  pin; ///< volume with this value; empty: all volumes of the parameter
     Distribution distribution;
     bool         is_relative = false;                                ///< the distribution is in per cent of the nominal value
-    const char  *where       = "parameter Robustness/Distributions"; ///< parameter that messages name
+    const char  *where       = "parameter Robustness/Distributions"; ///< location in error messages
   };
 
   /// The samples of a study.
@@ -25,9 +25,9 @@ namespace Squeal
   {
     std::vector<UncertainNumber> numbers;
     DenseMatrix                  values;         ///< one row for each sample
-    int                          n_independent;  ///< the first samples, which are independent and used for probabilities
+    int                          n_independent;  ///< number of leading samples that are independent, for probabilities
     bool                         has_indices;    ///< the samples come from saltelli_samples(), for Sobol' indices
-    int                          n_followed = 0; ///< number of leading independent samples that are followed over the friction coefficient
+    int                          n_followed = 0; ///< number of leading independent samples that are followed over the sweep
 
     int n() const
     {
@@ -64,9 +64,9 @@ namespace Squeal
   /// Samples as operating points of contact sets; each contact set has one system. `line` of a point is the index of its sample.
   struct SampledSystems
   {
-    SweepPlan                      plan;      ///< one line for each sample that is followed over the friction coefficient
+    SweepPlan                      plan;      ///< one line for each sample that is followed over the sweep
     std::vector<FrictionlessModes> middles;   ///< modes at the mean sample of each contact set in the plan
-    std::vector<std::size_t>       n_samples; ///< number of samples in each contact set, the first points; the others belong to lines
+    std::vector<std::size_t>       n_samples; ///< number of samples in each contact set: its first points; others belong to lines
     std::vector<FamilyScales>      scales;    ///< scales of each contact set; empty for a system file
 
     /// Converts an additional sample to a point of the first contact set; `line` of the point is the index of the sample.
@@ -89,7 +89,6 @@ namespace Squeal
     std::string          label;
     bool                 is_alone; ///< no other mode of the sample has this label
 
-    /// Serialises for Boost.
     template <class Archive>
     void serialize(Archive &archive, const unsigned int /*version*/)
     {
@@ -103,10 +102,10 @@ namespace Squeal
   /// Largest estimated error of λ of the modes [-].
   double largest_error(const Sample &sample);
 
-  /// Onsets of the modes of a sample over the friction coefficient.
+  /// Onsets of the modes of a sample.
   struct FollowedSample
   {
-    std::vector<SquealOnset> onsets;       ///< one onset for each label and divergence rate in a contact set
+    std::vector<SquealOnset> onsets;       ///< one onset for each label and divergence rate in each contact set
     std::size_t              n_missed = 0; ///< number of friction coefficients without results within the tolerance
 
     /// First onset of modes with this label, or of any mode if the label is empty, at this divergence rate; null: none.
@@ -137,11 +136,11 @@ namespace Squeal
                                     const KeepPoint                   &keep,
                                     const std::string                 &name);
 
-  /// Function that receives the model of a contact set and all samples solved so far, after its samples are solved.
+  /// Function that receives the model of a contact set after the samples of this set are solved, and all samples solved so far.
   using KeepModel = std::function<void(std::size_t contact_set, const SweepModel &, const std::vector<std::optional<Sample>> &)>;
 
-  /// Solves all samples with one reduced model for each contact set, as steps of the run. If @p checkpoint is not null, it supplies the
-  /// samples that an interrupted run has stored, and stores the new ones.
+  /// Solves all samples, with one reduced model for each contact set or, without a definite part, at full order. Steps of the run. If @p
+  /// checkpoint is not null, it supplies the samples that an interrupted run has stored, and stores the new ones.
   SolvedSamples solve_samples(const SampledSystems &systems,
                               int                   n_samples,
                               double                tolerance,
@@ -171,8 +170,9 @@ namespace Squeal
   /// Columns with the number of a sample and its uncertain numbers; rows are indices of samples. @p plan must outlive them.
   Columns<int> sample_columns(const SamplePlan &plan);
 
-  /// One row for each sample, and one row for each mode of the independent samples.
+  /// One row for each sample.
   Table sample_table(const SamplePlan &plan, const std::vector<std::optional<Sample>> &samples);
+  /// One row for each mode of the independent samples.
   Table cloud_table(const SamplePlan &plan, const std::vector<std::optional<Sample>> &samples);
 
   /// Writes the tables of the samples and prints a summary.

@@ -12,29 +12,29 @@ namespace Squeal
   {
     ContactInterface before, after;                     ///< all pairs of contact nodes
     ContactOperators operators_before, operators_after; ///< operators on the dofs of the model
-    double           step;                              ///< change of the parameter between before and after [unit of the parameter]
+    double           step;                              ///< change in the parameter from `before` to `after` [unit of the parameter]
   };
 
-  /// A parameter p and its effect on the terms of the bodies and the contact: dQ/dp is the sum of the derivative along the rates and of the
-  /// derivative terms.
+  /// A parameter p and its effect on the terms of the bodies and the contact. For the bodies, dQ/dp is the sum of the derivative along
+  /// `body_rates` and the terms in `derivative`.
   struct SensitivityParameter
   {
     std::string path;  ///< name, for example "Pin material/Young modulus"
-    std::string body;  ///< the only pin that changes; empty: all bodies of the parameter
+    std::string body;  ///< the only pin or volume that changes; empty: all bodies of the parameter
     std::string unit;  ///< "-" without a unit
     double      value; ///< [unit]
 
     ParameterValues   body_rates; ///< dq/dp of the parameters q of the bodies' terms
     std::vector<Term> derivative; ///< dX/dp for matrices X that are not products of powers of p; coefficients use body parameters
     double OperationParameters::        *operation    = nullptr; ///< member on which contact damping or friction depends; null: none
-    std::shared_ptr<const ContactMotion> contact      = {};      ///< null: contact nodes move in the axial direction only
+    std::shared_ptr<const ContactMotion> contact      = {};      ///< null: contact nodes do not move in the plane of the disc
     int                                  modal_ratio  = -1;      ///< index of the entry in Damping/Modal damping ratio; −1: none
     ParameterValues                      spring_rates = {};      ///< dk/dp of contact stiffnesses k
   };
 
-  /// All continuous parameters of the model except geometry: materials of the disc and of the pins, Young's modulus and density of each pin
-  /// individually, mounts, contact stiffnesses, modal damping ratios, friction coefficient, load, rotation speed, friction slope. Assembles
-  /// volumes with perturbed Poisson's ratios and constants of orthotropic materials.
+  /// Continuous parameters of the model except geometry: materials of the disc and of the pins, Young's modulus and density of each pin
+  /// individually, mounts, contact stiffnesses, modal damping ratios, friction coefficient, and, if the model depends on them, load,
+  /// rotation speed and friction slope. Assembles volumes with perturbed Poisson's ratios and constants of orthotropic materials.
   std::vector<SensitivityParameter> sensitivity_parameters(const Scene &scene, const Parameters &parameters);
 
   /// Lengths and angles of the built-in geometry: differences of the terms of the bodies on meshes with nodes moved slightly to either side
@@ -78,15 +78,15 @@ namespace Squeal
     /// dK/dp and dM/dp of the bodies for each parameter, which affect modal damping and the reactions of steady sliding.
     std::vector<BodyRates> body_rates() const;
 
-    /// Rates of the contact damping for each parameter through the reactions of steady sliding; empty if reactions are equal shares of the
-    /// load. Collective.
+    /// Rates of the contact damping for each parameter through the reactions of steady sliding; empty without steady sliding or contact
+    /// damping. Collective.
     const std::vector<ParameterValues> &damping_rates(double friction_coefficient) const;
 
     /// Modes of a point of the main line, for extending the basis.
     ChartModel::ModesAt modes_at(const ChartPoint &point, const std::vector<int> &modes) const;
 
     /// Extends the basis by residuals, one group of modes at a time to limit memory, and discards evaluated points. Returns the reason if
-    /// the basis cannot be extended, else an empty text. Collective.
+    /// not all groups could be added, otherwise an empty text. Collective.
     std::string grow(const std::vector<std::vector<ChartModel::ModesAt>> &groups, unsigned int maximum_basis);
   };
 
@@ -111,18 +111,19 @@ namespace Squeal
     bool                              is_unstable;
     Differentiated                    kind;
     std::vector<std::complex<double>> derivatives; ///< dλ/dp for each parameter; λ is the mean for several modes
-    std::vector<std::complex<double>> changes;     ///< changes of the derivatives by the last extension of the basis, as error estimates
+    std::vector<std::complex<double>> changes;     ///< changes in the derivatives due to the last extension of the basis: error estimates
   };
 
-  /// Derivatives of the growing modes at Operation/Friction coefficient or, if there are none, of the least damped modes. Extends the basis
-  /// by their residuals until the derivatives change by less than the tolerance, as a step of the run.
+  /// Derivatives of the growing modes at Operation/Friction coefficient or, if no mode grows, of the least damped modes; at most
+  /// Sensitivity/Largest number of modes. Extends the basis by their residuals, a limited number of times, until the derivatives change by
+  /// less than the tolerance. A step of the run.
   std::vector<ModeSensitivity> mode_sensitivities(SensitivityModel &model, Run &run);
 
   /// Derivatives of a threshold.
   struct ThresholdSensitivity
   {
     const Threshold    *threshold;
-    std::string         obstacle;    ///< reason why there are no derivatives; empty if there are
+    std::string         obstacle;    ///< reason why there are no derivatives; otherwise empty
     std::vector<double> derivatives; ///< dμ_c/dp for each parameter; empty with an obstacle
     std::vector<double> errors;      ///< estimated errors
   };
@@ -148,6 +149,6 @@ namespace Squeal
   /// Eigenvalues with right and left vectors; @p modes must have left vectors.
   Eigentriples eigentriples(const ComplexModes &modes);
 
-  /// `Study = sensitivity` for a system file: derivatives of λ with respect to all of its parameters.
+  /// `Study = sensitivity` for a system file: derivatives of λ with respect to all parameters of the file.
   void run_sensitivity_of_system(Run &run);
 } // namespace Squeal

@@ -18,7 +18,7 @@ namespace Squeal
   /**
    * Stores the tables of modes with friction, of modes without friction, and of real eigenvalues if there are any.
    *
-   * @param energies columns by mode index: location of the energy and travelling waves
+   * @param energies columns by mode index, for example shares of energy and travelling waves
    * @param more     additional columns, including a verdict; empty: the table contains the verdict of the solver
    */
   void store_mode_tables(const FrictionlessModes &frictionless,

@@ -12,9 +12,9 @@ namespace Squeal
   /// Frictionless modes of the linearised model, with component modes and labels.
   struct FrictionlessModes : SystemModes
   {
-    Linearisation  linearisation;
-    ComponentModes disc, pins_free, pins_sliding; ///< extend slightly beyond the band, to label modes near its end; see imported_modes()
-    std::vector<ModeLabel> labels;                ///< labels of the coupled modes
+    Linearisation          linearisation;
+    ComponentModes         disc, pins_free, pins_sliding; ///< disc and sliding pins: slightly beyond the band; see imported_modes()
+    std::vector<ModeLabel> labels;                        ///< labels of the coupled modes
 
     /// Component modes for the labels of coupled modes.
     std::vector<const ComponentModes *> references() const
@@ -38,7 +38,8 @@ namespace Squeal
   };
 
   /// Counts the real coupled modes by inertia, then computes component modes, the factorisation, and the real coupled modes up to (1 + @p
-  /// margin) times the end of the band, as steps of the run. Throws ParameterError if there are more modes than the parameters allow.
+  /// margin) times the end of the band, as steps of the run. Throws ParameterError if there are more modes than the parameters allow, or if
+  /// the rotation speed is supercritical.
   FrictionlessModes frictionless_modes(const Linearisation &linearisation, Run &run, double margin = 0.);
 
   /// Adds the modal damping from the parameters to the linearised system, for the modes in the band.
@@ -58,7 +59,7 @@ namespace Squeal
     double frequency() const; ///< [Hz]
   };
 
-  /// Component modes with ω² ≤ @p largest_eigenvalue: free disc, sliding pins and free pins, each set ascending.
+  /// Component modes with ω² ≤ @p largest_eigenvalue: free disc, sliding pins and free pins, each set in ascending order of frequency.
   std::vector<ListedComponentMode> listed_component_modes(const FrictionlessModes &modes, double largest_eigenvalue);
 
   /// Labelled complex modes at one friction coefficient.
@@ -69,7 +70,7 @@ namespace Squeal
     std::string            at;   ///< " at mu = 0.5", for messages
   };
 
-  /// Labels @p modes from any solver. Their cost is zero.
+  /// Labels @p modes from any solver; sets their cost to zero.
   FrictionModes named_modes(const FrictionlessModes &frictionless, JudgedModes modes);
 
   /// Complex modes of the band by the chosen solver.

@@ -20,7 +20,8 @@ namespace Squeal
   /// The parameters among @p paths that have no effect on the results of the run. Throws MeshError as unused_parameters() does.
   std::vector<UnusedParameter> unused_among(const std::vector<std::string> &paths, const Parameters &parameters);
 
-  /// unused_parameters() in one line: "  note: unused parameters: Operation/Load per side (no contact damping), ..."; empty if there are none.
+  /// unused_parameters(), and parameters set by Accuracy, in one line: "  note: unused parameters: Operation/Load per side (no contact
+  /// damping), ..."; empty if there are none.
   std::string unused_parameters_note(const Parameters &parameters);
 
   /// Reason why the rotation speed does not affect modes; null if it does.

@@ -35,7 +35,7 @@ namespace Squeal
   {
     BasisSource           source;
     std::string           variant;      ///< truncation, frequency or tolerance; empty if there is only one variant
-    std::optional<int>    n_vectors;    ///< number of vectors in a basis; empty for a factor
+    std::optional<int>    n_vectors;    ///< number of vectors of the source; empty for a factor
     std::optional<double> end_of_band;  ///< for modes: all modes below this frequency were computed [Hz]
     std::optional<int>    n_solved;     ///< for modes: number of modes computed; larger than n_vectors if the last mode is multiple
     double                seconds = 0.; ///< CPU time
@@ -91,7 +91,7 @@ namespace Squeal
     void compute_static_modes();
     void compute_snapshots();
 
-    /// Stores the lowest modes of a component: @p count modes, or all up to @p frequency [Hz] if it is zero.
+    /// Stores the lowest modes of a component: @p count modes or, if @p count is zero, all up to @p frequency [Hz].
     int keep_lowest(Charge charge, Component component, ContactBoundary boundary, double frequency, int count);
 
     const Linearisation &linearisation;

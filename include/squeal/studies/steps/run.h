@@ -74,7 +74,7 @@ namespace Squeal
     /// Throws FileError if the result folder cannot be created; a dry run creates none.
     Run(const Parameters &parameters, const RunOptions &options, MPI_Comm communicator, Progress &progress, std::ostream &screen);
 
-    /// A part of @p whole with other parameters and its own progress channel, without output files.
+    /// A part of @p whole with other parameters and its own progress output, without output files.
     Run(const Parameters &parameters, const RunContext &whole, Progress &progress);
 
     /// Copies the user's geometry to the results, so that they are reproducible.
@@ -90,6 +90,6 @@ namespace Squeal
     void finish(const std::function<void()> &afterwards = {});
   };
 
-  /// Meshes the model and runs the study; a dry run only meshes.
+  /// Meshes the model or reads the system file, and runs the study; a dry run stops before the study.
   void run_study(Run &run);
 } // namespace Squeal

@@ -28,14 +28,14 @@ namespace Squeal
     }
   };
 
-  /// Contact state for given friction coefficient, load and speed.
+  /// Contact state at a given friction coefficient, load and speed.
   struct StateOfContact
   {
     std::vector<unsigned int> closed;  ///< indices of the closed pairs: S_0
     ContactDamping            damping; ///< damping of all pairs; zero at open pairs
   };
 
-  /// Contact state from @p sliding. Without it, all nodes carry equal shares of the load, which affects only contact damping.
+  /// Contact state from @p sliding. Without it, all nodes are closed, and equal_load_shares() gives the reactions for the contact damping.
   StateOfContact state_of_contact(const Model                       &model,
                                   const ContactInterface            &interface,
                                   const std::optional<SlidingState> &sliding,
@@ -57,7 +57,7 @@ namespace Squeal
   };
 
   /// Prints a summary of the input before the computation: sizes, masses, and expected memory. Warns of implausible values. Throws
-  /// MeshError if the model exceeds the memory, or if the disc is a body of revolution about an axis other than z.
+  /// MeshError if the model exceeds the memory, or if the disc turns about z, but is a body of revolution about another axis.
   void summarise_scene(const Mesh &mesh, Run &run);
 
   /// Meshes the model, checks the mesh and pairs the contact nodes, without assembly. Throws Error if parameters do not fit the mesh.
@@ -75,7 +75,6 @@ namespace Squeal
   /// Assembles the model and linearises it about the requested contact state, as steps of the run.
   Linearisation linearised_scene(Scene &scene, Run &run);
 
-  /// Couples the closed nodes of a state or, without a state, all nodes with equal shares of the load. @p operation determines the contact
-  /// damping.
+  /// Couples the closed nodes of a state or, without a state, all nodes. @p operation determines the contact damping.
   Linearisation linearise(const Scene &scene, const std::optional<SlidingState> &sliding, const OperationParameters &operation);
 } // namespace Squeal

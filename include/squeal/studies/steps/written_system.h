@@ -22,8 +22,8 @@ namespace Squeal
     void name(const std::string &of_terms, FileParameter parameter);
   };
 
-  /// μ and, if the contact state and modal damping do not depend on them, the nonzero constants of materials, mounts, contact springs and
-  /// rotation that are factors of terms, with a range of 0.01 to 100 times their values.
+  /// μ and, without steady sliding and modal damping, the nonzero constants of materials, mounts, contact springs and rotation that are
+  /// factors of terms, with ranges of 0.01 to 100 times their values. With contact damping, the rotation speed is fixed.
   NamedParameters named_parameters(const Linearisation &linearisation, const FileParameter &friction, const Parameters &parameters);
 
   /// Parameters fixed at these values.
@@ -36,7 +36,7 @@ namespace Squeal
   ShapePoints displacements_of_nodes(const Model &model);
 
   /// Writes the coupled system of a mesh as a system file in a folder of the results, as a step of the run: its terms with
-  /// named_parameters(), the bodies as groups of dofs, and the free nodes as points. Only for `Output/Write system = full`.
+  /// named_parameters(), the bodies as groups of dofs, and the nodes that are not clamped as points. Only for `Output/Write system = full`.
   void write_scene_system(const Linearisation &linearisation, const FileParameter &friction, const std::string &folder, Run &run);
 
   /// Assembles the model at the given operation and writes its system like the function above, as steps of the run.

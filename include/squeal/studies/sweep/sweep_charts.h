@@ -15,7 +15,7 @@ namespace Squeal
     {
       main,                ///< operation in the parameter file
       without_dissipation, ///< operation in the parameter file, without radial dissipation
-      map                  ///< operation at another load or speed
+      map                  ///< another load, speed or second parameter
     };
 
     Kind                kind;
@@ -55,11 +55,11 @@ namespace Squeal
     ParameterValues               values; ///< fixed parameters of the system file
     SweepAxis                     axis, second_axis;
     SlidingParameters             sliding_parameters;
-    std::unique_ptr<SlidingModel> sliding; ///< data for all steady sliding states; null: equal shares of the load
+    std::unique_ptr<SlidingModel> sliding; ///< data for all steady sliding states; null without steady sliding
     std::vector<SweepLine>        lines;
     std::vector<ContactRegime>    regimes;
 
-    /// Steady sliding state; empty for equal shares of the load. Throws SolverError if no steady sliding state exists.
+    /// Steady sliding state; empty if Steady sliding/Contact state = equal load. Throws SolverError if no such state exists.
     std::optional<SlidingState> sliding_state(const OperationParameters &operation) const;
 
     StateOfContact state_at(int line, double friction_coefficient) const;
@@ -93,8 +93,8 @@ namespace Squeal
     /// Line and friction coefficient of a point.
     using Place = std::pair<int, double>;
 
-    /// Linearises at the point with the largest contact damping, because the basis starts from the responses to this damping. All arguments
-    /// must outlive the model.
+    /// A meshed model is linearised at the point with the largest contact damping, because the basis starts from the responses to this
+    /// damping. All arguments must outlive the object.
     SweepModel(const SweepPlan &plan, const ContactRegime &regime, Run &run);
 
     /// Creates a reduced model from the undamped modes without friction.
@@ -151,7 +151,7 @@ namespace Squeal
     std::vector<ModeLabel> labels_by_number(const ChartPoint &point, const std::vector<int> &modes) const;
 
     mutable std::optional<ChartPoint> first_point;
-    mutable std::vector<DenseMatrix>  reference_products; ///< products of the component modes with the basis vectors labelled so far
+    mutable std::vector<DenseMatrix>  reference_products; ///< products of the component modes with the basis vectors used so far
   };
 
   /// Indices among n friction coefficients for training a basis: the last, the middle, the quarters and the first.
@@ -159,7 +159,8 @@ namespace Squeal
 
   const OperatingPoint &most_damped(const ContactRegime &regime);
 
-  /// Evaluates all points of the contact set within Sweep/Tolerance, as a step of the run.
+  /// Evaluates the points of the contact set, as a step of the run. With a basis, points whose estimated errors exceed Sweep/Tolerance are
+  /// omitted.
   void evaluate_points(SweepModel &model);
 
   /// Evaluates all known points again with the current basis, which is no longer extended for thresholds. Collective.
@@ -172,11 +173,12 @@ namespace Squeal
    *
    * @param errors receives the largest |λ̂ − λ| / |λ| of the band for every known point
    *
-   * Throws SolverError if the errors exceed the tolerance with every truncation.
+   * Throws SolverError if the sweep has no modes, or if the errors exceed the tolerance with every truncation.
    */
   ReducedModel snapshot_model(SweepModel &model, std::map<SweepModel::Place, double> &errors);
 
-  /// `Output/Write system`: writes the system of a contact set, or its reduced model with the basis, to the folder `system` of the results.
+  /// `Output/Write system`: writes the system of a contact set, or its reduced model with the basis, to the folder `system` of the results,
+  /// or `system_N` for the N-th of several contact sets.
   void write_system_of(SweepModel &model);
 
   /// Modes as functions of the friction coefficient at one load and speed, for one contact set.
@@ -221,6 +223,6 @@ namespace Squeal
 
   Table contact_table(const SweepPlan &plan, std::size_t n_pairs);
 
-  /// Writes tables of the @p charts of each line: branches, counts, thresholds, crossings of the band's end.
+  /// Writes tables of the @p charts of each line: branches, counts, thresholds, band crossings.
   void write_charts(const SweepPlan &plan, const std::vector<std::vector<SweepChart>> &charts, double omega_max, Run &run);
 } // namespace Squeal

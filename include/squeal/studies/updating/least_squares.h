@@ -23,7 +23,7 @@ namespace Squeal
 
   struct Fit
   {
-    std::vector<double> x; ///< best point found, n
+    std::vector<double> x; ///< best point found, n values
     Residuals           residuals;
     bool                has_converged;
     int                 n_iterations;
@@ -35,7 +35,7 @@ namespace Squeal
    * point cannot be computed, the step counts as failed and is shortened.
    *
    * @param start     starting point, at which residuals must exist
-   * @param tolerance limit of |Δx|; its square is the limit of the relative change of |r|²
+   * @param tolerance limit of |Δx| / |x|; its square is the limit of the relative change in |r|²
    */
   Fit least_squares(const ResidualsAt &residuals_at, const std::vector<double> &start, double tolerance, int maximum_iterations);
 
@@ -45,7 +45,7 @@ namespace Squeal
     std::vector<bool>                     is_at_limit;
     std::vector<std::optional<double>>    deviations;   ///< standard deviation of x; empty at a limit or if undetermined
     DenseMatrix                           correlations; ///< n × n; zero for parameters without a deviation
-    std::vector<std::vector<std::size_t>> undetermined; ///< groups of parameters that the data determine only in combination
+    std::vector<std::vector<std::size_t>> undetermined; ///< groups of parameters that the data do not determine individually
   };
 
   /**

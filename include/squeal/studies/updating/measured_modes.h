@@ -82,7 +82,7 @@ namespace Squeal
     double                damping_ratio;                        ///< [-]
     std::vector<double>   frequency_rates, damping_ratio_rates; ///< derivatives per unit of each parameter
     std::string           label;                                ///< label of the mode, or of the first of several modes
-    std::optional<double> mac;                                  ///< MAC of the shapes at the sensors [-]
+    std::optional<double> mac;                                  ///< MAC with the measured shape [-]; empty without measured shape
   };
 
   /// Finds the counterpart of a measured mode. Throws SolverError if no mode of the state has the label or a similar shape, or if the
