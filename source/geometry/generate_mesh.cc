@@ -160,7 +160,7 @@ namespace Squeal
       return parameters;
     }
 
-    /// Checks the minimum memory of any study.
+    /// Checks the memory that every study needs.
     void check_least_memory(ProblemSize size, const std::string &where, const MPI_Comm communicator)
     {
       constexpr double no_modes = 0.;

@@ -325,7 +325,7 @@ namespace Squeal
                                                    const Mesh::Point              &point)
   {
     constexpr int         max_steps  = 20;
-    constexpr double      negligible = 5e-9, far = 0.75; // below 1, the distance of neighbouring nodes of a regular grid
+    constexpr double      negligible = 5e-9, far = 0.75; // far is below 1, the distance of neighbouring nodes of a regular grid
     const ShapeFunctions &functions = ShapeFunctions::of(shape, degree);
     Mesh::Point           xi        = reference_centre(shape);
     for (int step = 0; step <= max_steps && least_depth(shape, xi) > -far; ++step)

@@ -37,7 +37,7 @@ namespace Squeal
       return shape == Shape::tetrahedron ? tetrahedron : shape == Shape::pyramid ? pyramid : shape == Shape::wedge ? wedge : hexahedron;
     }
 
-    /// Triple product of the three normalised edges at each corner; 0 if an edge has no length.
+    /// Triple product of the three normalised edges at each corner, relative to a regular cell; 0 if an edge has no length.
     std::vector<double> scaled_jacobians(const Mesh &mesh, const Mesh::Cell &cell)
     {
       const CornerEdges  &corners = corner_edges(cell.shape);
