@@ -44,7 +44,7 @@ namespace Squeal
 
     double largest_error() const;
 
-    /// Correct decimal digits of all eigenvalues of the band: −log₁₀ of the largest error, at least 0.
+    /// Estimated number of correct decimal digits of all eigenvalues in the band: −log₁₀ of the largest error, at least 0.
     double digits() const;
   };
 
