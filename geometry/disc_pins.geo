@@ -83,7 +83,7 @@ For ring In {0 : 1}
   loop~{ring} = newll; Curve Loop(loop~{ring}) = {c : c + 2};
 EndFor
 
-// Position of a hole: position of its pin, or midpoint of the two pins of a pair
+// Position of a hole: position of its pin or, for a pair of pins, mean radius in the direction of the midpoint
 For pin In {1 : n_pins}
   other = twin~{pin};
   hole_x~{pin} = x~{pin};

@@ -100,7 +100,7 @@ namespace Squeal
         throw MeshError("Gmsh did not finish within " + exact_text(limits.seconds) + " s", where,
                         "use larger elements, remove endless loops from the geometry, or raise Geometry/Meshing time limit");
       if (WIFSIGNALED(status) && WTERMSIG(status) == SIGSYS)
-        throw ForbiddenAction("starts a program, writes a file or opens a connection");
+        throw ForbiddenAction("starts a program, changes files or opens a connection");
       if (WIFSIGNALED(status))
         {
           // Gmsh 4.13 prints this message and crashes; 4.8 throws std::bad_alloc

@@ -70,9 +70,9 @@ namespace Squeal
   };
 
   /**
-   * Contact nodes of pairs of surfaces: pairs of nodes if every node of the pins has a disc node within @p tolerance [m] and vice versa,
-   * else by mortar(). The normal of a node pair is the area average over the adjacent contact faces of the disc; for a mortar node, the
-   * average is over the faces of the pin. t is the direction of the velocity in the tangent plane.
+   * Contact nodes of pairs of surfaces: node pairs if each node of the pins has its own disc node within @p tolerance [m] and vice versa;
+   * mortar nodes otherwise, see mortar(). The normal of a node pair is the area average over the adjacent contact faces of the
+   * disc; for a mortar node, the average is over the faces of the pin. t is the direction of the velocity in the tangent plane.
    *
    * Throws MeshError if a contact node is clamped, tied or in two pairs; if its velocity is zero, not finite or normal to the face; if too
    * little of a body's face is opposite the disc; or if mortar() fails.

@@ -30,8 +30,8 @@ namespace Squeal
   };
 
   /**
-   * Travel of each component: e = −N/|N|, N = Σ area n over its contact nodes. Within 45 degrees of the disc's axis, backplates are guided
-   * along the axis.
+   * Travel of each component: e = −N/|N|, N = Σ area n over its contact nodes. If e is within 45 degrees of the disc's axis, the backplate
+   * is guided along the axis.
    *
    * Throws MeshError if a body has no direction of travel: some of its contact nodes face perpendicular to it or away from it, for
    * example if the body touches both faces of the disc.

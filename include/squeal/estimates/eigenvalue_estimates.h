@@ -14,7 +14,7 @@ namespace Squeal
   /// Error estimates for λ of reduced eigentriples from their full-order residuals; see estimate_eigenvalues().
   struct EigenvalueEstimates
   {
-    std::vector<std::complex<double>> corrections;   ///< δλ; λ + δλ is more accurate than λ [rad/s]
+    std::vector<std::complex<double>> corrections;   ///< δλ; λ + δλ is usually more accurate than λ [rad/s]
     std::vector<double>               errors;        ///< |δλ| / |λ| [-]
     std::vector<double>               conditions;    ///< κ [-]
     std::vector<bool>                 claimed;       ///< true if κ is moderate and the mode cannot coalesce: δλ is meaningful

@@ -56,7 +56,7 @@ namespace Squeal
    * selection.) For clusters of reference modes, chains with |λ_i − λ_j| ≤ @p cluster_tolerance |λ_i|, individual MAC-M are not
    * meaningful. Reduced modes are then ranked by their share in the span of the cluster, and angles between the subspaces are given in
    * addition to ε_mac, all in the complex M-inner product. A reference mode that a poor basis does not represent gets the best match within
-   * 30 % of its λ.
+   * 30 % of its λ, if there is one.
    *
    * @param mass      M
    * @param modes     computed with BandEnd::open; otherwise modes near the end of the band may lack counterparts

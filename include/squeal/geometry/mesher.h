@@ -15,7 +15,7 @@ namespace Squeal
   {
     double seconds;     ///< wall time [s]
     double bytes;       ///< address space [byte]
-    bool   is_confined; ///< forbids programs, file output and network connections, if the system supports this
+    bool   is_confined; ///< forbids starting programs, changing files and opening connections, if the system supports this
   };
 
   /// Error: a confined process attempted a forbidden action.

@@ -127,7 +127,7 @@ namespace Squeal
     double       sliding_offset;   ///< offset of the centre of pressure from the centre of the face along t [m]
     double       radial_offset;    ///< offset in the outward direction, or along the axis if side = 0 [m]
     double       largest_pressure; ///< largest −r_n / area of the node [Pa]
-    double       sliding_speed;    ///< w_0 at the centre of pressure [m/s]
+    double       sliding_speed;    ///< mean of w_0, weighted by the load [m/s]
     double       radial_damping;   ///< Σ c_b [N s/m]
     double       sliding_damping;  ///< Σ c_t [N s/m]
     double       approach;         ///< travel of the backplate [m]
