@@ -78,7 +78,7 @@ namespace Squeal
       if (!is_script(geometry))
         return {geometry, "", {}};
       MesherInput input{geometry, driver(parameters), {}};
-      // Include the geometry if possible: Gmsh ignores the last line of an opened file without a final line break
+      // Include the geometry if possible: Gmsh ignores the last line of an opened file if this line has no line break
       if (can_be_included(geometry))
         {
           input.script += "Include \"" + geometry + "\";\n";

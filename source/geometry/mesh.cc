@@ -356,7 +356,7 @@ namespace Squeal
     const auto xi = reference_coordinates(cell.shape, 1, corners, point);
     if (!xi)
       return {};
-    // Outside the cell, where the map may be singular, use the nearest point of the cell
+    // Outside the cell, where the map may be singular, use an approximately nearest point of the cell
     const ShapeFunctions &functions = ShapeFunctions::of(cell.shape, 1);
     Depth                 depth{least_depth(cell.shape, *xi), std::numeric_limits<double>::infinity()};
     if (depth.relative < 0.)

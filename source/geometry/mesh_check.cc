@@ -301,7 +301,7 @@ namespace Squeal
                         "give this name to a surface (in a plan, to a curve), or correct the name in section Contact, Mounts or Steady "
                         "sliding");
 
-    // Named faces must be outer faces of the matching volumes
+    // Named faces must be outer faces, and standard names must be on the matching bodies
     const std::vector<CellFace> faces = all_faces(mesh);
     for (const Mesh::Face &face : mesh.faces)
       {

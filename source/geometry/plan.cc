@@ -182,7 +182,7 @@ namespace Squeal
         centres[group.name] = {point[0], point[1]};
       }
 
-      /// Fills each hole once, for one pin or for two opposite pins
+      /// Fills each hole once, for one pin or for a top and a bottom pin.
       void fill_holes()
       {
         const std::set<Plan::Edge>                outline = sorted_edges(boundary_edges(plan.faces));

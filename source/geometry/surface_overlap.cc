@@ -271,8 +271,8 @@ namespace Squeal
     };
 
     /// Quadrature rule. On straight triangles, products of functions are polynomials of degree 4 at most, and the rule is exact. On
-    /// distorted quadrilaterals and curved triangles, functions are not polynomials of the position: with 28 points, the nodal forces of a constant
-    /// pressure have errors of 1e-13 if corners are shifted by 10 % of the element, and of 1e-10 for 20 %.
+    /// distorted quadrilaterals and curved triangles, functions are not polynomials of the position: with 28 points, the nodal forces of a
+    /// constant pressure have errors of 1e-13 if corners are shifted by 10 % of the element, and of 1e-10 for 20 %.
     const std::vector<QuadraturePoint> &rule(const bool are_affine)
     {
       static const auto polynomials = quadrature(Shape::triangle, 2), others = quadrature(Shape::triangle, 5);

@@ -86,8 +86,8 @@ namespace Squeal
       return result;
     }
 
-    /// Problem condensed to the contact nodes. Its motions are those of the backplates, then the free @p motions; @p pressing: forces of a
-    /// pressure.
+    /// Problem condensed to the contact nodes. Its motions are the travel of the backplates, followed by the free @p motions;
+    /// @p pressing: forces of a pressure.
     ContactProblem contact_problem(const SlidingModel               &sliding,
                                    const Backplates                 &plates,
                                    const Eigen::VectorXd            &gaps,
