@@ -14,7 +14,7 @@ DefineConstant[
   pad_angle         = 50
 ];
 
-// Squeal halves every element after meshing.
+// Every element is halved after meshing.
 size = 2 * element_size;
 Mesh.RecombineAll         = 1;
 Mesh.SubdivisionAlgorithm = 1;
@@ -37,7 +37,7 @@ For ring In {0 : 1}
   loop~{ring} = newll; Curve Loop(loop~{ring}) = {c : c + 2};
 EndFor
 
-// Pad; its curves bound the surfaces of disc and pads, so that their faces coincide
+// Pad: disc and pad share its curves, so that their faces coincide
 a = pad_angle * Pi / 360;
 p = newp;
 Point(p)     = {pad_inner_radius * Cos(a), -pad_inner_radius * Sin(a), 0, size};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 // Plan of the built-in geometry: an annular disc and round pins on its two faces. Squeal meshes this plan in two
-// dimensions, fills the pins' circles with a structured grid and extrudes disc and pins layer by layer. It sets the
+// dimensions, fills the pins' circles with a structured grid and extrudes disc and pins layer by layer. Squeal sets the
 // values below from section "Geometry" of the parameter file. If the file is opened in Gmsh, it shows the plan with
 // these values. Units: m, degree.
 
@@ -83,7 +83,7 @@ For ring In {0 : 1}
   loop~{ring} = newll; Curve Loop(loop~{ring}) = {c : c + 2};
 EndFor
 
-// Position of a hole: position of its pin, or midpoint of the two pins of a pair
+// Position of a hole: position of its pin or, for a pair of pins, mean radius in the direction of the midpoint
 For pin In {1 : n_pins}
   other = twin~{pin};
   hole_x~{pin} = x~{pin};
@@ -101,9 +101,8 @@ For pin In {1 : n_pins}
   EndIf
 EndFor
 
-// Separate holes that overlap because a pin overlaps two pins of the other side, and holes of pins on different sides
-// without enough space for elements between them, because halving a circle of three intervals moves nodes by half its
-// radius.
+// Separate holes that overlap because a pin overlaps two pins of the other side. Also separate holes of pins on
+// different sides if no elements fit between them: halving a circle of three intervals moves nodes by half its radius.
 closest = (k > 1) ? 1.05 : 1.25;
 least   = disc_inner_radius + 0.55 * pin_diameter;
 most    = disc_outer_radius - 0.55 * pin_diameter;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 // Plan of a ring-shaped disc and a pad on its upper face that covers the whole circumference between the mean radius
-// and the rim, so that waves along the contact do not reach an edge. element_size is the length of the elements along
-// the mean circle. Units: m.
+// and the rim, so that waves along the contact do not reach an edge. element_size is the largest length of the
+// elements along the mean circle. Units: m.
 
 DefineConstant[
   disc_inner_radius = 0.0055,
@@ -10,7 +10,7 @@ DefineConstant[
   element_size      = 0.0024
 ];
 
-// Squeal halves every element after meshing
+// Every element is halved after meshing
 mean_radius         = (disc_inner_radius + disc_outer_radius) / 2;
 elements_of_quarter = Ceil(Pi / 4 * mean_radius / element_size);
 

@@ -289,7 +289,7 @@ namespace Squeal
           if (!known.insert(node.pin_node.number).second)
             throw MeshError("a node of " + pair.pin + " is in contact twice",
                             "parameter Contact/Pairs, contact node at " + place(node.position),
-                            "use every face of a body in one pair only");
+                            "use every face of a body in one pair only, and keep elements between faces of different pairs");
         result.interface.insert(result.interface.end(), found.interface.begin(), found.interface.end());
         result.notes.insert(result.notes.end(), found.notes.begin(), found.notes.end());
       }

@@ -61,7 +61,7 @@ namespace Squeal
       return result;
     }
 
-    /// Sets mass and stiffness from the symmetric frictionless terms; both stay null if either has no such term.
+    /// Sets mass and stiffness from the symmetric frictionless terms; both are null if either has no such term.
     void set_symmetric_parts(CoupledSystem &system)
     {
       const auto has_part = [&](const int power) {

@@ -39,7 +39,7 @@ namespace Squeal
       return result;
     }
 
-    /// Contact nodes that face away from the travel of their body.
+    /// Contact nodes that do not face in the direction of travel of their body.
     std::vector<const ContactNode *> facing_away(const std::vector<Travel> &travels, const ContactInterface &interface)
     {
       std::vector<const ContactNode *> result;

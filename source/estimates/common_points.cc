@@ -50,7 +50,7 @@ namespace Squeal
       unsigned int body(const std::string &name) const;
 
       /// Cell of a body that contains a point. For a point outside the body, for example between two polygonal outlines,
-      /// PointSearch::nearest returns the closest point in the nearest cells, with reference coordinates clipped to the cell.
+      /// PointSearch::nearest returns an approximately closest point in the nearest cells, with reference coordinates clipped to the cell.
       PointInCell find(unsigned int body, const Point<3> &point, PointSearch search) const;
 
     private:

@@ -12,7 +12,7 @@ namespace Squeal
   {
     using Complex = std::complex<double>;
 
-    /// Condition number above which no estimates are given [-].
+    /// Condition number above which δλ is not meaningful [-].
     constexpr double largest_condition = 1e3;
 
     /// ψ_jᵀ A φ_j (without conjugation) for every column.

@@ -45,7 +45,7 @@ namespace Squeal
       EigenvalueEstimates estimates;
     };
 
-    /// All eigenvalues within the radius of the band at one friction coefficient: oscillating modes, then modes with real eigenvalues.
+    /// Eigenvalues in the band (Band::lists()) at one friction coefficient: oscillating modes, then modes with real eigenvalues.
     using State = std::vector<AssessedModes>;
 
     /// Largest estimated error; NaN if any is NaN.

@@ -78,7 +78,7 @@ namespace Squeal
       if (!is_script(geometry))
         return {geometry, "", {}};
       MesherInput input{geometry, driver(parameters), {}};
-      // Include the geometry if possible: Gmsh ignores the last line of an opened file without a final line break
+      // Include the geometry if possible: Gmsh ignores the last line of an opened file if this line has no line break
       if (can_be_included(geometry))
         {
           input.script += "Include \"" + geometry + "\";\n";
@@ -160,7 +160,7 @@ namespace Squeal
       return parameters;
     }
 
-    /// Checks the minimum memory of any study.
+    /// Checks the memory that every study needs.
     void check_least_memory(ProblemSize size, const std::string &where, const MPI_Comm communicator)
     {
       constexpr double no_modes = 0.;

@@ -325,7 +325,7 @@ namespace Squeal
                                                    const Mesh::Point              &point)
   {
     constexpr int         max_steps  = 20;
-    constexpr double      negligible = 5e-9, far = 0.75; // below 1, the distance of neighbouring nodes of a regular grid
+    constexpr double      negligible = 5e-9, far = 0.75; // far is below 1, the distance of neighbouring nodes of a regular grid
     const ShapeFunctions &functions = ShapeFunctions::of(shape, degree);
     Mesh::Point           xi        = reference_centre(shape);
     for (int step = 0; step <= max_steps && least_depth(shape, xi) > -far; ++step)
@@ -356,7 +356,7 @@ namespace Squeal
     const auto xi = reference_coordinates(cell.shape, 1, corners, point);
     if (!xi)
       return {};
-    // Outside the cell, where the map may be singular, use the nearest point of the cell
+    // Outside the cell, where the map may be singular, use an approximately nearest point of the cell
     const ShapeFunctions &functions = ShapeFunctions::of(cell.shape, 1);
     Depth                 depth{least_depth(cell.shape, *xi), std::numeric_limits<double>::infinity()};
     if (depth.relative < 0.)

@@ -37,7 +37,7 @@ namespace Squeal
       return shape == Shape::tetrahedron ? tetrahedron : shape == Shape::pyramid ? pyramid : shape == Shape::wedge ? wedge : hexahedron;
     }
 
-    /// Triple product of the three normalised edges at each corner; 0 if an edge has no length.
+    /// Triple product of the three normalised edges at each corner, relative to a regular cell; 0 if an edge has no length.
     std::vector<double> scaled_jacobians(const Mesh &mesh, const Mesh::Cell &cell)
     {
       const CornerEdges  &corners = corner_edges(cell.shape);
@@ -301,7 +301,7 @@ namespace Squeal
                         "give this name to a surface (in a plan, to a curve), or correct the name in section Contact, Mounts or Steady "
                         "sliding");
 
-    // Named faces must be outer faces of the matching volumes
+    // Named faces must be outer faces, and standard names must be on the matching bodies
     const std::vector<CellFace> faces = all_faces(mesh);
     for (const Mesh::Face &face : mesh.faces)
       {

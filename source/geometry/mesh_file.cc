@@ -65,8 +65,8 @@ namespace Squeal
           const auto type = std::find_if(std::begin(element_types), std::end(element_types),
                                          [&, &wanted = name](const ElementType &known) { return known.name == wanted; });
           if (type == std::end(element_types))
-            throw MeshError("'" + group.name + "' has elements of the unsupported type '" + name + "' (" + std::to_string(elements.size()) +
-                              ")",
+            throw MeshError("'" + group.name + "' has elements of the unsupported type '" + name +
+                              "' (number: " + std::to_string(elements.size()) + ")",
                             where, "mesh the volumes with tetrahedra, pyramids, prisms or hexahedra of first or second order");
           for (const GmshMesh::Element &element : elements)
             all.emplace(element.tag, GroupElement{type, Mesh::Nodes(element.nodes.begin(), element.nodes.end()),

@@ -70,7 +70,7 @@ namespace Squeal
       return line;
     }
 
-    /// The end of Gmsh's output, starting at the first error.
+    /// Up to `quoted_lines` lines of Gmsh's output: from the first error, or the last lines.
     std::string quoted(const std::string &log)
     {
       std::istringstream       stream(log);
@@ -100,7 +100,7 @@ namespace Squeal
         throw MeshError("Gmsh did not finish within " + exact_text(limits.seconds) + " s", where,
                         "use larger elements, remove endless loops from the geometry, or raise Geometry/Meshing time limit");
       if (WIFSIGNALED(status) && WTERMSIG(status) == SIGSYS)
-        throw ForbiddenAction("starts a program, writes a file or opens a connection");
+        throw ForbiddenAction("starts a program, changes files or opens a connection");
       if (WIFSIGNALED(status))
         {
           // Gmsh 4.13 prints this message and crashes; 4.8 throws std::bad_alloc
@@ -109,7 +109,8 @@ namespace Squeal
           throw MeshError(std::string("Gmsh crashed (") + strsignal(WTERMSIG(status)) + "). " + quoted(log), where,
                           text(repair, ", or use larger elements if the machine ran out of memory"));
         }
-      throw MeshError("Gmsh ended before the mesh was complete. " + quoted(log), where, "remove Exit and Abort from the geometry");
+      throw MeshError("Gmsh ended before the mesh was complete. " + quoted(log), where,
+                      "remove Exit and Abort from the geometry, or repair the installation if the log names a missing library");
     }
 
     GmshMesh mesh_from(const std::string &reply, const std::string &log, const MesherLimits &limits, const std::string &where)

@@ -24,8 +24,8 @@ namespace Squeal
     /// Largest mean cosine between the normals of opposite surfaces [-].
     constexpr double largest_cosine = -0.5;
 
-    /// Largest gap and largest gap without a note, relative to the mean size of the slave faces [-]. Chords of curved faces cause smaller
-    /// gaps than the second limit.
+    /// Largest admissible gap and largest gap without a note, relative to the mean size of the slave faces [-]. Chords of curved
+    /// faces usually cause smaller gaps than the second limit.
     constexpr double touching_gap = 0.5, noted_gap = 0.05;
 
     /// Ratio of slave to master face sizes above which the slave pressure oscillates [-].

@@ -136,8 +136,8 @@ namespace Squeal
         for (const auto &[type, elements] : group.elements)
           {
             if (type != "Quadrilateral 4")
-              throw MeshError("Surface '" + group.name + "' has elements of the unsupported type '" + type + "' (" +
-                                std::to_string(elements.size()) + ")",
+              throw MeshError("Surface '" + group.name + "' has elements of the unsupported type '" + type +
+                                "' (number: " + std::to_string(elements.size()) + ")",
                               where, "mesh the plan with four-node quadrilaterals, which are extruded to hexahedra");
             for (const GmshMesh::Element &element : elements)
               faces.push_back(add_face(element));
@@ -182,7 +182,7 @@ namespace Squeal
         centres[group.name] = {point[0], point[1]};
       }
 
-      /// Fills each hole once, for one pin or for two opposite pins
+      /// Fills each hole once, for one pin or for a top and a bottom pin.
       void fill_holes()
       {
         const std::set<Plan::Edge>                outline = sorted_edges(boundary_edges(plan.faces));

@@ -38,7 +38,7 @@ namespace Squeal
     // Sine of a corner angle below which a face is bad: well above the limit of check_mesh(), and below the values in regular plans
     constexpr double least_sine = 0.1;
 
-    // Rows of faces around bad faces that also move; there are more rows between neighbouring pins
+    // Number of rows of faces around bad faces whose nodes also move
     constexpr int n_rings = 6;
 
     constexpr int    max_untangling_sweeps = 100; ///< ε has its smallest value during a third of the sweeps
@@ -216,7 +216,7 @@ namespace Squeal
 
   namespace
   {
-    // Faces above this quality (a rectangle of sides 1 : 3, or an angle of 37°) are not changed
+    // Nodes do not move if all adjacent faces have at least this quality (a rectangle of sides 1 : 3, or an angle of 37°)
     constexpr double good_shape = 0.6;
     constexpr int    max_sweeps = 100;
 
@@ -384,7 +384,7 @@ namespace Squeal
         smooth(plan.faces, outline, points);
       }
 
-    // Only round pins may also rotate about their centres
+    // Round pins may also rotate about their centres
     std::vector<TurningPart> parts;
     for (const Plan::Pin &pin : plan.pins)
       if (pin.side == side && pin.is_round)

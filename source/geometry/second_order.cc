@@ -23,7 +23,7 @@ namespace Squeal
     /// Largest relative difference of the distances of a face's corners from the axis [-].
     constexpr double round_within = 1e-6;
 
-    /// Points at smaller distances coincide [m]. The limit is relative to the mesh size and far below any element size.
+    /// Points at smaller distances coincide [m]. The limit is relative to the mesh size and far below the element size.
     double resolution(const std::vector<Point<3>> &points)
     {
       const auto [lower, upper] = dealii::BoundingBox<3>(points).get_boundary_points();

@@ -92,7 +92,7 @@ namespace Squeal
       return result;
     }
 
-    /// An element of degree 1, or a quarter of an element of degree 2.
+    /// An element of degree 1, a quarter of an element of degree 2, or half of either if it is not convex.
     struct Facet
     {
       unsigned int          element;
@@ -270,9 +270,9 @@ namespace Squeal
       Vector2d          r; ///< reference coordinates of the last position
     };
 
-    /// Quadrature rule. On straight triangles, products of functions are polynomials of degree 4, and the rule is exact. On distorted
-    /// quadrilaterals and curved triangles, functions are not polynomials of the position: with 28 points, the nodal forces of a constant
-    /// pressure have errors of 1e-13 if corners are shifted by 10 % of the element, and of 1e-10 for 20 %.
+    /// Quadrature rule. On straight triangles, products of functions are polynomials of degree 4 at most, and the rule is exact. On
+    /// distorted quadrilaterals and curved triangles, functions are not polynomials of the position: with 28 points, the nodal forces of a
+    /// constant pressure have errors of 1e-13 if corners are shifted by 10 % of the element, and of 1e-10 for 20 %.
     const std::vector<QuadraturePoint> &rule(const bool are_affine)
     {
       static const auto polynomials = quadrature(Shape::triangle, 2), others = quadrature(Shape::triangle, 5);

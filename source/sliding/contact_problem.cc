@@ -121,7 +121,7 @@ namespace Squeal
         return result;
       }
 
-      /// Closes the node nearest to the disc for each backplate without closed nodes.
+      /// Closes the node with the smallest gap for each equation of equilibrium without closed nodes.
       void support_backplates(std::vector<bool> &closed, const std::vector<double> &gaps) const
       {
         for (int k = 0; k < problem.balance.rows(); ++k)

@@ -65,9 +65,9 @@ namespace Squeal
         throw ParameterError(what, "parameter Steady sliding/Pressed faces, surface " + name, change);
       };
       if (face.of_disc > 0.)
-        refuse("the pressed face is on the disc", "use faces of the bodies that are pressed against the disc");
+        refuse("the pressed face includes faces of the disc", "use faces of the bodies that are pressed against the disc");
       if (face.in_contact > 0.)
-        refuse("the pressed face is in contact with the disc", "use the back of the body");
+        refuse("the pressed face includes faces in contact with the disc", "use the back of the body");
       if (face.clamped > 0.)
         refuse("the pressed face has clamped nodes, and the clamp would carry the load",
                "instead of pin_clamp, use Mounts/Elastic mounts without stiffness in the direction of the load");

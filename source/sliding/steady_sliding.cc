@@ -38,7 +38,7 @@ namespace Squeal
     }
 
     /// Distances of a node from the centre of its face [m]: along t, and outwards. The second distance is along the axis for contact with a
-    /// rim, and along b if the disc does not turn about z.
+    /// rim, and along b if the disc does not rotate about z.
     std::pair<double, double> offsets(const ContactNode &node, const Eigen::Vector3d &centre, const Travel &travel)
     {
       return {node.sliding.dot(node.position - centre), !node.turns      ? node.radial.dot(node.position - centre) :
@@ -86,8 +86,8 @@ namespace Squeal
       return result;
     }
 
-    /// Problem condensed to the contact nodes. Its motions are those of the backplates, then the free @p motions; @p pressing: forces of a
-    /// pressure.
+    /// Problem condensed to the contact nodes. Its motions are the travel of the backplates, followed by the free @p motions;
+    /// @p pressing: forces of a pressure.
     ContactProblem contact_problem(const SlidingModel               &sliding,
                                    const Backplates                 &plates,
                                    const Eigen::VectorXd            &gaps,
@@ -288,8 +288,8 @@ namespace Squeal
         const unsigned int pin    = interface[c].pin;
         const double       height = heights[pin];
         if (std::abs(gaps[c]) >= height)
-          throw ParameterError("the gap of " + exact_text(gaps[c]) + " m is not smaller than the height of the pin, " + exact_text(height) +
-                                 " m",
+          throw ParameterError("in magnitude, the gap of " + exact_text(gaps[c]) + " m is not smaller than the height of the pin, " +
+                                 exact_text(height) + " m",
                                "parameter Steady sliding/Gaps, pin " + model.component_names()[pin],
                                "give smaller gaps or tapers, in metres (1e-5 is 10 micrometres)");
         double &of_plate = smallest[plates.of_pin[pin]];

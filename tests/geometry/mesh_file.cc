@@ -129,7 +129,7 @@ TEST(MeshFile, OtherElementsAreRefused)
   };
   expect_mentions(refusal({complete[0], {"Hexahedron 8", "disc", Shape::hexahedron, 1, 8}}),
                   {"different orders", "'Tetrahedron 10' and 'Hexahedron 8'", "here"});
-  expect_mentions(refusal({{"Tetrahedron 20", "disc", Shape::tetrahedron, 1, 4}}), {"unsupported type 'Tetrahedron 20' (1)"});
+  expect_mentions(refusal({{"Tetrahedron 20", "disc", Shape::tetrahedron, 1, 4}}), {"unsupported type 'Tetrahedron 20' (number: 1)"});
 }
 
 TEST(MeshFile, TetrahedraOfGmshAreReadAndWritten)

@@ -53,7 +53,7 @@ TEST(Mesher, ConfinesGmsh)
   };
   for (const std::string statement : {"SystemCall \"true\";", "NonBlockingSystemCall \"true\";", "Printf(\"x\") > \"trace\";",
                                       "Save \"trace.msh\";", "CreateDir \"trace\";"})
-    expect_mentions(attempt(statement), {"starts a program, writes a file or opens a connection"});
+    expect_mentions(attempt(statement), {"starts a program, changes files or opens a connection"});
 
   // System calls run if allowed
   const File file("script.geo", "");

@@ -255,8 +255,8 @@ TEST(PressedFaces, Refusals)
     expect_refusal([&] { scene.solve(parameters); }, parts);
   };
   expect(s, pressed({"pad_bck"}), {"no surface named `pad_bck`", "pad_back"});
-  expect(s, pressed({"disc_bore"}), {"is on the disc", "Steady sliding/Pressed faces, surface disc_bore"});
-  expect(s, pressed({"pin_contact"}), {"is in contact with the disc"});
+  expect(s, pressed({"disc_bore"}), {"includes faces of the disc", "Steady sliding/Pressed faces, surface disc_bore"});
+  expect(s, pressed({"pin_contact"}), {"includes faces in contact with the disc"});
   expect(held, pressed({"pin_clamp"}), {"has clamped nodes"});
   expect(free, pressed(), {"nothing holds pin_pad against the friction forces"});
   SlidingParameters moved = pressed({});

@@ -35,8 +35,8 @@ namespace Squeal
     Eigen::Vector3d normal;    ///< n: outward unit normal of the disc
     Eigen::Vector3d sliding;   ///< t: direction in which the disc moves relative to the pin
     Eigen::Vector3d radial;    ///< b = n × t
-    double          lever;     ///< |v| = w_0 / Ω [m]: distance from the axis if the disc turns about z
-    bool            turns;     ///< the disc turns about z
+    double          lever;     ///< |v| = w_0 / Ω [m]: distance from the axis if the disc rotates about z
+    bool            turns;     ///< true if the disc rotates about z
     double          area;      ///< share of the contact area [m²]
     double          friction;  ///< friction factor of the pair of surfaces: multiplies the friction coefficient [-]
     unsigned int    pair;      ///< number of the pair of surfaces
@@ -70,9 +70,9 @@ namespace Squeal
   };
 
   /**
-   * Contact nodes of pairs of surfaces: pairs of nodes if every node of the pins has a disc node within @p tolerance [m] and vice versa,
-   * else by mortar(). The normal of a node pair is the area average over the adjacent contact faces of the disc; for a mortar node, the
-   * average is over the faces of the pin. t is the direction of the velocity in the tangent plane.
+   * Contact nodes of pairs of surfaces: node pairs if each node of the pins has its own disc node within @p tolerance [m] and vice versa;
+   * mortar nodes otherwise, see mortar(). The normal of a node pair is the area average over the adjacent contact faces of the
+   * disc; for a mortar node, the average is over the faces of the pin. t is the direction of the velocity in the tangent plane.
    *
    * Throws MeshError if a contact node is clamped, tied or in two pairs; if its velocity is zero, not finite or normal to the face; if too
    * little of a body's face is opposite the disc; or if mortar() fails.
@@ -82,8 +82,8 @@ namespace Squeal
   /**
    * Viscous contact damping of each node [N s/m] in a state with reactions R_n0:
    *
-   *   along b  c_b = μ |R_n0| / w_0 (consistent) or |R_n0| / w_0 (published), w_0 = Ω |v|;  zeros for `none`
-   *   along t  c_t = |R_n0| dμ/dw / f, for rows f t·(u_D − u_P) of P_t, f the friction factor of the pair
+   *   along b  c_b = μ f |R_n0| / w_0 (consistent) or |R_n0| / w_0 (published), w_0 = Ω |v|;  zeros for `none`
+   *   along t  c_t = |R_n0| dμ/dw / f, for rows f t·(u_D − u_P) of P_t, with the friction factor f of the pair
    */
   std::vector<double> radial_dissipation(const ContactInterface    &interface,
                                          const std::vector<double> &reactions,

@@ -12,7 +12,7 @@
 
 namespace Squeal
 {
-  /// Compliant contact of a pair of surfaces, with springs k: r_n = −k diag(D) P_n, D the areas of the contact nodes.
+  /// Compliant contact of a pair of surfaces, with springs k: r_n = −k diag(D) P_n u, with the areas D of the contact nodes.
   struct ContactSpring
   {
     std::string                         name;      ///< name of its parameter
@@ -33,11 +33,11 @@ namespace Squeal
    *
    *   S P_nᵀ = I,   S P_tᵀ = 0,   S P_bᵀ = 0,   r_n = S (λ² M + λ C + K) u.
    *
-   * Any S with these properties gives the same eigenvalues. For node pairs, S = ½ P_n, because P_n P_nᵀ = 2 I. For mortar nodes, S is a
-   * weighted sum of the forces on the nodes of the pin.
+   * Any S with these properties gives the same eigenvalues. If all contact nodes are node pairs, S = ½ P_n, because P_n P_nᵀ = 2 I.
+   * Otherwise, S is a weighted sum of the forces on the nodes of the pin.
    *
-   * T_c eliminates the displacement component of each pin node that is closest to the normal; if the normal is a coordinate axis, T_c
-   * selects dofs.
+   * T_c eliminates the displacement component of each rigid contact node of a pin that is closest to the normal. For node pairs whose
+   * normal is a coordinate axis, T_c selects dofs.
    */
   struct ContactOperators
   {
@@ -70,8 +70,8 @@ namespace Squeal
     sliding ///< fixed along n, free in the tangent plane
   };
 
-  /// Basis of the admissible displacements of a component, n × n_component; the other component is at rest. It selects the dofs of the
-  /// component; with `sliding`, n·u = 0 at its contact nodes, on the disc at every node that occurs in a contact constraint.
+  /// Basis of the admissible displacements of a component, n × n_component; the other component is at rest. The basis selects the dofs of
+  /// the component. With `sliding`, n·u = 0 at its contact nodes; on the disc, these are all nodes that occur in a contact constraint.
   std::shared_ptr<SparseMatrix> component_kernel(const Model            &model,
                                                  const ContactInterface &interface,
                                                  Component               component,

@@ -53,7 +53,7 @@ namespace Squeal
   {
     std::vector<Term>                   terms;
     ParameterValues                     values;                             ///< values of all parameters, with μ = 0
-    std::string                         varied = SystemParameter::friction; ///< parameter over which charts follow the modes
+    std::string                         varied = SystemParameter::friction; ///< parameter that varies in charts
     std::shared_ptr<const SparseMatrix> mass, stiffness;                    ///< M_c and K_c, n × n: the symmetric terms without friction
     double hidden_square = 0.; ///< |λ|² up to this value counts as zero: rounding errors of K_c, see unresolved_square() [rad²/s²]
     std::shared_ptr<const LowRankFactor> friction_forces; ///< A, n × n_c
@@ -71,12 +71,12 @@ namespace Squeal
     /// Parameter values with @p value for the varied parameter (μ for a mesh) and the values @p others for other parameters.
     ParameterValues at(double value, const ParameterValues &others = {}) const;
 
-    /// True if there is damping at μ = 0.
+    /// True if there is damping at the parameter `values`.
     bool has_damping() const;
   };
 
   /// C_f = P_bᵀ diag(c_b) P_b + P_tᵀ diag(c_t) P_t [N s/m] on the uncoupled dofs; null if all coefficients vanish. If μ(w) falls with the
-  /// sliding speed, c_t = μ'(w_0) |R_n0| is negative.
+  /// sliding speed, c_t is negative.
   std::shared_ptr<const SparseMatrix> contact_damping(const ContactOperators &contact, const ContactDamping &damping);
 
   /// A term of the coupled bodies, and its contribution V to the normal reactions, n_c × n; null: none.

@@ -16,7 +16,7 @@ namespace Squeal
    * diagonal of K + ω² M is about one (zero diagonal entries are replaced by the largest entry of the row). Results then do not depend on
    * the units of the dofs, and matrices may be badly scaled. D is the kernel of the system.
    *
-   * Low-rank friction terms that are linear in a varied parameter μ and share a left factor are kept and vanish at μ = 0. Symmetric
+   * If μ is the varied parameter, low-rank friction terms that are proportional to μ and share a left factor are kept. Symmetric
    * low-rank terms in λ are also kept. Other low-rank terms are multiplied out.
    *
    * Symmetric parts of unsymmetric matrices (TermKind::circulatory) are included in mass and stiffness if these are then definite;

@@ -21,8 +21,8 @@ namespace Squeal
       return -direction.dot(node.normal);
     }
 
-    /// e·(n + μ f t): force along e on the backplate per unit reaction at a node with friction [-]; negative, because reactions in
-    /// compression are negative.
+    /// e·(n + μ f t): force along e on the backplate per unit reaction at a node with friction [-]. It is negative unless friction on an
+    /// inclined face exceeds the normal force, because reactions in compression are negative.
     double force(const ContactNode &node, const double mu) const
     {
       return direction.dot(node.normal + mu * node.friction * node.sliding);
@@ -30,8 +30,8 @@ namespace Squeal
   };
 
   /**
-   * Travel of each component: e = −N/|N|, N = Σ area n over its contact nodes. Within 45 degrees of the disc's axis, backplates are guided
-   * along the axis.
+   * Travel of each component: e = −N/|N|, N = Σ area n over its contact nodes. If e is within 45 degrees of the disc's axis, the backplate
+   * is guided along the axis.
    *
    * Throws MeshError if a body has no direction of travel: some of its contact nodes face perpendicular to it or away from it, for
    * example if the body touches both faces of the disc.
@@ -49,10 +49,10 @@ namespace Squeal
   std::vector<Eigen::Vector3d> backplate_displacements(const std::vector<Travel> &travels, const std::vector<double> &approach);
 
   /**
-   * Static reactions R_n0 ≤ 0 [N], equal at all nodes of a backplate (equal pressure on faces that do not match). The force along its
-   * travel, friction included, is the load per side: Σ e·(n + μ f t) R_n0 = load.
+   * Static reactions R_n0 ≤ 0 [N], equal at all nodes of a backplate; proportional to their areas if any faces do not match. The force
+   * of a backplate along its travel, including friction, is the load per side: Σ e·(n + μ f t) R_n0 = load.
    *
-   * Throws MeshError if travels() fails, ParameterError if friction alone balances the load.
+   * Throws MeshError if travels() fails, ParameterError if friction balances or exceeds the load.
    */
   std::vector<double> equal_load_shares(const Model &model, const ContactInterface &interface, const OperationParameters &operation);
 } // namespace Squeal

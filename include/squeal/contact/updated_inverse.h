@@ -12,7 +12,7 @@
 
 namespace Squeal
 {
-  /// Storage of the attachment modes X, a dense n × n_c matrix that takes longer to compute than the factor.
+  /// Storage of the attachment modes X, a dense n × n_c matrix that usually takes longer to compute than the factor.
   enum class AttachmentModes
   {
     at_once,     ///< computed with the factor

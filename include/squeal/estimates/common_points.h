@@ -15,7 +15,7 @@
 namespace Squeal
 {
   /// Points in the bodies at which displacements of different meshes and elements are compared: x_q with masses m_q [kg], so that Σ_q m_q
-  /// |u(x_q)|² is the mass integral of |u|² over all bodies.
+  /// |u(x_q)|² approximates the integral of ρ |u|² over all bodies.
   struct CommonPoints
   {
     struct Body
@@ -53,9 +53,9 @@ namespace Squeal
   CommonPoints common_points(const Model &model, const MaterialParameters &materials, unsigned int degree = 1);
 
   /**
-   * E, 3 n_q × n, maps the free dofs of a mesh to displacements at common points times √m_q, so that (E u)ᵀ E v is the mass product of u
-   * and v. Rows are distributed evenly over the processes, in the same way for all meshes. Incompatible modes of elements, which vanish
-   * with the square of the element size, are neglected.
+   * E, 3 n_q × n, maps the free dofs of a mesh to displacements at common points times √m_q, so that (E u)ᵀ E v approximates the mass
+   * product of u and v. Rows are distributed evenly over the processes, in the same way for all meshes. Incompatible modes of
+   * elements, which vanish with the square of the element size, are neglected.
    *
    * Throws MeshError if the mesh lacks a body. Collective; each process searches for all points in its cells.
    */

@@ -21,7 +21,7 @@ namespace Squeal
    *
    * If the solver estimates its error from left and right residuals, this estimate replaces ½ κ √ε_res, which is too large for modes
    * computed in a reduced basis. ε_res (ComplexModes::energy_residuals) is the residual in the energy norm of the displacements that it
-   * causes; γ is the factor by which relative errors ε of the entries of K, for example from assembly, change φᴴ K φ. It is large if parts
+   * causes; γ is the factor by which relative errors ε of the entries of K, for example from assembly, change φᴴ K φ. γ is large if parts
    * of the stiffness cancel, as in bending of a thin plate.
    *
    * κ_j = √(G_jj (G⁻¹)_jj) is the condition number of λ_j in the space of the computed modes and their conjugates. G contains energy
@@ -44,7 +44,7 @@ namespace Squeal
 
     double largest_error() const;
 
-    /// Correct decimal digits of all eigenvalues of the band: −log₁₀ of the largest error, at least 0.
+    /// Estimated number of correct decimal digits of all eigenvalues in the band: −log₁₀ of the largest error, at least 0.
     double digits() const;
   };
 

@@ -19,7 +19,7 @@ namespace Squeal
    * @param value  value of the varied parameter
    * @param source origin of the system, for messages: "file brake/system.json"
    *
-   * The result is empty if no mode oscillates in the band.
+   * If no mode oscillates in the band, the result contains only real eigenvalues.
    *
    * Throws SolverError if Q(s) is singular to working precision, or if the numbers of right and left eigenvalues differ.
    */

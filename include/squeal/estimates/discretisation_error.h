@@ -39,9 +39,9 @@ namespace Squeal
    * neutral modes, which occur without damping, may become a growing and a decaying mode if they coalesce. Their growth rate is then at
    * most |Δω| / 2, because their coupling does not cause flutter at a distance of Δω. This limit also counts as an error of ξ.
    *
-   * A mode is unstable if verdict_of() with the error of the solver is `unstable` and R exceeds the estimated error; it is stable if it
-   * decays by more than the estimated error, or is neutral with an estimated error of ξ below weak_divergence. All other modes, and modes
-   * without a counterpart, are undecided.
+   * A mode is unstable if verdict_of() with the error of the solver is `unstable` and ξ exceeds its estimated error. It is stable if
+   * verdict_of() is `stable` and −ξ exceeds the estimated error, or if it is neutral with an estimated error of ξ of at most
+   * weak_divergence. All other modes, and modes without a counterpart, are undecided.
    *
    * @param coarse        modes on the coarser mesh, in a wider band
    * @param fine          modes on the finer mesh, at the same points
@@ -80,7 +80,7 @@ namespace Squeal
    * example because the values are not monotone, the result is not trustworthy and the assumed order is used.
    *
    * Uncertainty of the limit: the difference from the limit with the assumed order; if not trustworthy, plus the difference of the two
-   * finest values. If differences are rounding errors of the values, the finest value is the limit.
+   * finest values. If the two finest values differ only by rounding errors, the finest value is the limit.
    *
    * @param widths        h_k > 0, strictly decreasing, two or more [any unit]
    * @param values        v_k

@@ -14,10 +14,10 @@ namespace Squeal
   /// Error estimates for λ of reduced eigentriples from their full-order residuals; see estimate_eigenvalues().
   struct EigenvalueEstimates
   {
-    std::vector<std::complex<double>> corrections;   ///< δλ; λ + δλ is more accurate than λ [rad/s]
+    std::vector<std::complex<double>> corrections;   ///< δλ; λ + δλ is usually more accurate than λ [rad/s]
     std::vector<double>               errors;        ///< |δλ| / |λ| [-]
     std::vector<double>               conditions;    ///< κ [-]
-    std::vector<bool>                 claimed;       ///< true if κ is moderate and no modes may coalesce: δλ is meaningful
+    std::vector<bool>                 claimed;       ///< true if κ is moderate and the mode cannot coalesce: δλ is meaningful
     std::vector<double>               uncertainties; ///< |δλ| plus the effect of close modes [rad/s]
     std::vector<Verdict>              verdicts;
     std::vector<double>               energy_residuals; ///< ε_res of φ, eq. (16) [-]
@@ -56,11 +56,11 @@ namespace Squeal
    *
    *   4 |g_ij g_ji| s² ≥ |λ_i − λ_j|²,   g_ij = L_iᵀ K_c⁻¹ R_j / ψ_iᵀQ'(λ_i)φ_i,
    *
-   * with the safety factor s = error_safety. In this case, or if κ > 1000, no estimate is given. The uncertainty of λ_i is |δλ_i| +
-   * Σ |g_ij| over the modes j that may coalesce with it (Gershgorin's bound).
+   * with the safety factor s = error_safety. In this case, or if κ > 1000, δλ is not meaningful (`claimed` is false). The uncertainty of
+   * λ_i is |δλ_i| + Σ |g_ij| over the modes j that may coalesce with it (Gershgorin's bound).
    *
-   * Verdicts follow from verdict_of() with this uncertainty; a mode with κ > 1000 is undecided. Two modes may also coalesce if s |δλ_i −
-   * δλ_j| ≥ |λ_i − λ_j|.
+   * Verdicts follow from verdict_of() with this uncertainty; a mode with κ > 1000 is undecided. For verdicts without damping, two modes may
+   * also coalesce if s |δλ_i − δλ_j| ≥ |λ_i − λ_j|.
    *
    * If the inverse has a shift, the shifted stiffness replaces K_c.
    */

@@ -18,7 +18,7 @@ namespace Squeal
     std::vector<Verdict> verdicts; ///< verdict on each mode, within the uncertainty of λ
     std::vector<bool>    unstable; ///< true if the growth of the mode exceeds the uncertainty
     Conditioning         conditioning;
-    int n_slow = 0; ///< number of pairs of λ that count as zero but are not rigid-body modes: slow decay due to strong dampers
+    int n_slow = 0; ///< number of pairs of λ that count as zero but are not rigid-body modes, usually slow decay due to strong dampers
 
     std::size_t n_unstable() const;
 
@@ -28,7 +28,7 @@ namespace Squeal
     std::size_t n_growing_real() const;
   };
 
-  /// A mode is slow if |λ|² is below this multiple of the unresolved square: cancellation in the stiffness costs digits [-].
+  /// A mode is slow if |λ|² is at most this multiple of CoupledSystem::hidden_square: cancellation in the stiffness costs digits [-].
   inline constexpr double slow_square = 1e4;
 
   bool is_slow(const CoupledSystem &system, const std::complex<double> &lambda);
@@ -36,8 +36,8 @@ namespace Squeal
   /// Largest relative error |δλ| / |λ| of all modes that are not slow [-].
   double largest_error(const CoupledSystem &system, const ComplexModes &modes, const Conditioning &conditioning);
 
-  /// Relative errors of λ for the verdicts. The largest error applies to every mode, because an individual estimate may be far too small by
-  /// chance; slow modes, which lose digits by cancellation in the stiffness, have individual errors.
+  /// Relative errors of λ for the verdicts. Slow modes, which lose digits by cancellation in the stiffness, have individual errors. The
+  /// largest error of the other modes applies to all of them, because an individual estimate may be far too small by chance.
   std::vector<double> uncertainties(const CoupledSystem &system, const ComplexModes &modes, const Conditioning &conditioning);
 
   /// Verdicts on @p modes, each with its individual error in @p conditioning.

@@ -51,12 +51,12 @@ namespace Squeal
    *
    *   MAC-M = |φᴴ M φ̂|² / (φᴴ M φ  φ̂ᴴ M φ̂)      eq. (18).
    *
-   * Each reduced mode is used at most once, so that the sum of MAC-M is largest. (Eq. (17) of the paper selects the reduced mode with the
+   * Each reduced mode is used at most once, and the sum of MAC-M is maximised. (Eq. (17) of the paper selects the reduced mode with the
    * largest MAC-M for each reference mode individually and may select a reduced mode several times or never; the `closest_` errors use this
    * selection.) For clusters of reference modes, chains with |λ_i − λ_j| ≤ @p cluster_tolerance |λ_i|, individual MAC-M are not
    * meaningful. Reduced modes are then ranked by their share in the span of the cluster, and angles between the subspaces are given in
    * addition to ε_mac, all in the complex M-inner product. A reference mode that a poor basis does not represent gets the best match within
-   * 30 % of its λ.
+   * 30 % of its λ, if there is one.
    *
    * @param mass      M
    * @param modes     computed with BandEnd::open; otherwise modes near the end of the band may lack counterparts

@@ -27,7 +27,7 @@ namespace Squeal
   /// Removes from X its projection on the M-orthonormal basis of a model.
   void remove_basis(const SparseMatrix &M, const ReducedModel &model, MultiVector &X);
 
-  /// Displacement residuals of the @p chosen modes, right and left, real and imaginary parts, each scaled by the norm of its mode: n × 4k.
+  /// Displacement residuals of the @p chosen modes, right and left, real and imaginary parts, each divided by the norm of its mode: n × 4k.
   MultiVector residual_directions(const ResidualVectors &residuals, const ReducedModes &modes, const std::vector<int> &chosen);
 
   /// M_c-orthonormal vectors that extend the basis of @p model: principal axes of the components of @p directions outside the basis;

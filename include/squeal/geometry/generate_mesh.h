@@ -15,16 +15,16 @@ namespace Squeal
 {
   /**
    * Generates the mesh of disc and pins: runs Gmsh on the geometry file in a separate process (see run_mesher()), then checks names, parts
-   * and shapes. The same parameters always give the same mesh. For the supplied plan of disc and pins, the mesh does not depend on the
-   * decimal unit of length.
+   * and shapes. With the same version of Gmsh, equal parameters and files give equal meshes. If all lengths of the supplied plan of disc
+   * and pins are multiplied by a power of ten, the mesh is scaled but otherwise unchanged.
    *
-   * A .geo receives all parameters as variables with the names of the members of GeometryParameters (lists: top_pin_radii(),
-   * top_pin_angles(), bottom_pin_radii(), bottom_pin_angles()). The physical groups in the file determine its type:
+   * A .geo receives the parameters as variables; see GeometryParameters::script_variables(). The physical groups in the file determine its
+   * type:
    *
-   * - physical volumes: a solid model, used unchanged (see make_mesh());
-   * - physical surfaces and curves only: a plan (see make_plan()), meshed with quadrilaterals, smoothed and extruded (see smooth(),
-   *   extrude()). Gmsh halves every element of a plan after meshing; the element sizes in the file are therefore twice the sizes in the
-   *   mesh.
+   * - physical volumes: a solid model (see make_mesh());
+   * - physical surfaces, but no physical volumes: a plan (see make_plan()), meshed with quadrilaterals, smoothed and extruded (see
+   *   smooth(), extrude()). Gmsh halves every element of a plan after meshing; the element sizes in a .geo are therefore twice the sizes
+   *   in the mesh.
    *
    * Additional variables of a .geo are set from GeometryParameters::variables.
    *
@@ -32,8 +32,8 @@ namespace Squeal
    * @param contact contact surfaces: their faces are added to `disc_contact` and `pin_contact`
    * @param communicator processes that receive the mesh; one of them runs Gmsh
    *
-   * Throws ParameterError if GeometryParameters::check() fails, and MeshError for errors in file, geometry or mesh. If Gmsh fails, the
-   * message includes its log, and processes that did not run Gmsh throw std::runtime_error.
+   * Throws ParameterError if GeometryParameters::check() fails, and MeshError for errors in file, geometry or mesh. If Gmsh fails,
+   * processes that did not run it throw std::runtime_error with the same message.
    */
   Mesh generate_mesh(const GeometryParameters       &parameters,
                      const std::vector<std::string> &additional_surfaces = {},

@@ -15,7 +15,7 @@
 
 namespace Squeal
 {
-  /// Mesh from Gmsh: nodes, and elements by physical group. Groups of the same dimension have different names.
+  /// Mesh from Gmsh: nodes, and elements by physical group. Named groups of the same dimension have different names.
   struct GmshMesh
   {
     struct Element
@@ -64,10 +64,10 @@ namespace Squeal
   /// Serialises a mesh for another process on the same machine.
   std::string to_bytes(const GmshMesh &mesh);
 
-  /// Mesh from to_bytes(). Throws std::length_error if bytes are missing.
+  /// Mesh from to_bytes(). Throws std::length_error if the bytes are incomplete or invalid.
   GmshMesh from_bytes(const std::string &bytes);
 
-  /// First byte of the mesher's reply on standard output; a text or a mesh follows. The mesher reads its script from standard input.
+  /// First byte of the mesher's reply on standard output. The mesher reads its script from standard input.
   enum class MesherReply : char
   {
     mesh          = 'm', ///< a GmshMesh, serialised by to_bytes(), follows

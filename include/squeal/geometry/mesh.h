@@ -48,8 +48,8 @@ namespace Squeal
     std::vector<unsigned int> body_of_volume; ///< index of the body of each volume, see find_bodies()
     std::vector<std::string>  surface_names;
     std::vector<TiedPair>     tied;         ///< pairs of surfaces that are bonded
-    std::vector<std::string>  notes;        ///< notes for the user about automatic corrections
-    std::vector<std::size_t>  element_tags; ///< tags of the cells in the mesh file, for messages; empty without a file
+    std::vector<std::string>  notes;        ///< notes for the user
+    std::vector<std::size_t>  element_tags; ///< Gmsh's tags of the cells, for messages; empty for an extruded plan
 
     unsigned int body_of(const Cell &cell) const
     {
@@ -141,8 +141,8 @@ namespace Squeal
 
   namespace PhysicalNames
   {
-    inline constexpr const char *disc         = "disc";         ///< volume: the disc, or part of it; other parts begin with disc_
-    inline constexpr const char *pin_prefix   = "pin_";         ///< surfaces of a plan: every pin or pad
+    inline constexpr const char *disc         = "disc";         ///< volume: the disc or a part of it; names of other parts begin with disc_
+    inline constexpr const char *pin_prefix   = "pin_";         ///< beginning of the names of pins
     inline constexpr const char *disc_contact = "disc_contact"; ///< surface: disc side of all contacts
     inline constexpr const char *pin_contact  = "pin_contact";  ///< surface: pin side of all contacts
     inline constexpr const char *pin_clamp    = "pin_clamp";    ///< surface: clamped outer faces of the pins

@@ -49,12 +49,13 @@ namespace Squeal
 
   /**
    * Throws a MeshError that names @p where unless the mesh has the required parts: volumes of the disc (is_of_disc()) and other volumes,
-   * without common nodes; the surfaces `disc_contact`, `pin_contact` and @p additional_surfaces. Every named surface must be on the outside
-   * of the matching body (`disc_*` on the disc, `pin_*` on pins).
+   * without common nodes; the surfaces `disc_contact`, `pin_contact` and @p additional_surfaces. Named faces must be outer faces. The
+   * standard surfaces of the disc (`disc_contact`, `disc_bore`, `disc_rim`) must not be on pins, and vice versa.
    */
   void check_parts(const Mesh &mesh, const std::vector<std::string> &additional_surfaces, const std::string &where);
 
-  /// Throws a MeshError that names @p where for a body in several pieces; for a pin without contact, without clamp and mount, or with clamp
-  /// and contact exchanged; and for a mount whose nodes are all clamped. Requires check_parts().
+  /// Throws a MeshError that names @p where for a body in several pieces, except several discs that are all mounted; for a pin that has no
+  /// contact, that has neither clamp nor mount, or whose clamp is closer to the disc than its contact; and for a mount whose nodes are all
+  /// clamped. Requires check_parts().
   void check_bodies(const Mesh &mesh, const std::vector<std::string> &mounted_surfaces, const std::string &where);
 } // namespace Squeal

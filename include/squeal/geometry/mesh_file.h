@@ -23,6 +23,6 @@ namespace Squeal
    */
   Mesh make_mesh(const GmshMesh &mesh, const std::vector<std::string> &additional_surfaces, const std::string &where);
 
-  /// Writes a mesh with its physical names as .msh (Gmsh 4.1, text). Reading the file restores the same mesh.
+  /// Writes a mesh with its physical names as .msh (Gmsh 4.1, text). Reading the file restores the nodes, cells and named faces.
   void write_msh(const Mesh &mesh, std::ostream &stream);
 } // namespace Squeal

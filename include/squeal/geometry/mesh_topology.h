@@ -13,7 +13,8 @@ namespace Squeal
    * Throws a MeshError that names @p where, the number of errors and the first position, for
    *
    * - coincident nodes of one body, which would form a crack. Nodes coincide if their distance is below 1e-3 of the shortest adjacent edge
-   * or 2e-5 of the mesh size, the error of coordinates with six digits, but at most 5e-3 of the longest adjacent edge;
+   * or 2e-5 of the mesh size, the error of coordinates with six digits, but at most a tenth of the shortest and 5e-3 of the longest
+   * adjacent edge;
    * - nodes on faces or edges of other elements of the same body, or inside these elements, and quadrilateral faces with two triangles on
    * the other side;
    * - contact faces of disc and pin that coincide but have the same outward normal: one body is on the wrong side;

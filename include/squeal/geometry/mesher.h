@@ -15,7 +15,7 @@ namespace Squeal
   {
     double seconds;     ///< wall time [s]
     double bytes;       ///< address space [byte]
-    bool   is_confined; ///< forbids programs, file output and network connections, if the system supports this
+    bool   is_confined; ///< forbids starting programs, changing files and opening connections, if the system supports this
   };
 
   /// Error: a confined process attempted a forbidden action.
@@ -35,7 +35,7 @@ namespace Squeal
   /**
    * Opens a geometry or mesh in a separate process, meshes it by mesh_geometry() (a solid if there are physical volumes, else a plan), and
    * returns the resulting mesh. A crash of Gmsh does not affect this process. A confined Gmsh cannot change the user's files. A confined
-   * process does not inherit the environment, and it ends with this process. No temporary file is created.
+   * process inherits no environment variable except LD_LIBRARY_PATH. The process ends with this process. No temporary file is created.
    *
    * @param where name of the geometry, for error messages
    *

@@ -42,7 +42,7 @@ namespace Squeal
     std::vector<MortarRow> rows;         ///< rows by ascending slave node; slave nodes without a row are not in contact
     double                 slave_area;   ///< area of all slave elements [m²]
     double                 overlap_area; ///< slave area opposite the master [m²]
-    double                 coarseness;   ///< largest ratio of the size of a slave element to the opposite master elements [-]
+    double                 coarseness;   ///< largest ratio of a slave element's size to the mean size of the opposite master elements [-]
     double                 largest_gap;  ///< largest gap or penetration, along the normals of the slave [m]
   };
 

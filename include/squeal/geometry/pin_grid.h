@@ -13,7 +13,7 @@ namespace Squeal
   struct PinRings
   {
     unsigned int number  = 0;
-    double       grading = 1.; ///< width of a ring relative to the next outer ring
+    double       grading = 1.; ///< width of a ring, except the innermost, relative to the next outer ring
   };
 
   struct PinGrid

@@ -19,8 +19,8 @@ namespace Squeal
 
   /**
    * Plan view of disc and pins: quadrilaterals that cover the annulus, the faces under each pin, and the named parts of the boundary of the
-   * annulus. A face may be under a top and a bottom pin, even if the pins are not exactly opposite: both pins are then displaced from a
-   * common position in the plan.
+   * annulus. A face may be under a top and a bottom pin, even if the pins are not exactly opposite: the pins are then displaced from
+   * their common position in the plan.
    */
   struct Plan
   {
@@ -106,7 +106,7 @@ namespace Squeal
 
   /**
    * Extrudes the plan: the disc from z = -thickness/2 to +thickness/2, each pin outwards from the face of its side. Pins have their own
-   * nodes, which coincide with nodes of the disc.
+   * nodes, which coincide with nodes of the disc on the contact faces.
    *
    * Volumes: disc, then the pins in the order of the plan. Surfaces: disc_contact, pin_contact, pin_clamp, pin_side, then one for each
    * curve of the plan.

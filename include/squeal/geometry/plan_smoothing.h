@@ -9,8 +9,9 @@
 namespace Squeal
 {
   /**
-   * Moves nodes inside the disc and inside the pins until no move of a single node improves a badly shaped face. Nodes on the boundary of
-   * the annulus and on the outlines of pins and their rings are fixed.
+   * Moves single nodes inside the disc and inside the pins, in up to 100 sweeps, while this improves badly shaped faces; then calls
+   * untangle(). Nodes on the boundary of the annulus, on the outlines of pins and in their rings do not move individually, but round pins
+   * may rotate about their centres.
    *
    * The shape quality at the corner between edges a and b is 2 a x b / (a² + b²): 1 for a square, 0 for a flat corner or an edge of length
    * 0, negative if inverted. A node moves to maximise the smallest quality of the adjacent faces.
@@ -22,7 +23,7 @@ namespace Squeal
 
   /**
    * Points of the plan for one face of the disc: pins of that side at their positions, the boundary of the annulus unchanged, and the
-   * remaining nodes displaced by interpolation and smoothed. If bad faces remain, round pins also rotate about their centres.
+   * remaining nodes displaced by interpolation and smoothed. If bad faces remain, round pins of this side may also rotate.
    */
   std::vector<Plan::Point> points_on_side(const Plan &plan, const Plan::Side side);
 
@@ -42,7 +43,7 @@ namespace Squeal
    * for the edges a, b of a corner. While ε is large, inverted corners have a finite energy and can be turned over; as ε decreases, they
    * cannot invert again (V. Garanzha, I. Kaporin, L. Kudryavtseva, F. Protais, N. Ray, D. Sokolov, ACM Trans. Graph. 40 (2021) 154).
    *
-   * Points are not changed if no face is bad or if bad faces cannot be avoided.
+   * Points are not changed if no face is bad or if bad faces would remain.
    *
    * @param fixed nodes that do not move individually
    */

@@ -24,7 +24,7 @@ namespace Squeal
     double memory(double n_modes) const;
   };
 
-  /// Size of the supplied plan, from the parameters alone.
+  /// Size of the extruded supplied plan, from the parameters alone.
   ProblemSize expected_size(const GeometryParameters &parameters);
 
   /// Size of an extruded plan.
@@ -36,11 +36,12 @@ namespace Squeal
   /// Throws a MeshError with size and memory if the model needs more than the available memory of the machines that run the processes.
   void check_memory(const ProblemSize &size, double n_modes, const std::string &where, MPI_Comm communicator = MPI_COMM_SELF);
 
-  /// True if at least half of the disc's surface is a surface of revolution about z, n·(e_z × x) ≈ 0. Throws a MeshError that names @p
-  /// where if a clearly larger part is a surface of revolution about another axis, which is found from the second moments of the surface.
+  /// True if at least half of the disc's lateral faces and half of its other faces are surfaces of revolution about z, n·(e_z × x) ≈ 0.
+  /// Throws a MeshError that names @p where if this fraction is clearly larger for another axis, which is found from the second moments of
+  /// the surface.
   bool is_round_about_z(const Mesh &mesh, const std::string &where);
 
-  /// Throws ParameterError if the nodal spacing of an element of this @p degree exceeds the wavelength of a shear wave at @p
+  /// Throws ParameterError if the nodal spacing of an element of this @p degree exceeds the wavelength of the slowest wave at @p
   /// largest_circular_frequency [rad/s]: modes at the end of the band would be artefacts of the mesh.
   void check_wave_resolution(const Mesh &mesh, const MaterialParameters &materials, unsigned int degree, double largest_circular_frequency);
 } // namespace Squeal

@@ -13,8 +13,8 @@ namespace Squeal
    * New nodes follow cylinders: if all corners of a named surface (disc_bore, disc_rim; pin_side of each pin) lie on a circular cylinder
    * about an axis parallel to z, the new nodes on its edges and faces are moved onto the cylinder. The same applies to
    *
-   * - inner faces of pins on a cylinder about the same axis, ring by ring of hexahedra: a ring thinner than the height of the arc would
-   * otherwise be squeezed between a curved and a straight face. If a cell has two such adjacent faces, whose edges would meet at 180
+   * - inner faces of pins on a cylinder about the same axis, in successive rings of hexahedra: a ring thinner than the height of the arc
+   * would otherwise be squeezed between a curved and a straight face. If a cell has two such adjacent faces, whose edges would meet at 180
    * degrees, both remain straight;
    * - coincident edges of the contact faces on the other side, so that contact nodes also match in degree 2.
    *

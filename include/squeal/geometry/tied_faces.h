@@ -19,10 +19,11 @@ namespace Squeal
 
   /**
    * Tied nodes on the first surface of each pair in Mesh::tied: u_j = (Σ_l W_jl u_l − Σ_{i≠j} B_ji u_i) / B_jj in all directions, with W
-   * and B from mortar(). On flat faces linear displacements and constant stresses are transferred exactly. Nodes outside the overlap are
+   * and B from mortar(). On flat faces, linear displacements and constant stresses are transferred exactly. Nodes outside the overlap are
    * free.
    *
-   * Throws MeshError if mortar() fails, for nodes that are tied twice or circularly, and if less than a fifth of a surface overlaps.
+   * Throws MeshError if mortar() fails, for nodes that are tied twice or circularly, and if less than a fifth of the first surface
+   * overlaps.
    */
   TiedNodes tied_nodes(const Mesh &mesh);
 } // namespace Squeal

@@ -81,8 +81,8 @@ namespace Squeal
 
   /**
    * Checks the uniqueness of a solution. It is unique if Gᵀ + G is positive definite and L = −Bᵀ: two solutions would give (r − r')ᵀ G (r −
-   * r') ≤ 0. G satisfies this condition for all μ < 1/λ_max, where λ_max is the largest eigenvalue of −½ (F_nt + F_ntᵀ) x = λ F_nn x. For
-   * larger μ, the problem is solved again from @p n_searches random sets.
+   * r') ≤ 0. G satisfies this condition for all μ < 1/λ_max, where λ_max is the largest eigenvalue of −½ (F_nt + F_ntᵀ) x = λ F_nn x. If
+   * uniqueness is not certified, the problem is solved again from up to @p n_searches random sets.
    */
   ContactUniqueness contact_uniqueness(const ContactProblem &problem, const ContactSolution &solution, unsigned int n_searches = 8);
 } // namespace Squeal

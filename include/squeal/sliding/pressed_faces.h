@@ -16,7 +16,7 @@ namespace Squeal
    * with the outward normal n. The resultant on each face is the load; on a flat face, p = load / area.
    *
    * Throws MeshError if a face does not exist; ParameterError if a face belongs to the disc, is in contact or clamped, or has no resultant,
-   * or if the pressure pulls its body away from the disc.
+   * or if the pressure pushes its body away from the disc.
    */
   MultiVector pressing_forces(const Model             &model,
                               const ContactInterface  &interface,

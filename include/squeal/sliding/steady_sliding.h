@@ -18,10 +18,10 @@ namespace Squeal
   /// Residuals of a steady sliding state, computed from the displacements of the full model.
   struct SlidingCertificate
   {
-    double residual;        ///< ‖K u − P_nᵀ r_n − μ P_tᵀ r_n − f_p‖ / ‖P_nᵀ r_n‖ over all dofs [-]
+    double residual;        ///< ‖K u − P_nᵀ r_n − μ P_tᵀ r_n − f_p‖ / ‖P_nᵀ r_n‖ without the drive's force [-]
     double load;            ///< largest relative error of the load of a backplate; 0 if none is prescribed [-]
-    double tension;         ///< largest r_n relative to the load of a backplate; ≤ 0 without tension [-]
-    double overlap;         ///< largest g from P_n u, relative to the travel (with pressed faces: to the largest displacement) [-]
+    double tension;         ///< largest r_n relative to the largest load of a backplate; ≤ 0 without tension [-]
+    double overlap;         ///< largest g from P_n u, relative to the travel: the largest |P_n u| (with pressed faces: the largest |u|) [-]
     double complementarity; ///< largest |r_n g| relative to load × travel [-]
     double force_balance;   ///< resultant of contact, pressure and support forces of each component, relative to the load [-]
     double moment_balance;  ///< resultant moment about the origin, relative to load × largest axis distance [-]
@@ -81,8 +81,9 @@ namespace Squeal
    * The problem is condensed to the contact nodes by the normal and tangential attachment modes, F_nn = P_n K⁻¹ P_nᵀ and F_nt = P_n K⁻¹
    * P_tᵀ.
    *
-   * Throws MeshError if a body has no direction of travel; ParameterError if there is no pin with a given name, or if a gap exceeds the
-   * height of the pin or the displacement; SolverError if no state is found, or if the disc is not constrained in its plane.
+   * Throws MeshError if a body has no direction of travel; ParameterError if there is no pin with a given name, if a gap is not
+   * smaller than the height of the pin, or if the displacement closes no gap of a backplate; SolverError if no state is found, or if
+   * loads or friction act on a free motion without resistance (see floating_disc.h).
    */
   SlidingState steady_sliding(const SlidingModel &sliding, const OperationParameters &operation, const SlidingParameters &parameters);
 
@@ -92,8 +93,8 @@ namespace Squeal
    *
    *   K u' = f' + P_nᵀ r' + μ P_tᵀ r',   P_n u' + a d' − a gap' = 0 at closed nodes,   r' = 0 at open nodes
    *
-   * where the free motions R of the disc remain in equilibrium, Rᵀ (f' + P_nᵀ r' + μ P_tᵀ r') = 0, and loads are constant. No solve at full
-   * order is necessary, because the attachment modes also give the gaps due to f', P_n K⁻¹ f' = (K⁻¹ P_nᵀ)ᵀ f'. Normals and the component
+   * where the free motions R of the bodies remain in equilibrium, Rᵀ (f' + P_nᵀ r' + μ P_tᵀ r') = 0, and loads are constant. No full-order
+   * solve is necessary, because the attachment modes also give the gaps due to f', P_n K⁻¹ f' = (K⁻¹ P_nᵀ)ᵀ f'. Normals and the component
    * of t along the travel are constant.
    *
    * @param state       steady sliding state at these parameters
@@ -126,7 +127,7 @@ namespace Squeal
     double       sliding_offset;   ///< offset of the centre of pressure from the centre of the face along t [m]
     double       radial_offset;    ///< offset in the outward direction, or along the axis if side = 0 [m]
     double       largest_pressure; ///< largest −r_n / area of the node [Pa]
-    double       sliding_speed;    ///< w_0 at the centre of pressure [m/s]
+    double       sliding_speed;    ///< mean of w_0, weighted by the load [m/s]
     double       radial_damping;   ///< Σ c_b [N s/m]
     double       sliding_damping;  ///< Σ c_t [N s/m]
     double       approach;         ///< travel of the backplate [m]
