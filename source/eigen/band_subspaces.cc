@@ -30,7 +30,7 @@ namespace Squeal
     /// ‖Z^m‖ below this limit counts as a proof: 1 with a margin for rounding errors [-].
     constexpr double proof          = 0.9;
     constexpr int    most_squarings = 8;
-    /// Lower limit of the scale σ of a mode relative to the end of the band, for rigid-body and other slow modes [-].
+    /// Lower limit of the scale σ of a mode relative to the end of the band, for rigid-body and other low-frequency modes [-].
     constexpr double smallest_part = 1e-2;
 
     /// Number of modes of the symmetric pencil below the widest gap at or above the end of the band; 0 if there is no gap.

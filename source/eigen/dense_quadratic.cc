@@ -130,7 +130,7 @@ namespace Squeal
           companion.bottomRightCorner(r, r) = C / -unit;
         }
       const auto lambda_of = [&](const Complex &of_companion) { return unit * (linear ? upper_root(of_companion) : of_companion); };
-      // Compute few vectors in addition to those selected below
+      // Compute vectors only for the values selected below and a few others
       const DenseEigenpairs pairs = eigenpairs(companion, [&](const Complex &of_companion) {
         const Complex lambda = lambda_of(of_companion);
         return std::abs(lambda.imag()) <= largest_circular_frequency &&

@@ -314,7 +314,7 @@ namespace Squeal
       int                          n_restarts = 0, n_basis_largest = 0;
 
     private:
-      /// Random sums of the close vectors, with a small random part that gives the block a component in every mode.
+      /// Random linear combinations of the close vectors, with a small random part that gives the block a component in every mode.
       MultiVector first_block()
       {
         constexpr double share_of_others = 1e-3;

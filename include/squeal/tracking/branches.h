@@ -114,10 +114,10 @@ namespace Squeal
   };
 
   /**
-   * Tracks modes over the friction coefficients of @p grid, in ascending order; the grid may be empty. Modes of neighbouring points are
-   * linked by link_modes(); doubtful steps are halved, and all points of a round are evaluated together. A step is also divided if two
-   * branches exchange their order and the interpolation between Λ_a and Λ_b, transformed to the modes at a, predicts an interaction, or if
-   * extrapolated growth rates approach zero, or if extrapolated frequencies approach each other.
+   * Tracks modes through the friction coefficients of @p grid, in ascending order; the grid may be empty. Modes of neighbouring points are
+   * linked by link_modes(); steps with ambiguous links are halved, and all points of a round are evaluated together. A step is also divided
+   * if two branches exchange their order and the interpolation between Λ_a and Λ_b, transformed to the modes at a, predicts an interaction,
+   * or if extrapolated growth rates approach zero, or if extrapolated frequencies approach each other.
    *
    * A branch that grows at only one end of a step has a threshold in the step. At a coalescence δ²(μ) = (λ_1 − λ_2)² is analytic and real
    * with a simple zero, while λ has a branch point; otherwise the zero of Re λ is computed. The interval of a zero is reduced to the
