@@ -165,7 +165,7 @@ namespace Squeal
     if (!problem->setProblem())
       throw SolverError("Anasazi rejected the eigenvalue problem", request.what, "choose another Real modes/Solver");
 
-    // Use enough blocks for convergence in a single start in most cases
+    // Use enough blocks for convergence in one start in most cases
     const int n_blocks =
       std::min(std::max(3, (5 * request.n_wanted / 2 + block_size - 1) / block_size + 10 * (1 + request.attempt)), n / block_size - 1);
 

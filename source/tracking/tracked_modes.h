@@ -51,7 +51,7 @@ namespace Squeal
       return mu(k + 1) - mu(k);
     }
 
-    /// Index of the mode of a branch at a point; -1 if the branch has no mode there or the point is beyond the chart.
+    /// Index of the mode of a branch at a point; -1: none.
     int mode(const int branch, const int k) const
     {
       return k < 0 || k >= n_points() ? -1 : branches[branch].modes[k];
@@ -93,7 +93,7 @@ namespace Squeal
     int  interval;
     int  branch, partner;
     bool upward;           ///< true for an onset, or for a mode that enters the band
-    bool at_once  = false; ///< true for an onset in the first step of the chart whose modes are neutral at the first point
+    bool at_once  = false; ///< true for an onset in the first step, with neutral modes at the first point
     bool multiple = false; ///< true for two modes that are indistinguishable from the first point up to this interval
   };
 
@@ -102,9 +102,8 @@ namespace Squeal
   /// Value of the function of a search at point k; empty if its branches do not exist there.
   std::optional<double> search_value(const TrackedModes &modes, const EventSearch &search, int k);
 
-  /// True if a branch that is neutral at the first point grows from there: the quotient Re λ / Δμ, or δ² / Δμ² for a double mode,
-  /// extrapolated linearly to the first point, is of similar size as at the next point. Also true if the first step is too short to be
-  /// divided.
+  /// True if a branch that is neutral at the first point grows from there: the first step is too short to be divided, or Re λ / Δμ (δ² /
+  /// Δμ² for a double mode), extrapolated linearly to the first point, is similar to its value at the next point.
   bool grows_at_once(const TrackedModes &modes, const EventSearch &search);
 
   /// Friction coefficients for further evaluations; @p predict may be empty.

@@ -106,6 +106,6 @@ namespace Squeal
                                 double                   largest_circular_frequency,
                                 FactorizationLibrary     library);
 
-  /// K⁻¹ Pᵀ, n × n_c: responses to a pair of opposite unit forces on disc and pin at each contact node, along the direction of P [m/N].
+  /// K⁻¹ Pᵀ, n × n_c: responses to opposite unit forces on disc and pin at each contact node, along the direction of P [m/N].
   MultiVector attachment_modes(const InertiaRelief &response, const SparseMatrix &P);
 } // namespace Squeal

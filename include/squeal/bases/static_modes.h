@@ -84,8 +84,8 @@ namespace Squeal
    */
   MultiVector friction_response(const CoupledSystem &system, const UpdatedInverse &inverse, const MultiVector &real_modes, Side side);
 
-  /// First-order responses of real coupled modes Φ_R to damping, K_c⁻¹ (C_c − μ A V_C) Φ_R, n × n_R, at the given friction coefficient or,
-  /// if none is given, at the parameter values of the system. Throws SolverError if there is no damping.
+  /// First-order responses of real coupled modes Φ_R to damping, K_c⁻¹ (C_c − μ A V_C) Φ_R, n × n_R, at the given friction coefficient or
+  /// else at the parameter values of the system. Throws SolverError if there is no damping.
   MultiVector damping_response(const CoupledSystem  &system,
                                const UpdatedInverse &inverse,
                                const MultiVector    &real_modes,

@@ -88,7 +88,7 @@ namespace Squeal
                                  const SymmetricModesOptions &options = {});
 
   /// Number of eigenvalues ω² ≤ @p limit of K φ = ω² M φ from the inertia of K - limit M: includes multiplicities and rigid-body modes and
-  /// does not compute modes. Throws a SolverError that names @p what if the matrix remains singular at slightly higher limits.
+  /// does not compute modes. Throws a SolverError that names @p what if K - limit M remains singular.
   ModeCount count_below(const SparseMatrix &K, const SparseMatrix &M, double limit, const std::string &what);
 
   /**

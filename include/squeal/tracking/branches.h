@@ -132,9 +132,9 @@ namespace Squeal
    *
    * divided by dδ²/dμ. It is evaluated at some distance from the coalescence, close to which the entries of D are large and cancel.
    * Otherwise the effect is the change of Re λ or Im λ divided by its slope. The change of Re λ is |Re D_ii| + Σ |D_ij D_ji / (λ_i − λ_j)|,
-   * but at most the uncertainty of λ; for Im λ, Im D_ii replaces Re D_ii. At the real axis, the uncertainty of λ is used.
+   * similarly for Im λ, but at most the uncertainty of λ, which is used at the real axis.
    *
-   * Throws Error if the grid is not ascending, or if the end of the band, the tolerance or the smallest step is not positive.
+   * Throws Error if the grid is not ascending or a real-valued option is not positive.
    */
   StabilityChart stability_chart(const std::vector<double> &grid,
                                  const EvaluateChart       &evaluate,
@@ -157,8 +157,8 @@ namespace Squeal
   };
 
   /// Onset of growth beyond the uncertainty of λ for a branch in the band: the threshold or band crossing at which this growth begins. If
-  /// there is none, the result is the first point of the branch, and the uncertainty is its distance from the previous point. For the first
-  /// point of the chart, the previous point is @p before, the last friction coefficient evaluated below the chart.
+  /// there is none, the result is the first point of the branch, with its distance from the previous point as uncertainty. @p before is the
+  /// last friction coefficient evaluated below the chart.
   std::optional<GrowthOnset> onset_of(int branch, const StabilityChart &chart, double largest_circular_frequency, double before);
 
   /// The onset with the smallest friction coefficient among all branches.
