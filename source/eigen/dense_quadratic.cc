@@ -36,7 +36,7 @@ namespace Squeal
       return root.imag() < 0. ? -root : root;
     }
 
-    /// One correction λ -= ψᵀQ(λ)φ / ψᵀQ'(λ)φ for each simple eigenvalue.
+    /// One correction λ -= ψᵀQ(λ)φ / ψᵀQ'(λ)φ for each well-conditioned eigenvalue.
     void correct(DenseQuadraticModes &modes, const DenseMatrix &M, const DenseMatrix *C, const DenseMatrix &K)
     {
       const ComplexDenseMatrix m = multiply(M, modes.right), k = multiply(K, modes.right);
