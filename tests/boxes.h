@@ -80,8 +80,8 @@ namespace Squeal::Testing
               }
             else
               {
-                // Divide around a central node into pyramids, or pairs of tetrahedra with the diagonal from the first node of the face. The
-                // face towards hexahedra begins with nodes 0, 4
+                // Divide around a central node into pyramids or, by the diagonal from the lowest node of each face, into tetrahedra. The
+                // face towards the hexahedra begins with nodes 0 and 4
                 const unsigned int centre = add_point({{i + 0.5, j + 0.5, k + 0.5}});
                 for (unsigned int face = 0; face < 6; ++face)
                   {

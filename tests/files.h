@@ -15,7 +15,7 @@
 
 namespace Squeal::Testing
 {
-  /// Content of a file, or an empty text if it does not exist.
+  /// Content of a file, or an empty string if it does not exist.
   inline std::string content(const std::filesystem::path &file)
   {
     std::ifstream     stream(file);

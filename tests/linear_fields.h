@@ -13,7 +13,7 @@
 
 namespace Squeal::Testing
 {
-  /// Gradient H of the field u = u_0 + H x, which contains all strains and rotations.
+  /// Gradient H of the field u = u_0 + H x, which contains all components of strain and rotation.
   inline constexpr double displacement_gradient[3][3] = {{1.1, 0.3, -0.4}, {-0.2, 0.7, 0.9}, {0.5, -0.8, -1.3}};
 
   inline Point3 linear_field(const Point3 &p)

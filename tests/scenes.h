@@ -18,7 +18,7 @@
 
 namespace Squeal::Testing
 {
-  /// M, C and K of the bodies, the sum of body_terms(); C is null if no material is damped.
+  /// M, C and K of the bodies, the sums of body_terms(); C is null if no material is damped.
   inline SecondOrderSystem assemble(const Model &model, const MaterialParameters &materials)
   {
     const BodyTerms bodies = body_terms(model, materials);
@@ -195,7 +195,7 @@ namespace Squeal::Testing
     return Squeal::couple(terms, contact, damping);
   }
 
-  /// A mesh and everything derived from it, up to the coupled system.
+  /// A model with its contact interface, matrices and coupled system.
   struct Scene
   {
     Scene(const Mesh                &mesh,

@@ -27,7 +27,7 @@ namespace Squeal::Testing
   /// Upper end of the band [rad/s].
   inline const double omega_max = circular_frequency(6000.);
 
-  // Pins with symmetry about the x axis, and skewed pins
+  // Layouts of the pins: symmetric about the x axis, and skewed
   inline const std::vector<PolarPin> symmetric_pins = {{Plan::Side::top, -1, 2, 1, 1},
                                                        {Plan::Side::top, 4, 2, 0, 1},
                                                        {Plan::Side::top, -6, 2, 0, 1},
@@ -143,7 +143,7 @@ namespace Squeal::Testing
     return system_of(matrices, sparse(rows(1), matrices.mass->rows(), [](int) { return Row{}; }), nullptr);
   }
 
-  // ------------------------------------------------------------- comparisons
+  // --------------------------------------------------------------- stability
 
   inline int n_unstable(const ComplexModes &modes)
   {

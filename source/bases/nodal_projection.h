@@ -13,8 +13,8 @@
 
 namespace Squeal
 {
-  /// A function r^k e^{inθ} is dropped if its component orthogonal to the other functions has a relative norm below this limit, which is
-  /// well above rounding errors [-].
+  /// A function is dropped if its component orthogonal to the other functions has a relative norm below this limit, which is well above
+  /// rounding errors [-].
   constexpr double smallest_rest = 1e-8;
 
   /// Sum over all processes, bitwise identical on all of them.

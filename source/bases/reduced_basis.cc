@@ -40,7 +40,7 @@ namespace Squeal
       for (const BasisPart *part : recipe.parts)
         {
           if (part->compute && !part->is_uncoupled)
-            required(in.inverse, recipe, "an UpdatedInverse of the coupled stiffness");
+            required(in.inverse, recipe, "the factor of the coupled stiffness");
           sets.push_back(part->compute ? part->compute(in) : required(in.set(*part->set), recipe, part->symbol));
           if (part->set)
             counts.sets[*part->set] = sets.back().n_columns();
@@ -118,7 +118,7 @@ namespace Squeal
       {
         required(in.uncoupled, recipe, "the system of the bodies");
         required(in.contact, recipe, "the set of contact operators");
-        required(in.static_modes, recipe, "a StaticModes of the bodies");
+        required(in.static_modes, recipe, "the static modes of the bodies");
       }
 
     // ------------------------------------------------- T_r0 and its nominal size

@@ -20,7 +20,7 @@ namespace Squeal
     /// Normal displacements of contact nodes below this fraction of the largest displacement are rounding errors [-].
     constexpr double no_normal_motion = 1e-8;
 
-    /// ω_max / s: s is so far below the elastic frequencies that each refinement step gains several digits [-].
+    /// ω_max / s: s is normally so far below the elastic frequencies that each refinement step gains several digits [-].
     constexpr double band_per_shift = 5000.;
 
     /// Refinement ends if it no longer halves the largest ‖K u − f‖ / ‖f‖, which must then be below this limit [-].

@@ -163,9 +163,9 @@ namespace Squeal
     problem->setHermitian(true);
     problem->setNEV(request.n_wanted);
     if (!problem->setProblem())
-      throw SolverError("Anasazi rejected the eigenvalue problem", request.what, "set Real modes/Solver = ARPACK");
+      throw SolverError("Anasazi rejected the eigenvalue problem", request.what, "choose another Real modes/Solver");
 
-    // Use enough blocks for convergence without restarts
+    // Use enough blocks for convergence in one start in most cases
     const int n_blocks =
       std::min(std::max(3, (5 * request.n_wanted / 2 + block_size - 1) / block_size + 10 * (1 + request.attempt)), n / block_size - 1);
 
@@ -191,7 +191,7 @@ namespace Squeal
       }
     catch (const std::exception &error)
       {
-        throw SolverError(std::string("Anasazi failed: ") + error.what(), request.what, "set Real modes/Solver = ARPACK");
+        throw SolverError(std::string("Anasazi failed: ") + error.what(), request.what, "choose another Real modes/Solver");
       }
 
     const auto &solution = problem->getSolution();

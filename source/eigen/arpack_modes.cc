@@ -17,7 +17,7 @@ namespace Squeal
     [[noreturn]] void throw_arpack(const char *routine, const int info, const std::string &what)
     {
       throw SolverError("ARPACK's " + std::string(routine) + " failed with info = " + std::to_string(info), what,
-                        "set Real modes/Solver = Anasazi");
+                        "choose another Real modes/Solver");
     }
   } // namespace
 
@@ -70,7 +70,7 @@ namespace Squeal
               throw_arpack("pdsaupd (unknown request)", ido, request.what);
           }
       }
-    // Accept info = 1 and return the converged values: others have not converged within the allowed restarts
+    // Accept info = 1, which means that not all values converged within the allowed restarts: return the converged values
     if (info < 0 || info > 1)
       throw_arpack("pdsaupd", info, request.what);
     if (iparam[4] == 0)

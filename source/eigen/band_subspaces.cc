@@ -14,7 +14,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Largest fraction of modes in the band for which their separation saves time [-].
+    /// Separating the band saves time only if at most this fraction of all modes lies in it [-].
     constexpr double largest_part = 0.6;
     /// Smallest ratio of the squared frequencies on both sides of the gap for fast convergence [-].
     constexpr double narrowest_gap = 1.2;
@@ -30,10 +30,10 @@ namespace Squeal
     /// ‖Z^m‖ below this limit counts as a proof: 1 with a margin for rounding errors [-].
     constexpr double proof          = 0.9;
     constexpr int    most_squarings = 8;
-    /// Lower limit of the scale σ of a mode relative to the end of the band, for rigid-body and other slow modes [-].
+    /// Lower limit of the scale σ of a mode relative to the end of the band, for rigid-body and other low-frequency modes [-].
     constexpr double smallest_part = 1e-2;
 
-    /// Number of reference modes before the widest gap at or above the end of the band; 0 if there is none.
+    /// Number of modes of the symmetric pencil below the widest gap at or above the end of the band; 0 if there is no gap.
     Eigen::Index modes_of_band(const std::vector<double> &squares, const double limit)
     {
       const auto   n      = static_cast<Eigen::Index>(squares.size());

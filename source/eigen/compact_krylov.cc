@@ -176,7 +176,7 @@ namespace Squeal
     std::for_each(smallest.begin(), smallest.end(), [](double &x) { x *= negligible; });
     DenseMatrix R = pivoted_qr(X, smallest);
 
-    // Normalising the remainder of nearly dependent columns amplifies its rounding errors: project once more
+    // Normalising the remainder of nearly dependent columns amplifies its rounding errors: project again
     double share = smallest_share(R);
     agree(map.communicator(), &share, 1);
     for (int round = 0; round < 2 && R.rows() > 0 && share < independent; ++round)
@@ -346,7 +346,7 @@ namespace Squeal
     std::vector<double> work(std::max(n, 1));
     lapack_int          integer_work = 0;
     // Ignore a positive result: two values that are too close to be exchanged keep their order, and the Schur form is still valid.
-    // LAPACKE_dtrsen() does not allocate an integer workspace in this case and crashes
+    // Without condition numbers, LAPACKE_dtrsen() allocates no integer workspace and crashes: call the variant with workspaces
     LAPACKE_dtrsen_work(LAPACK_COL_MAJOR, 'N', 'V', selected.data(), n, T.data(), n, Z.data(), n, real.data(), imaginary.data(), &q,
                         &condition, &separation, work.data(), n, &integer_work, 1);
     if (q > 0 && q < n && T(q, q - 1) != 0.)

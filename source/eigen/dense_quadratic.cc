@@ -16,7 +16,7 @@ namespace Squeal
   {
     using Complex = std::complex<double>;
 
-    /// Corrections above this fraction of |λ| mean that ψᵀQ'(λ)φ vanishes: the eigenvalue is defective.
+    /// Corrections above this fraction of |λ| are omitted: they indicate a nearly defective eigenvalue, with ψᵀQ'(λ)φ ≈ 0 [-].
     constexpr double largest_correction = 1e-6;
     /// ‖M − I‖_F up to this limit is attributed to rounding errors of modal coordinates: M⁻¹ is omitted, but eigenvalues are corrected with
     /// M.
@@ -36,7 +36,7 @@ namespace Squeal
       return root.imag() < 0. ? -root : root;
     }
 
-    /// One correction λ -= ψᵀQ(λ)φ / ψᵀQ'(λ)φ for each triple.
+    /// One correction λ -= ψᵀQ(λ)φ / ψᵀQ'(λ)φ for each well-conditioned eigenvalue.
     void correct(DenseQuadraticModes &modes, const DenseMatrix &M, const DenseMatrix *C, const DenseMatrix &K)
     {
       const ComplexDenseMatrix m = multiply(M, modes.right), k = multiply(K, modes.right);
@@ -130,7 +130,7 @@ namespace Squeal
           companion.bottomRightCorner(r, r) = C / -unit;
         }
       const auto lambda_of = [&](const Complex &of_companion) { return unit * (linear ? upper_root(of_companion) : of_companion); };
-      // Compute only few vectors beyond those selected below
+      // Compute vectors only for the values selected below and a few others
       const DenseEigenpairs pairs = eigenpairs(companion, [&](const Complex &of_companion) {
         const Complex lambda = lambda_of(of_companion);
         return std::abs(lambda.imag()) <= largest_circular_frequency &&

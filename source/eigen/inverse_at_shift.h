@@ -106,7 +106,7 @@ namespace Squeal
 
   /// Corrects modes that do not meet the tolerance by minimal-residual steps with Q(s)⁻¹. Modes of very low frequency contain
   /// high-frequency rounding errors, and modes with strong dampers contain high-frequency motions. Both are small in φ but large in Kφ or
-  /// Cφ, and for them Q(s)⁻¹ is nearly proportional to Q(λ)⁻¹. Steps that do not lower the residual are rejected.
+  /// Cφ, and for them Q(s)⁻¹ is nearly proportional to Q(λ)⁻¹. Corrections that do not lower the residual of a mode are rejected.
   void correct(const QuadraticPencil &pencil, const LinearOperator &inverse, QuadraticModes &modes, double tolerance);
 
   /// Largest ratio of a residual to its limit: the tolerance or, if larger, rounding errors of Kφ and λCφ.

@@ -106,7 +106,7 @@ namespace Squeal
         return result;
       }
 
-      /// A x / ν for the first @p n Ritz vectors: an additional step of inverse iteration at no cost.
+      /// A x / ν for the first @p n Ritz vectors: an additional step of inverse iteration without a solve.
       MultiVector ritz_vectors(const RitzPairs &ritz, const int n) const
       {
         const DenseMatrix Y = ritz.vectors.leftCols(n);
@@ -178,7 +178,7 @@ namespace Squeal
     const int n = A.n_free(), width = std::max(1, std::min(request.block_size, n / 4));
     const int largest = std::min(n - width, 4 * request.n_wanted + (20 + 10 * request.attempt) * width);
 
-    // Apply A once to remove high frequencies from the random start vectors
+    // Apply A once to damp high frequencies in the random start vectors
     MultiVector random = random_vectors(A.map(), width, request.seed), start(A.map(), width, false);
     A.apply(random, start);
     // Reserve the largest size: unused space takes no physical memory, and growing later would require a copy

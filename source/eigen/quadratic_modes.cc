@@ -21,7 +21,7 @@ namespace Squeal
 
     /// |Im λ| / |λ| up to which λ is real: rounding splits a double real λ into a pair by the square root of rounding errors [-].
     constexpr double nearly_real = 1e-7;
-    /// Number of values outside the radius that must converge, to be sure that all inside have converged.
+    /// Number of values outside the radius that must converge, as a check that all values inside have been found.
     constexpr int n_beyond = 2;
     /// Number of block steps, from random directions and with the found values deflated, that check for missing values.
     constexpr int n_proving_steps = 8;
@@ -99,7 +99,7 @@ namespace Squeal
           if (!transformation.inside(nu) || std::abs(lambda) > transformation.largest_modulus)
             continue;
           const bool is_real = !(std::abs(lambda.imag()) / std::abs(lambda) > nearly_real);
-          // Real λ below zero_frequency times the end of the band are creep motions and count as zeros
+          // Real λ with a modulus below zero_frequency times the end of the band are creep motions and count as zeros
           if (!(std::norm(lambda) > transformation.zero_square) ||
               (is_real && !(std::abs(lambda) / options.largest_circular_frequency > zero_frequency)))
             modes.n_zero_values += transformation.degree == 1 ? 2 : 1;
@@ -172,8 +172,8 @@ namespace Squeal
                                         const QuadraticModesOptions &options)
     {
       throw SolverError(std::to_string(state.n_converged) + " of " + std::to_string(state.n_inside) +
-                          " eigenvalues inside the radius converged; the largest residual is " + scientific(worst) + ", the tolerance is " +
-                          scientific(options.tolerance) + ": " + reason,
+                          " eigenvalues inside the radius converged; the largest residual is about " + scientific(worst) +
+                          ", the tolerance is " + scientific(options.tolerance) + ": " + reason,
                         "complex modes up to " + scientific(options.largest_circular_frequency) + " rad/s",
                         "raise Complex modes/Tolerance, or lower Band/Maximum frequency");
     }
@@ -191,7 +191,7 @@ namespace Squeal
       if (!(options.tolerance > 0.) || options.block_size < 1 || options.n_fresh_directions < 0)
         refuse("The tolerance or the block size is not positive, or the number of fresh directions is negative", "give positive values");
       if (inverse.map().n() != pencil.mass->map().n())
-        refuse("The operators have different sizes", "pass the factors of the same pencil");
+        refuse("The operators have different sizes", "pass the inverse of the same pencil");
     }
 
     /// Extends the Krylov space, restarts it, and checks convergence.
@@ -314,7 +314,7 @@ namespace Squeal
       int                          n_restarts = 0, n_basis_largest = 0;
 
     private:
-      /// Random sums of the close vectors, with a small random part that gives the block a component in every mode.
+      /// Random linear combinations of the close vectors, with a small random part that gives the block a component in every mode.
       MultiVector first_block()
       {
         constexpr double share_of_others = 1e-3;
@@ -377,7 +377,8 @@ namespace Squeal
                 modes.n_basis    = search.n_basis_largest;
                 return modes;
               }
-            // The estimate assumes uniform masses: tighten its limit by the ratio to the true residual
+            // The residual estimate assumes uniform masses and was too small: divide its tolerance by the factor by which the true residual
+            // exceeds the limit
             search.tolerance *= 0.3 / excessive;
             if (search.exhausted || search.tolerance < std::numeric_limits<double>::epsilon())
               throw_unconverged(search.state, excessive * options.tolerance, "rounding errors do not allow a smaller residual", options);

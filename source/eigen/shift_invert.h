@@ -67,7 +67,7 @@ namespace Squeal
     double       tolerance; ///< relative residual of the inverted problem
     int          block_size;
     unsigned int seed;
-    int          attempt; ///< number of previous starts without new modes: later starts search a larger space
+    int          attempt; ///< number of previous starts without new modes, which enlarges the space of Lanczos and Anasazi
     std::string  what;
   };
 

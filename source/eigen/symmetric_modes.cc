@@ -186,14 +186,14 @@ namespace Squeal
     while (upper.n_modes < n_modes)
       {
         if (!(upper.limit < highest))
-          throw SolverError(what + ": fewer than " + std::to_string(n_modes) + " lie below " +
+          throw SolverError(what + ": fewer than " + std::to_string(n_modes) + " modes lie below " +
                               std::to_string(std::lround(hertz(std::sqrt(highest)))) + " Hz",
                             what, "lower the number of modes");
         lower = upper;
         upper = count_below(K, M, std::min(2. * upper.limit, highest), what);
       }
 
-    // Use regula falsi, because modes are distributed evenly; trial values stay away from the ends by a tenth of the interval
+    // Use regula falsi, because modes are distributed fairly evenly; trial values stay away from the ends by a tenth of the interval
     while (upper.n_modes > n_modes && upper.limit - lower.limit > cluster_width * upper.limit)
       {
         const double    share                      = (n_modes + 0.5 - lower.n_modes) / (upper.n_modes - lower.n_modes);

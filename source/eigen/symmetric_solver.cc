@@ -121,7 +121,7 @@ namespace Squeal
         }
       catch (const SolverError &)
         {
-          // K is probably singular because of rigid-body motions: try a shift, which throws if there is another reason
+          // K is probably singular because of rigid-body motions: try a shift; the factorisation then throws if there is another reason
         }
     if (shift == 0.)
       shift = shift_of_free_bodies * count.limit;
@@ -136,7 +136,7 @@ namespace Squeal
 
     RitzPairs pairs;
     int       n_found = 0, n_fruitless = 0;
-    // Start again while modes are missing: a start may miss members of multiple eigenvalues, which further starts find
+    // Start again while modes are missing: a start may miss members of multiple eigenvalues, which further starts can find
     for (unsigned int attempt = 0; n_found < count.n_modes; ++attempt)
       {
         const std::optional<MultiVector> fresh = krylov(count.n_modes - n_found, attempt, n_fruitless, pairs.vectors);
@@ -281,7 +281,7 @@ namespace Squeal
         std::ostringstream message;
         message << "mode " << result.worst + 1 << " of " << count.n_modes << " has a relative residual of " << result.values[result.worst]
                 << ", " << result.excess << " times the limit";
-        fail(message.str(), "choose another Real modes/Solver, or raise Real modes/Tolerance");
+        fail(message.str(), "raise Real modes/Tolerance, or choose another Real modes/Solver");
       }
 
     SymmetricModes modes;

@@ -15,7 +15,7 @@ namespace Squeal
   /// Systems up to this size are solved densely.
   constexpr int largest_dense_system = 300;
 
-  /// Solves one symmetric eigenproblem: counts the modes on construction, then finds, refines and accepts them.
+  /// Solves one symmetric eigenproblem: counts the modes on construction, then finds, refines and checks them.
   class SymmetricSolver
   {
   public:
@@ -62,7 +62,7 @@ namespace Squeal
 
     const LinearOperator &inverse();
 
-    /// Block inverse iteration until the residuals are accepted.
+    /// At most three steps of block inverse iteration, until the residuals meet their limits.
     Residuals refine(RitzPairs &pairs);
 
     Residuals      residuals(const RitzPairs &pairs) const;

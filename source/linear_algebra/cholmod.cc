@@ -19,8 +19,7 @@ namespace Squeal
     /// Matrix size below which the total time is shorter with minimum degree than with nested dissection.
     constexpr int rows_for_dissection = 2000;
 
-    /// Number of right-hand sides of a task. It gives work to all threads, but several columns to each task, because a task reads the whole
-    /// factor.
+    /// Number of right-hand sides per task: small enough to occupy all threads, but several, because every task reads the whole factor.
     int columns_of_task(const int n_columns)
     {
       constexpr int fewest = 4, most = 32;

@@ -11,7 +11,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Reciprocal condition number below which a matrix counts as singular; exactly singular matrices have 10⁻¹⁷ to 10⁻¹⁵ [-].
+    /// Reciprocal condition number below which a matrix counts as singular; rounding gives exactly singular matrices 10⁻¹⁷ to 10⁻¹⁵ [-].
     constexpr double singular_condition = 1e-14;
     /// Smaller limit for Q(λ), which is nearly singular close to an eigenvalue [-].
     constexpr double singular_complex_condition = 1e-16;

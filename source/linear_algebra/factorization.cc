@@ -32,7 +32,8 @@ namespace Squeal
   void throw_library_failure(const std::string &library, const std::string &failure, const std::string &what)
   {
     throw SolverError(library + " failed: " + failure, what,
-                      "use a coarser mesh or a machine with more memory, or choose another library by Linear algebra/Factorization");
+                      "use a coarser mesh or a machine with more memory; for a positive definite matrix, try another "
+                      "Linear algebra/Factorization");
   }
 
   std::unique_ptr<Factorization> factorize_positive_definite(const SparseMatrix        &A,

@@ -9,7 +9,7 @@
 
 namespace Squeal
 {
-  // Factorisations of each library; only factorization.cc chooses the library
+  // Factorisations of each library; factorization.cc chooses between them
 
   /// CHOLMOD's supernodal LLᵀ on one process.
   std::unique_ptr<Factorization> cholmod_factorization(const SparseMatrix &A, const std::string &what);

@@ -67,7 +67,7 @@ namespace Squeal
         const char *const end  = word.data() + word.size();
         const auto        read = std::from_chars(word.front() == '+' ? word.data() + 1 : word.data(), end, result);
         if (read.ec != std::errc() || read.ptr != end)
-          refuse(in_quotes(word) + (std::is_integral_v<Number> ? " is not an integer" : " is not a number"));
+          refuse(in_quotes(word) + (std::is_integral_v<Number> ? " is not a valid integer" : " is not a valid number"));
         return result;
       }
 

@@ -18,7 +18,7 @@ namespace Squeal
   {
     using Complex = std::complex<double>;
 
-    /// |Re λ| / Im λ of modes with nearly equal λ up to this limit is a rounding error [-].
+    /// |Re λ| / Im λ up to this limit is a rounding error [-].
     constexpr double neutral_rate = 1e-11;
     /// Weight of the distance of λ relative to overlaps of vectors [-].
     constexpr double closeness_weight = 0.01;
@@ -75,7 +75,7 @@ namespace Squeal
             }
         }
 
-      // Link modes by vectors if these distinguish the modes, else by the extrapolation of λ
+      // Link modes mainly by their vectors if these distinguish the modes; otherwise, extrapolated λ have the same weight
       const int            r        = std::max(modes.points[k].right.rows(), modes.points[k + 1].right.rows());
       DenseMatrix          overlaps = DenseMatrix::Zero(n, n);
       std::vector<Complex> predicted;
@@ -244,13 +244,13 @@ namespace Squeal
       if (!(grid[i] > grid[i - 1]))
         throw Error("friction coefficient " + std::to_string(grid[i]) + " is not larger than the previous one, " +
                       std::to_string(grid[i - 1]),
-                    "modes over the friction coefficient", "give friction coefficients in ascending order, each only once");
+                    "tracking of modes", "give friction coefficients in ascending order, each only once");
     for (const auto &[quantity, name] : {std::make_pair(options.largest_circular_frequency, "end of the band"),
                                          {options.threshold_tolerance, "tolerance of thresholds"},
                                          {options.smallest_step, "smallest step"}})
       if (!(quantity > 0.))
-        throw Error("the " + std::string(name) + " is " + std::to_string(quantity) + ", but must be positive",
-                    "modes over the friction coefficient", "give a positive value");
+        throw Error("the " + std::string(name) + " is " + std::to_string(quantity) + ", but must be positive", "tracking of modes",
+                    "give a positive value");
 
     TrackedModes tracked{options, {}, {}, {}, {}, {}, {}};
     insert(tracked, evaluate, grid, false);

@@ -98,7 +98,7 @@ namespace Squeal
   ChartPoint ChartModel::evaluate(const OperatingPoint &point) const
   {
     const ParameterValues values = system.at(point.friction_coefficient, point.values);
-    // Compute modes in modal coordinates, in which most matrices are diagonal; vector products do not change
+    // Compute modes in modal coordinates, in which most matrices are diagonal; inner products do not change
     const double     end   = (1. + band_margin) * largest_circular_frequency;
     auto             modal = modal_modes_of_band(model, values, end);
     ReducedModes     modes = modal ? std::move(*modal) : local_reduced_modes_by_qr(model, values, end);
@@ -179,7 +179,6 @@ namespace Squeal
     const double at_a = value(a), at_b = value(b);
     if (!(at_a * at_b < 0.))
       return {};
-    // The search ends if a value is NaN
     constexpr double resolution = 1e-10;
     std::uintmax_t   n_steps    = 50;
     const auto       bracket    = boost::math::tools::toms748_solve(
@@ -207,7 +206,7 @@ namespace Squeal
 
   std::optional<MultiVector> ChartModel::new_vectors(const std::vector<ModesAt> &sets) const
   {
-    const int n_missing = system.map().n() - model.size(); // number of vectors by which the basis is incomplete
+    const int n_missing = system.map().n() - model.size(); // number of vectors missing for a complete basis
     if (n_missing <= 0)
       return {};
     std::vector<ProjectedResiduals::ModesAt> modes;
@@ -226,7 +225,7 @@ namespace Squeal
     std::optional<MultiVector> responses = residuals.principal_responses(model, modes, compression_tolerance);
     if (!responses)
       return {};
-    // Remove components in the basis first, so that the tolerance is relative to the remainder
+    // Remove components within the span of the basis first, so that the tolerance is relative to the remainder
     remove_basis(*system.mass, model, *responses);
     auto result =
       orthonormalize_if_any(*system.mass, &model.basis(), std::move(*responses), dependence_tolerance, nullptr, FirstProjection::done);

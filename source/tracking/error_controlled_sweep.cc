@@ -15,11 +15,11 @@ namespace Squeal
 {
   namespace
   {
-    /// Fraction of the tolerance that is required at training points, so that points between them also meet the tolerance [-].
+    /// Fraction of the tolerance that is required at training points, so that points between them are likely to meet the tolerance [-].
     constexpr double training_factor = 0.5;
 
-    /// Principal axes whose squares are below compression_factor times the tolerance are dropped from the basis, see compressed_basis()
-    /// [-].
+    /// Principal axes whose squared length is below compression_factor times the tolerance are dropped from the basis, see
+    /// compressed_basis() [-].
     constexpr double compression_factor = 10.;
 
     /// Number of successive extensions that do not halve the error of a point, after which this error counts as a rounding error. An
@@ -33,7 +33,7 @@ namespace Squeal
       return after < 0.5 * before ? 0 : n_so_far + 1;
     }
 
-    /// Extends the basis for the inaccurate modes of a point; returns the reason if this is impossible, else an empty text.
+    /// Extends the basis for the inaccurate modes of a point; returns the reason if this is impossible, else an empty string.
     std::string grow(ChartModel           &model,
                      const OperatingPoint &point,
                      const ChartPoint     &chart,

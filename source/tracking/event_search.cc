@@ -118,8 +118,8 @@ namespace Squeal
       const double l = modes.mu(k), r = modes.mu(k + 1);
       if (search.at_once && grows_at_once(modes, search))
         return {l, 0.};
-      // The growth of the double mode exceeds rounding errors only in this interval: the onset may be anywhere from the first point to its
-      // end
+      // The growth of the double mode exceeds rounding errors only in this interval: the onset may be anywhere from the first point to the
+      // end of the interval
       if (search.multiple)
         return {modes.mu(0), r - modes.mu(0)};
       if (modes.width(k) > modes.tolerance(k))
@@ -212,7 +212,8 @@ namespace Squeal
         error *= 2. * modes.lambda(search.branch, search.upward ? search.interval + 1 : search.interval).imag();
       if (error == 0.)
         return 0.;
-      // If there is no slope, for example if a mode begins at zero, the uncertainty is the interval, in which the number of modes changes
+      // If there is no slope, for example if a mode begins at zero, the uncertainty is the width of the interval, in which the number of
+      // modes changes
       const double change = slope(modes, search);
       return change > 0. ? error / change : modes.width(search.interval);
     }

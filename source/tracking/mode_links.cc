@@ -41,8 +41,8 @@ namespace Squeal
       return basis.Q(Eigen::placeholders::all, kept);
     }
 
-    /// cos² of the largest angle between two subspaces; if one has a lower dimension because its vectors are parallel, of the largest angle
-    /// to its projection on the other.
+    /// cos² of the largest angle between two subspaces. If one has a lower dimension because its vectors are parallel, its largest angle to
+    /// its projection on the other is used.
     double agreement_of(const ComplexDenseMatrix &first, const ComplexDenseMatrix &second)
     {
       const ComplexDenseMatrix C       = safe_basis(first).adjoint() * safe_basis(second);
@@ -50,7 +50,7 @@ namespace Squeal
       return squares.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff();
     }
 
-    /// |xᴴy|² of unit vectors; for several y with the same λ, the share of x in their span.
+    /// |xᴴy|² of unit vectors; for several y with the same λ, the squared norm of the projection of x on their span.
     DenseMatrix shares(const ComplexDenseMatrix &X, const ComplexDenseMatrix &Y, const std::vector<int> &cluster)
     {
       DenseMatrix result = (X.adjoint() * Y).cwiseAbs2();
@@ -132,7 +132,7 @@ namespace Squeal
             if (!first.empty())
               sort_block(first, second);
           }
-        // The number of modes in the band without counterpart must equal the change of the number of real pairs
+        // The number of modes lost in the band, minus those gained, must equal the increase in real pairs
         const int lost = in_band(a, links.lost), gained = in_band(b, links.gained);
         links.resolved = 2 * (lost - gained) == b.point.n_real() - a.point.n_real() && (lost == 0 || gained == 0);
         for (const ModeBlock &block : links.blocks)
@@ -208,7 +208,7 @@ namespace Squeal
         links.blocks.push_back({first, second, exceptional});
       }
 
-      /// Divides a block by T, summed over groups; false if it cannot be divided.
+      /// Divides a block according to T, summed over groups; false if it cannot be divided.
       bool divide_by_parts(const std::vector<int> &first, const std::vector<int> &second, const DenseMatrix &T, const bool join_parallel)
       {
         const auto rows = a.groups(first, join_parallel), columns = b.groups(second, join_parallel);

@@ -13,20 +13,20 @@ namespace Squeal
   {
     using Complex = std::complex<double>;
 
-    /// Largest |λ_1 − λ_2| / |λ_1| of modes that may coalesce within a step [-].
+    /// Largest |Im (λ_1 − λ_2)| / Im λ_1 of modes that may coalesce within a step [-].
     constexpr double nearby = 0.1;
-    /// An approach to zero is evaluated if the predicted δ² or Re λ decreases below this fraction of its values at the ends of the step
-    /// [-].
+    /// An approach to zero is evaluated if the predicted |δ²| or |Re λ| falls below this fraction of its smaller value at the ends of the
+    /// step [-].
     constexpr double remaining = 0.3;
-    /// Two modes whose coupling changes λ_1 − λ_2 by less than this fraction do not interact [-].
+    /// Two modes do not interact if their coupling is below this fraction of the difference between their growth rates [-].
     constexpr double interacting = 0.1;
-    /// Two modes with a larger |Re (λ_1 − λ_2)| / |Im (λ_1 − λ_2)| do not coalesce because their growth rates differ [-].
+    /// Two modes with a larger |Re (λ_1 − λ_2)| / |Im (λ_1 − λ_2)| are assumed not to coalesce because their growth rates differ [-].
     constexpr double other_growth = 0.5;
     /// Fraction of a step within which several approaches share one evaluation [-].
     constexpr double one_look = 0.2;
     /// Number of successive steps that reduce the interval by less than half before it is bisected.
     constexpr int patience = 2;
-    /// Number of such steps before predictions are no longer used; each prediction adds two values.
+    /// Number of such steps before predictions are no longer used; each prediction adds up to two points.
     constexpr int most_predictions = 5;
 
     /// True if a step must be divided before the mode of a branch can be distinguished from others.
@@ -67,8 +67,8 @@ namespace Squeal
           if (q > l && q < r)
             x = q;
         }
-      // Choose a point slightly beyond the zero, as seen from the nearer end of the interval. The next interval is then short, and no point
-      // lies exactly on a coalescence, where eigenvectors coincide
+      // Choose a point slightly beyond the zero, as seen from the nearer end of the interval. The next interval is then normally short, and
+      // points avoid the exact coalescence, where eigenvectors coincide
       const double margin = 0.5 * std::min(modes.tolerance(k), r - l);
       return std::clamp(x + (x < middle ? 0.5 : -0.5) * margin, l + margin, r - margin);
     }
@@ -131,7 +131,7 @@ namespace Squeal
     /**
      * Points at which branches that exchange their order in a step would coalesce if they interact. The 2 × 2 problem is interpolated
      * linearly between the diagonal matrix Λ_a and B = X Λ_b X⁻¹ with Φ_b = Φ_a X. At the position t at which the frequencies are equal, δ²
-     * = (Re λ_1 − Re λ_2)² + 4 t² B_12 B_21. Modes with different growth rates do not coalesce.
+     * = (Re λ_1 − Re λ_2)² + 4 t² B_12 B_21. Modes whose growth rates differ too much are ignored.
      */
     std::vector<double> interactions(const TrackedModes &modes, const int k)
     {
@@ -183,8 +183,8 @@ namespace Squeal
       for (int point = k - 1; point <= k + 2; ++point)
         if (const auto y = search_value(modes, search, point))
           {
-            // Skip points at which the function is larger than at the end of the step, and much shorter steps, whose differences are
-            // rounding errors
+            // Skip points at which the function is larger than at the adjacent end of the step, and points of much shorter steps, whose
+            // differences are dominated by rounding errors
             if ((point < k && (modes.width(point) < 0.1 * modes.width(k) || *y > *search_value(modes, search, k))) ||
                 (point > k + 1 && (modes.width(point - 1) < 0.1 * modes.width(k) || *y > *search_value(modes, search, k + 1))))
               continue;
@@ -238,9 +238,9 @@ namespace Squeal
     }
 
     /**
-     * Points at which an event may be hidden inside a step: Re λ of a decaying mode, or δ² of two modes at some distance, is about to reach
-     * zero according to the polynomial through the surrounding points. Several approaches close to each other, for example of equal pins,
-     * share one evaluation; if it is not sufficient, the next round adds another evaluation.
+     * Points at which an event may be hidden inside a step: Re λ of a decaying mode, or δ² of two separate modes, is about to reach zero
+     * according to the polynomial through the surrounding points. Several approaches close to each other, for example of equal pins, share
+     * one evaluation; if it is not sufficient, the next round adds another evaluation.
      */
     std::vector<double> approaches(const TrackedModes &modes, const int k)
     {

@@ -24,7 +24,7 @@ namespace Squeal
     ComplexDenseMatrix right, left;
   };
 
-  /// Modes over the friction coefficient: evaluated points, and the mode of each branch at each point.
+  /// Modes as functions of the friction coefficient: evaluated points, and the mode of each branch at each point.
   struct TrackedModes
   {
     const ChartOptions                     &options;
@@ -51,7 +51,7 @@ namespace Squeal
       return mu(k + 1) - mu(k);
     }
 
-    /// Index of the mode of a branch at a point; -1 beyond the chart.
+    /// Index of the mode of a branch at a point; -1: none.
     int mode(const int branch, const int k) const
     {
       return k < 0 || k >= n_points() ? -1 : branches[branch].modes[k];
@@ -62,7 +62,7 @@ namespace Squeal
       return points[k].lambda[mode(branch, k)];
     }
 
-    /// Width below which intervals are not searched further.
+    /// Intervals up to this width are not searched further.
     double tolerance(const int k) const
     {
       constexpr double rounding = 8. * std::numeric_limits<double>::epsilon();
@@ -76,7 +76,7 @@ namespace Squeal
     }
   };
 
-  /// Links the modes of all points to branches.
+  /// Joins the linked modes of all points to form branches.
   void follow_branches(TrackedModes &modes);
 
   /// Search for the sign change of a function of one or two branches in a step.
@@ -93,7 +93,7 @@ namespace Squeal
     int  interval;
     int  branch, partner;
     bool upward;           ///< true for an onset, or for a mode that enters the band
-    bool at_once  = false; ///< true if the modes are neutral at the first point of the chart
+    bool at_once  = false; ///< true for an onset in the first step, with neutral modes at the first point
     bool multiple = false; ///< true for two modes that are indistinguishable from the first point up to this interval
   };
 
@@ -102,8 +102,8 @@ namespace Squeal
   /// Value of the function of a search at point k; empty if its branches do not exist there.
   std::optional<double> search_value(const TrackedModes &modes, const EventSearch &search, int k);
 
-  /// True if a branch that is neutral at the first point grows from there: the quotient Re λ / μ, or δ² / μ² for a double mode,
-  /// extrapolated linearly to the first point, is positive and of similar size.
+  /// True if a branch that is neutral at the first point grows from there: the first step is too short to be divided, or Re λ / Δμ (δ² /
+  /// Δμ² for a double mode), extrapolated linearly to the first point, is similar to its value at the next point.
   bool grows_at_once(const TrackedModes &modes, const EventSearch &search);
 
   /// Friction coefficients for further evaluations; @p predict may be empty.

@@ -171,7 +171,7 @@ TEST_F(DiscModes, WaveSharesOfAnalyticFields)
 
 TEST(PinLabels, ModesOfRoundPinsInOrder)
 {
-  // The lowest modes of slender pins are flexural; each family is numbered by frequency across all pins
+  // The lowest modes of a slender pin are flexural; each family is numbered in ascending order of frequency
   const Scene         s = pin_scene();
   std::vector<double> torsion;
   for (const ContactBoundary boundary : {ContactBoundary::free, ContactBoundary::sliding})

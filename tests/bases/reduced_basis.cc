@@ -47,7 +47,7 @@ namespace
     return kinds;
   }
 
-  /// Disc and three pins, with half the number of elements in each direction if they are quadratic.
+  /// Disc and three pins, with fewer elements if they are quadratic.
   Mesh mesh_of(const Case &c)
   {
     const int n = c.element == Element::trilinear ? 2 : 1;
@@ -191,7 +191,7 @@ TEST_P(ReducedBases, KeepTheContactClosedAndAreOrthonormal)
       if (is_connected)
         {
           EXPECT_EQ(basis.connection.rank, n_c);
-          EXPECT_EQ(basis.n_dropped, 0); // component bases contain no duplicate vectors
+          EXPECT_EQ(basis.n_dropped, 0); // vectors of component bases are linearly independent
           EXPECT_GT(basis.connection.smallest_kept, 1e-9);
           EXPECT_EQ(basis.connection.largest_dropped, 0.);
           EXPECT_LT(basis.connection.constraint_error, 1e-10);
@@ -322,7 +322,7 @@ TEST(CompleteBasis, GivesTheFullModel)
       EXPECT_LT(largest(distances(full.values, reduced.values)), 1e-10);
     }
 
-  // An additional copy of a vector makes the basis linearly dependent
+  // With an additional vector, the basis is larger than the coupled system
   const MultiVector first = view(disc, 0, 1), more = join({&disc, &first});
   in.sets[BasisSource::disc_sliding] = &more;
   EXPECT_THROW(reduced_basis(*find_recipe("fixed"), in), SolverError);

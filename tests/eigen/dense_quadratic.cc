@@ -147,7 +147,7 @@ TEST(DenseQuadratic, ModesOfABandApartFromTheRest)
   DenseMatrix  K = random_entries(n, 4), D = random_entries(n, 7) / n, M = random_entries(n, 5) * 0.1 / n;
   for (int i = 0; i < n; ++i)
     {
-      // The first mode of the reference is a rigid-body motion
+      // The first mode of the reference pencil is a rigid-body motion
       K(i, i) += i == 0 ? 0. : std::pow(1. + i + (i < n_band ? 0 : 20), 2);
       D(i, i) += 0.02 * (1. + i);
     }

@@ -220,7 +220,7 @@ TEST(QuadraticModes, ZeroDampingKeepsTheSymmetryOfTheSpectrum)
   const auto one = linear.modes(0.4), two = quadratic.modes(0.4);
   ASSERT_GT(one.values.size(), 15u);
   expect_same(two.values, one.values, 1e-9);
-  // Without a damping matrix, the spectrum is symmetric to rounding errors
+  // Without a damping matrix, the spectrum is symmetric within rounding errors
   for (const auto &[values, relative] : {std::make_pair(one.values, 1e-15), {two.values, 1e-9}})
     for (const Complex &value : values)
       EXPECT_TRUE(std::any_of(values.begin(), values.end(), [&value = value, relative = relative](const Complex &other) {

@@ -37,7 +37,7 @@ TEST(EnergyShares, AreThoseOfTheRows)
 
 TEST(ModeGroups, OfTheFrictionlessProblem)
 {
-  // The group follows from the energy, not from the label
+  // Energy, not the label, determines whether a mode belongs to the disc
   EXPECT_EQ(frictionless_groups({0.99, 0.1, 0.5, 0.49, 0.}, {F1, F1, F1, T12, T12}),
             (std::vector<std::string>{"disc", "F1", "disc", "T12", "T12"}));
 }

@@ -94,7 +94,7 @@ TEST(ModePairing, MarksTurnedModesAndNoOther)
 
 TEST(ModePairing, FindsClustersOfManyModes)
 {
-  // Only the 12 randomly mixed modes have no counterparts; a mode with a small share of the cluster has one
+  // Only the 12 randomly mixed modes have no individual counterparts; a mode with a small share of the cluster has one
   const ComplexDenseMatrix X = orthonormal(15);
   ComplexDenseMatrix       Y = mixed(X, 12);
   std::vector<Complex>     lambda;
@@ -182,7 +182,7 @@ TEST(DiscretisationError, DecidesWhatGrowsBeyondIt)
 
 TEST(DiscretisationError, NeutralModesThatMayMeetAreUndecided)
 {
-  // Gaps on the fine and the coarse mesh are 1 and 4, 1 and 1.5, and 0.001 and 0.01, too small for noticeable growth
+  // Gaps on the fine and the coarse mesh: 1 and 4; 1 and 1.5, a change below 100 %; 0.001 and 0.01, too small for noticeable growth
   const std::vector<DiscretisationError> found = errors({104. * i, 100. * i, 201.5 * i, 200. * i, 300.01 * i, 300. * i},
                                                         {101. * i, 100. * i, 201. * i, 200. * i, 300.001 * i, 300. * i});
   for (const int j : {0, 1})

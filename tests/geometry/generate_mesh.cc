@@ -123,7 +123,7 @@ TEST(GenerateMesh, PinsThatAreNotOppositeAreAtTheirPlaces)
     expect_contact_pairs(mesh, 12 * parameters.nodes_per_pin_face);
     EXPECT_GT(check_mesh(mesh).worst_scaled_jacobian, quality);
 
-    // Every pin is a regular polygon
+    // The outline of every pin is a regular polygon
     const unsigned int n_outline = parameters.nodes_per_pin_face == 7 ? 6 : 12;
     const double       radius    = parameters.pin_diameter / 2.;
     EXPECT_NEAR(volume(mesh, "pin_"), 12. * polygon(radius, n_outline) * parameters.pin_height, 1e-10);
@@ -171,7 +171,7 @@ TEST(GenerateMesh, OppositePinsStayWhereThePlanHasThem)
 
 TEST(GenerateMesh, CloseAndThinPinsAreMeshed)
 {
-  // The pad of a railway brake with 18 pins, at a distance of 2.56 mm
+  // The pad of a railway brake with 18 pins, whose smallest distance is 2.56 mm
   GeometryParameters parameters;
   parameters.disc_inner_radius = 0.175;
   parameters.disc_outer_radius = 0.320;

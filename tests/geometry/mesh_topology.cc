@@ -147,7 +147,7 @@ namespace
     EXPECT_NO_THROW(check_topology(mesh, 1e-6, "the.msh"));
   }
 
-  /// Expects the mesh to be rejected for every scale, position and precision of the coordinates.
+  /// Expects the mesh to be rejected for several scales, positions and precisions of the coordinates.
   void expect_refused(const Mesh &mesh, const std::vector<std::string> &mentions)
   {
     expect_mentions(refusal(mesh), mentions);
@@ -242,7 +242,7 @@ TEST(MeshTopology, HangingNodesAreFound)
 
 TEST(MeshTopology, TrianglesUponQuadrilateralsAreFound)
 {
-  // Place a pyramid on a cube, and two tetrahedra instead
+  // Place a pyramid on a cube, then two tetrahedra instead of the pyramid
   Mesh mesh = mesh_of({"disc"});
   add_grid(mesh, 0, {0., 1.}, {0., 1.}, {0., 1.}, cartesian);
   mesh.points.emplace_back(0.4, 0.6, 2.);

@@ -104,7 +104,7 @@ TEST(Polygon, CirclesAreFoundInAnyUnitOfLengthAndFromArcs)
         EXPECT_NEAR(circle->centre[1] / radius, -2., 1e-10);
       }
 
-  // No circle is found for points on an ellipse, too few points or collinear points
+  // No circle is found for points on an ellipse, or for too few, coincident or collinear points
   const std::vector<double> angles = {0., 1., 2., 3., 4., 5.};
   EXPECT_TRUE(circle_through(on_ellipse(0.026, 1. + 1e-7, angles)));
   EXPECT_FALSE(circle_through(on_ellipse(0.026, 1. + 1e-5, angles)));

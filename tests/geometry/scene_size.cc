@@ -34,7 +34,7 @@ TEST(DiscAxes, OnesThatAreNotTheZAxisAreRefusedByName)
     const double factor = std::abs(std::atan2(p[1], -p[0])) < std::acos(-1.) / 6. ? 1.2 : 1.;
     return Point{factor * p[0], factor * p[1], p[2]};
   }));
-  // Square discs, centred and off-centre, are accepted, because they are not round
+  // Square discs are not round, so that their axis is not checked
   for (const double offset : {0., 1.})
     EXPECT_FALSE(check([&](const Point &p) {
       const double factor = std::hypot(p[0], p[1]) / std::max(std::abs(p[0]), std::abs(p[1]));

@@ -47,7 +47,7 @@ TEST(Determinants, OfADenseComplexMatrix)
   EXPECT_EQ(singular.log_determinant().real(), -std::numeric_limits<double>::infinity());
   EXPECT_EQ(singular.inverse_norm(), std::numeric_limits<double>::infinity());
 
-  // NaN is detected before LAPACK is called
+  // Matrices with NaN are not factorised
   A(1, 2) = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(ComplexLU(A).inverse_norm(), std::numeric_limits<double>::infinity());
 }

@@ -53,7 +53,7 @@ TEST_P(Factorizations, PositiveDefiniteSystemsAreSolved)
 
 TEST_P(Factorizations, SolutionsForAnyNumberOfColumns)
 {
-  // Compute factors by one task, by several tasks with a common top, and by separate trees without a top
+  // Use a small matrix, a matrix large enough for nested dissection, and uncoupled blocks
   for (const auto &A : {laplacian(7, 1, GetParam()), laplacian(22, 1, GetParam()), laplacian(9, 30, GetParam())})
     {
       const auto        factor = factorize_positive_definite(*A, FactorizationLibrary::automatic, "test matrix");
@@ -66,7 +66,7 @@ TEST_P(Factorizations, SolutionsForAnyNumberOfColumns)
               MultiVector X(B.map(), k), alone(B.map(), 1);
               factor->apply(view(B, 0, k), X);
               EXPECT_LT(residual(*A, X, view(B, 0, k), false), 1e-12) << A->n_rows() << " rows, " << k << " columns";
-              // A solution changes only by rounding errors with the other columns
+              // Other columns affect a solution only by rounding errors
               factor->apply(view(B, k - 1, 1), alone);
               EXPECT_LT(column_norms(view(X, k - 1, 1) - alone)[0], 1e-13 * column_norms(alone)[0]) << k << " columns";
             }
@@ -107,7 +107,7 @@ TEST_P(Factorizations, MatricesThatAreNotDefiniteAreRefused)
 
 TEST_P(Factorizations, InertiaCountsEigenvalues)
 {
-  // The second matrix is large enough for nested dissection, whose ordering every count reuses
+  // Count eigenvalues of two uncoupled bodies and of a larger body
   for (const auto &[m, n_copies] : {std::make_pair(6, 2), {14, 1}})
     {
       const auto L      = laplacian(m, n_copies, GetParam());

@@ -144,7 +144,7 @@ TEST_P(MultiVectors, OrthonormalizeResolvesNearlyParallelDirections)
   const RowMap map = rows(60, GetParam());
   const auto   M   = inner_product(map);
 
-  // A single Gram matrix cannot resolve directions at angles of 1e-2, 1e-4, ..., 1e-12
+  // A single Gram matrix cannot resolve all directions at angles of 1e-2, 1e-4, ..., 1e-12
   const MultiVector fresh = orthonormalize(*M, nullptr, random_vectors(map, 7, 3), 1e-8);
   MultiVector       X(map, 7);
   for (int j = 0; j < 7; ++j)

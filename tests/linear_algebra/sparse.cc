@@ -82,7 +82,7 @@ TEST_P(Sparse, SumsOfDifferentPatterns)
 
 TEST_P(Sparse, ProductsWithAnyNumberOfColumns)
 {
-  // Sizes include empty rows, rows longer than the unrolled loop, and wide matrices with fewer or more entries than columns
+  // Sizes include empty rows, long rows, and wide matrices with fewer or more entries than columns
   for (const auto &[n_rows, n_columns, most_entries] : {std::array<int, 3>{{90, 70, 30}}, {{5, 400, 2}}, {{5, 400, 150}}})
     {
       const int  m = n_columns, period = most_entries;

@@ -23,7 +23,7 @@ TEST(Flutter, ClosedForm)
 
 TEST(Flutter, InstabilityBeginsAtTheThreshold)
 {
-  // Near coalescence δλ ~ √ε, and the accuracy at a distance of 1e-7 is only about 1e-9
+  // Near coalescence, δλ ~ √ε: the accuracy at a distance of 1e-7 is only about 1e-9
   const Flutter       flutter;
   const CoupledSystem system = flutter.system();
   for (const auto &values : solutions(system, flutter.coalescence() * (1. - 1e-7)))

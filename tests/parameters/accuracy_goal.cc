@@ -98,7 +98,7 @@ TEST(CoarserMesh, SetsParametersOfTheGeometry)
 
 TEST(MeshFamily, ScalesElementsLayersAndPinFaces)
 {
-  // Default mesh: elements of 11.5 mm, 19 = 1 + 3 k (k + 1) nodes per pin face with k = 2, 4 and 3 layers
+  // Default mesh: elements of 11.5 mm, 19 = 1 + 3 k (k + 1) nodes per pin face (k = 2), 4 pin layers and 3 disc layers
   for (const auto &[factor, size, nodes, of_pin, of_disc] :
        std::vector<std::tuple<double, double, unsigned int, unsigned int, unsigned int>>{{1., 0.0115, 19, 4, 3},
                                                                                          {2., 0.00575, 61, 8, 6},

@@ -160,7 +160,7 @@ TEST(Declarations, SayWhatEveryKindAccepts)
   EXPECT_EQ(accepted, (std::vector<std::string>{"a number in m", "a number <= 2.5", "a number in 1e-14 ... 1e-04", "an integer",
                                                 "numbers in -2 ... 7, separated by commas", ""}));
 
-  // Only texts with a custom format lack a description of accepted values
+  // Only text parameters with a custom format lack a description of accepted values
   Declarations             all;
   Parameters               parameters;
   std::vector<std::string> free_texts;

@@ -42,7 +42,7 @@ namespace
 
   const std::vector<Mount> guided = {{"disc_bore", 1e11, 1e11, 1e11}, {"pad_back", 1e9, 1e9, 0.}};
 
-  /// Materials with zero Poisson's ratio, so that the pad consists of columns in compression.
+  /// Materials with zero Poisson's ratio, so that the pad behaves like a set of columns in compression.
   MaterialParameters materials(const std::vector<Mount> &mounts)
   {
     MaterialParameters result = mounted(mounts);
@@ -244,7 +244,7 @@ TEST(PressedFaces, ADiscThatFloatsBetweenPads)
   check(state);
   for (const PinContact &pin : pin_contacts(s.model, s.interface, state, s.operation))
     EXPECT_NEAR(pin.load, 1000., 1e-7);
-  // Loads that are not in equilibrium
+  // Without a load on its back, the fourth pin is not held
   expect_refusal([&] { steady_sliding(sliding, s.operation, pressed({backs[0], backs[1], backs[2]})); }, {"nothing holds pin_"});
 }
 

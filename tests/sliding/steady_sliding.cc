@@ -336,7 +336,7 @@ TEST(SteadySliding, ADiscThatMovesFreely)
 
 TEST(SteadySliding, RatesOfReactionsAgreeWithDifferences)
 {
-  // Changes of disc stiffness, ring width and gap slope with open nodes, for a disc that is held, floats or rotates freely
+  // Change disc stiffness, ring width and gap slope, with open nodes, for a disc that is held, floats or rotates freely
   struct Change
   {
     double young_modulus, bore, taper;

@@ -84,7 +84,7 @@ TEST(DesignChecks, ValuesAreHeldAgainstTheirBoundsFirst)
   expect_refusal({"must be >= 0 m, not -0.01", "Geometry/Pin height = -0.01"},
                  "Disc material/Density = 1, 2; Geometry/Pin height = 0.03, -0.01");
   expect_refusal({"integer", "Geometry/Disc layers = 1.5"}, "Geometry/Disc layers = 1 to 3 in 5");
-  // A value that is invalid in combination with a fixed parameter
+  // A value that is invalid together with a fixed parameter
   expect_refusal({"beyond the inner radius", "Geometry/Pin diameter = 0.2"}, "Geometry/Pin diameter = 0.05, 0.2");
   // Samples of ranges are also checked
   expect_refusal({"Poisson", "Pin material/Poisson ratio = 0."}, "Pin material/Poisson ratio = 0.2 to 0.8",

@@ -253,7 +253,7 @@ TEST(OwnSystem, Reduction)
   for (const double beta : undamped_and_damped)
     {
       Solved solved(beta);
-      // Errors are 6e-4 with real modes only, and 4e-6 with their responses to friction
+      // Errors are 6e-4 with real modes only, and 4e-6 with real modes and their responses to friction
       ReducedModel real(solved.system);
       real.extend(MultiVector(*solved.frictionless.real.vectors));
       const ReducedModel responses = starting_model(solved.system, *solved.frictionless.inverse, *solved.frictionless.real.vectors, true);

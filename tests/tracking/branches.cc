@@ -25,7 +25,7 @@ namespace
 
   constexpr ThresholdMechanism coalescence = ThresholdMechanism::coalescence, zero_growth = ThresholdMechanism::zero_growth;
 
-  /// A family of small systems with M = 1.
+  /// A family of small systems whose mass matrix is the identity.
   struct Family
   {
     std::function<DenseMatrix(double)> stiffness;

@@ -56,7 +56,7 @@ namespace Squeal
     int                        contact    = 0; ///< n_c
   };
 
-  /// Input of reduced_basis(). Objects that a basis does not need may be null; pointers must be valid during the call only.
+  /// Input of reduced_basis(). Objects that a basis does not need may be null; pointers need to be valid only during the call.
   struct BasisIngredients
   {
     std::map<BasisSource, const MultiVector *> sets; ///< sets of modes or vectors
@@ -83,8 +83,9 @@ namespace Squeal
     const char              *symbol;
     std::vector<BasisSource> rests_on; ///< quantities that must be computed beforehand
     std::optional<BasisSource>
-         set; ///< input set: the vectors themselves, or modes with one response each; none: one vector per contact node
-    bool is_uncoupled                                           = false;   ///< the vectors have uncoupled dofs
+         set;                  ///< input set: the vectors themselves, or modes with one response each; none: one vector per contact node
+    bool is_uncoupled = false; ///< the vectors are defined on the uncoupled dofs
+
     MultiVector (*compute)(const BasisIngredients &ingredients) = nullptr; ///< null: use the set itself
   };
 
@@ -100,7 +101,8 @@ namespace Squeal
     /// Symbols of the parts: "Phi_f^D Phi_f^P (Psi_an^D - Psi_an^P)".
     std::string columns() const;
 
-    /// True if the columns have uncoupled dofs and are connected by eq. (22); other bases have columns in coupled coordinates.
+    /// True if the columns are defined on the uncoupled dofs and are connected by eq. (22); other bases have columns in coupled
+    /// coordinates.
     bool is_connected() const
     {
       return parts.front()->is_uncoupled;

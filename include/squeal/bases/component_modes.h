@@ -21,9 +21,9 @@ namespace Squeal
     std::shared_ptr<MultiVector> vectors;     ///< n_free × k, orthonormal in M, zero on the other components
   };
 
-  /// Lumped nodal masses [kg] of the rows of this process; zero for other and for clamped nodes. The masses are row sums of M; if some sums
-  /// are not positive, as at the corners of quadratic tetrahedra, the total mass is distributed in proportion to the diagonal (E. Hinton,
-  /// T. Rock, O. C. Zienkiewicz 1976).
+  /// Lumped masses [kg] of all nodes: zero for clamped nodes and for nodes whose rows belong to other processes. The masses are row sums of
+  /// M; if some sums are not positive, as at the corners of quadratic tetrahedra, the total mass is distributed in proportion to the
+  /// diagonal (E. Hinton, T. Rock, O. C. Zienkiewicz 1976).
   std::vector<double> nodal_masses(const Model &model, const SparseMatrix &mass);
 
   /**
@@ -79,7 +79,7 @@ namespace Squeal
    * Labels real or complex coupled modes by their M-inner products with component modes; modes of one shape (a doublet, the F1 modes of all
    * pins) count together. If each mode is dominated by a different component mode, it gets the label of this component mode. If several
    * modes compete (an A0-5 mode with larger motion of the pins), labels are assigned so that the sum of all participations is largest. No
-   * label occurs more often than there are component modes with this label. Participations below 0.1 are ignored.
+   * label occurs more often than there are component modes with this label. Modes with a participation below 0.1 remain unnamed.
    *
    * @param references component modes, as for shape_shares()
    * @param shares     result of shape_shares(), one entry per coupled mode

@@ -46,7 +46,7 @@ namespace Squeal
   /// Family, nodal circles, nodal diameters, rank and body: common to both modes of a doublet, or to the same mode of identical pins.
   using ModeShape = std::tuple<ModeFamily, int, int, int, std::string>;
 
-  /// Label of a mode: the component mode that it resembles most.
+  /// Label of a mode, usually of the component mode that it resembles most.
   struct ModeLabel
   {
     ModeFamily  family          = ModeFamily::unnamed;
@@ -77,7 +77,7 @@ namespace Squeal
 
   /**
    * Assigns signs to labels whose shape occurs exactly twice, except unnamed modes. The sign is plus for the mode that grows or grows
-   * faster or, if neither grows, for the mode with the higher frequency. All tables of all studies use this rule.
+   * faster or, if neither grows, for the mode with the higher frequency.
    *
    * @param labels       labels of modes in ascending order of frequency
    * @param growth_rates one for each mode, zero if the mode does not grow [any unit]; empty: no mode grows
@@ -127,8 +127,9 @@ namespace Squeal
   /**
    * Labels modes of all bodies except the disc. Modes of bodies `pin_*` are F (flexural), T (torsional) or L (longitudinal), depending on
    * the largest energy relative to the axis, which is the mean normal through the centre of the pin's contact nodes. In each family they
-   * are numbered in ascending order of frequency: the first two F modes of every pin are F1. Modes of other bodies have the name of the
-   * body with the largest kinetic energy, and their number among its modes. Modes must be in ascending order of frequency.
+   * are numbered in ascending order of frequency: with n pins, the first 2n F modes are F1, and the first n T modes are T1. Modes of other
+   * bodies have the name of the body with the largest kinetic energy, and their number among its modes. Modes must be in ascending order of
+   * frequency.
    */
   std::vector<ModeLabel> pin_labels(const Model               &model,
                                     const ContactInterface    &interface,

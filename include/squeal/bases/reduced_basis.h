@@ -43,7 +43,7 @@ namespace Squeal
   {
     std::shared_ptr<MultiVector> vectors;        ///< T_r in coupled coordinates, n × r, M_c-orthonormal
     int                          n_r0;           ///< columns of T_r0
-    int                          n_nominal;      ///< columns of T_r according to the formula
+    int                          n_nominal;      ///< nominal number of columns of T_r, see nominal_size()
     int                          n_dropped;      ///< columns of T_r0 T_cr that are dependent, or dropped by POD
     double                       tolerance;      ///< rank tolerance [-]
     double                       condition;      ///< condition number of the Gram matrix of T_r0 T_cr, columns scaled (POD: unscaled) [-]

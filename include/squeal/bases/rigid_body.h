@@ -15,7 +15,8 @@
 
 namespace Squeal
 {
-  /// ω_max / s for the shift s in K + s² M: s is large enough that the inverse does not amplify slow motions [-].
+  /// ω_max / s for the shift s in K + s² M [-]. The shift limits the amplification of low-frequency motions, and of their rounding errors,
+  /// to about 50² relative to a mode at ω_max.
   inline constexpr double band_per_stabilizing_shift = 50.;
 
   /// Translations along and rotations about x, y and z of one component, n × 6 on the uncoupled dofs; other components are at rest.
@@ -105,6 +106,6 @@ namespace Squeal
                                 double                   largest_circular_frequency,
                                 FactorizationLibrary     library);
 
-  /// K⁻¹ Pᵀ, n × n_c: responses to unit forces between the contact nodes, along the direction of P [m/N].
+  /// K⁻¹ Pᵀ, n × n_c: responses to opposite unit forces on disc and pin at each contact node, along the direction of P [m/N].
   MultiVector attachment_modes(const InertiaRelief &response, const SparseMatrix &P);
 } // namespace Squeal

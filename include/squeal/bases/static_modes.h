@@ -14,7 +14,7 @@ namespace Squeal
 {
   /**
    * Static boundary modes of disc and pins on the uncoupled dofs, one column for each contact node (sections 5.1 and 6.1 of the paper).
-   * Each set is computed on first use and stored. The arguments must outlive this object.
+   * Sets that are returned by reference are computed on first use and stored. The arguments must outlive this object.
    *
    * For a disc with rigid-body motions that its mounts do not resist, inertia relief applies: attachment modes are complete only together
    * with InertiaRelief::rigid_body_modes().
@@ -84,8 +84,8 @@ namespace Squeal
    */
   MultiVector friction_response(const CoupledSystem &system, const UpdatedInverse &inverse, const MultiVector &real_modes, Side side);
 
-  /// First-order responses of real coupled modes Φ_R to damping, K_c⁻¹ (C_c − μ A V_C) Φ_R, n × n_R, at the friction coefficient or at the
-  /// parameter values of the system. Throws SolverError if there is no damping.
+  /// First-order responses of real coupled modes Φ_R to damping, K_c⁻¹ (C_c − μ A V_C) Φ_R, n × n_R, at the given friction coefficient or
+  /// else at the parameter values of the system. Throws SolverError if there is no damping.
   MultiVector damping_response(const CoupledSystem  &system,
                                const UpdatedInverse &inverse,
                                const MultiVector    &real_modes,

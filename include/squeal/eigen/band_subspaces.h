@@ -8,12 +8,12 @@
 
 namespace Squeal
 {
-  /// Subspaces of a small n × n matrix A for the modes of a band: A R = R S, Lᵀ A = S Lᵀ, Lᵀ R = I.
+  /// Subspaces of a dense n × n matrix A for the modes of a band: A R = R S, Lᵀ A = S Lᵀ, Lᵀ R = I.
   struct BandSubspaces
   {
     DenseMatrix right; ///< R, n × k
     DenseMatrix left;  ///< L, n × k
-    DenseMatrix small; ///< S, k × k; its eigenvalues are −λ² or λ of the modes of the band
+    DenseMatrix small; ///< S, k × k; its eigenvalues are −λ² or λ of these modes
   };
 
   /**
@@ -31,9 +31,9 @@ namespace Squeal
    * transform,
    *
    *   P (T − ω² I) + (T − ω² I)ᵀ P positive definite, or
-   *   Z = (T − ω² I − a I) (T − ω² I + a I)⁻¹:  ‖Z^m‖ < 1 for any m     =>   Re(−λ²) > ω² for all of T.
+   * Z = (T − ω² I − a I) (T − ω² I + a I)⁻¹: ‖Z^m‖ < 1 for any m => Re(−λ²) > ω² for all eigenvalues −λ² of T.
    *
-   * @return empty if the band has no gap to the other modes, if the iteration does not converge, or if neither test succeeds
+   * @return empty if there is no sufficiently wide gap above the band, if the iteration does not converge, or if neither test succeeds
    */
   std::optional<BandSubspaces> band_subspaces(const DenseMatrix &A, const std::vector<double> &squares, double largest_circular_frequency);
 

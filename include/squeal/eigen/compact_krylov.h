@@ -34,8 +34,8 @@ namespace Squeal
    *
    * The linearisation of a polynomial eigenproblem of degree d = 2 has this form; d = 1 is the ordinary block Krylov–Schur method. The
    * orthonormal basis of states is stored as V = (I_d ⊗ U) G with one orthonormal basis U, n × r, for all parts, and small coordinates G, d
-   * r × m: the two-level orthogonal Arnoldi process, with half the memory and a quarter of the inner products of a basis of full states.
-   * The process maintains the relation
+   * r × m: the two-level orthogonal Arnoldi process. For d = 2, U needs about half the memory of a basis of full states, and fewer inner
+   * products. The process maintains the relation
    *
    *     S V = V H + V_a B,
    *

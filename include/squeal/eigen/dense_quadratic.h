@@ -38,8 +38,8 @@ namespace Squeal
    *     [ -M⁻¹ K   -M⁻¹ C ]  [φ; λ φ] = λ [φ; λ φ],
    *
    * or, without damping (null), -M⁻¹ K φ = λ² φ, for which λ → -λ holds exactly. λ is measured in units of √(‖K‖/‖M‖) (Fan, Lin, Van Dooren
-   * 2004); φ is the larger half of the right vector, ψ = M⁻ᵀ times the second half of the left vector. Each λ receives one two-sided
-   * Rayleigh correction -ψᵀQ(λ)φ / ψᵀQ'(λ)φ. Throws SolverError if M is singular or the QR algorithm fails.
+   * 2004); φ is the larger half of the right vector, ψ = M⁻ᵀ times the second half of the left vector. Each well-conditioned λ receives one
+   * two-sided Rayleigh correction -ψᵀQ(λ)φ / ψᵀQ'(λ)φ. Throws SolverError if M is singular or the QR algorithm fails.
    */
   DenseQuadraticModes dense_quadratic_modes(const DenseMatrix &mass,
                                             const DenseMatrix *damping,

@@ -26,7 +26,7 @@ namespace Squeal
     double shift                      = 0.; ///< shift s ≥ 0 of the operator Q(s)⁻¹; s > 0 if K is singular [1/s]
     double largest_circular_frequency = 0.; ///< ω_max: requested λ are real or have 0 < Im λ ≤ ω_max [rad/s]
 
-    /// d in the radius ρ = √(1 + d²) ω_max: all λ with |λ| ≤ ρ are found, and therefore all λ with |Re λ| ≤ d ω_max [-].
+    /// d in the radius ρ = √(1 + d²) ω_max: the search covers |λ| ≤ ρ and therefore all λ of the band with |Re λ| ≤ d ω_max [-].
     double largest_damping = 0.1;
 
     double largest_decay = std::numeric_limits<double>::infinity(); ///< modes that decay faster, Re λ < −largest_decay, are omitted [1/s]
@@ -43,10 +43,11 @@ namespace Squeal
 
     int block_size = 8; ///< vectors per block solve
 
-    /// Approximate modes, for example modes without friction and damping: sums of them start the process. Null: none.
+    /// Approximate modes, for example modes without friction and damping: the process starts from random linear combinations of them. Null:
+    /// none.
     const MultiVector *close_vectors = nullptr;
 
-    /// Number of random vectors that search for missing eigenvalues at the end, for example in clusters larger than the block; 0: none.
+    /// Number of random vectors for the final search for missing eigenvalues, for example in clusters larger than the block; 0: none.
     int n_fresh_directions = 4;
 
     int          max_basis    = 0;  ///< largest number of basis vectors before a restart; 0: chosen from the number of modes
@@ -66,13 +67,13 @@ namespace Squeal
 
     std::vector<double> residuals; ///< ‖Q(λ)φ‖₂ / ‖Kφ‖₂, computed with the pencil itself
 
-    /// Real λ ≠ 0 with |λ| ≤ ρ (overdamped or divergent), ascending, without vectors.
+    /// Real λ ≠ 0 with |λ| ≤ ρ and λ ≥ −largest_decay (overdamped or divergent), ascending, without vectors.
     std::vector<double> real_values;
 
     /// Eigenvalues λ = 0 with their multiplicity: two for each rigid-body mode without damping.
     int n_zero_values = 0;
 
-    double radius     = 0.; ///< all λ with |λ - s| (no damping: |λ² - s²|^½) below this radius were found [rad/s]
+    double radius     = 0.; ///< limit of |λ - s| (no damping: of |λ² - s²|^½) for the search [rad/s]
     int    n_solves   = 0;  ///< number of vectors to which Q(s)⁻¹ was applied
     int    n_restarts = 0;
     int    n_basis    = 0; ///< largest number of vectors in the basis
@@ -93,8 +94,8 @@ namespace Squeal
    * The iteration ends when all Ritz values inside the radius, and some outside, have converged. The residuals are then computed from the
    * pencil; if one exceeds the tolerance, the iteration continues. A short second process from random directions, in which the found values
    * are deflated, then searches for missing values; if it finds any, random directions are added to the block and the iteration continues.
-   * This search finds values well inside the radius. A missing member of a cluster at the very end of the band may remain undetected; the
-   * block size should therefore be at least the size of clusters.
+   * This search is reliable for values well inside the radius. A missing member of a cluster at the very end of the band may remain
+   * undetected; the block size should therefore be at least the size of clusters.
    *
    * @param inverse_at_shift Q(s)⁻¹ = (s² M + s C + K)⁻¹
    *

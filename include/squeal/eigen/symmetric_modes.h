@@ -30,8 +30,8 @@ namespace Squeal
     /// Vectors per step of the block solvers; 0: chosen automatically.
     int block_size = 0;
 
-    /// s ≥ 0 in K + s M, which is factorised [rad²/s²]. 0: K itself, or s = largest eigenvalue / 100 if K is not positive definite or
-    /// almost singular. For bodies with rigid-body motions, a shift avoids a factorisation of K that fails.
+    /// s ≥ 0 in K + s M, which is factorised [rad²/s²]. 0: K itself or, if K is almost singular or not positive definite, K + s M with s =
+    /// end of the band / 100. For bodies with rigid-body motions, a shift avoids a factorisation of K that fails.
     double shift = 0.;
 
     /// (K + s M)⁻¹ for this shift, if available; null: K + s M is factorised.
@@ -75,9 +75,9 @@ namespace Squeal
    * All modes with 0 ≤ ω² ≤ @p largest_eigenvalue [rad²/s²] of K φ = ω² M φ,
    * K symmetric positive semidefinite, M symmetric positive definite.
    *
-   * The inertia of K - limit M gives the number of modes. The modes are computed by block Lanczos, block Krylov-Schur (Anasazi) or
-   * implicitly restarted Lanczos (ARPACK) for (K + s M)⁻¹ M, followed by a Rayleigh-Ritz projection. If members of multiple eigenvalues are
-   * missing, the solver is restarted orthogonally to the modes found.
+   * The inertia of K - limit M gives the number of modes. Small problems are solved densely. Otherwise the modes are computed by block
+   * Lanczos, block Krylov-Schur (Anasazi) or implicitly restarted Lanczos (ARPACK) for (K + s M)⁻¹ M, followed by a Rayleigh-Ritz
+   * projection. If members of multiple eigenvalues are missing, the solver is restarted orthogonally to the modes found.
    *
    * Throws SolverError if modes are missing, or if a residual exceeds both the tolerance and the rounding errors in K φ, 10 ε ‖K‖ ‖φ‖ /
    * ‖Kφ‖; the limit for rigid-body modes is 1e-8. An eigenvalue that equals the limit up to rounding is included.
@@ -87,8 +87,8 @@ namespace Squeal
                                  double                       largest_eigenvalue,
                                  const SymmetricModesOptions &options = {});
 
-  /// Number of eigenvalues ω² ≤ @p limit of K φ = ω² M φ from the inertia of K - limit M: exact, with multiplicities and rigid-body modes,
-  /// without computing modes. Throws a SolverError that names @p what.
+  /// Number of eigenvalues ω² ≤ @p limit of K φ = ω² M φ from the inertia of K - limit M: includes multiplicities and rigid-body modes and
+  /// does not compute modes. Throws a SolverError that names @p what if K - limit M remains singular.
   ModeCount count_below(const SparseMatrix &K, const SparseMatrix &M, double limit, const std::string &what);
 
   /**

@@ -10,7 +10,7 @@
 
 namespace Squeal
 {
-  /// Small dense matrices, identical on every process, for reduced models and contact nodes; never n × n.
+  /// Dense matrices, mainly of reduced models and contact nodes; those are identical on every process.
   using DenseMatrix        = Eigen::MatrixXd;
   using ComplexDenseMatrix = Eigen::MatrixXcd;
 

@@ -42,6 +42,6 @@ namespace Squeal
   /// LU factors of a regular matrix. Throws a SolverError that names @p what if the matrix is singular to working precision.
   RealLU regular_lu(const DenseMatrix &A, const char *what);
 
-  /// S⁻¹ A S with a positive diagonal S that reduces the norm by making the norms of row i and column i equal (Osborne).
+  /// S⁻¹ A S with a positive diagonal S that reduces the norm by making the norms of row i and column i nearly equal (Osborne).
   ComplexDenseMatrix balanced(ComplexDenseMatrix A);
 } // namespace Squeal

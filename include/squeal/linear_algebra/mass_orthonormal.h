@@ -32,7 +32,7 @@ namespace Squeal
    * projection are dropped. The axes are computed in passes of five orders of magnitude each, because a Gram matrix squares the condition
    * number; the smallest useful tolerance is 1e-13.
    *
-   * With std::move(), the result overwrites X; X is copied only if some axes require another pass.
+   * With std::move(), the result overwrites X; X is copied only if it has zero columns or requires another pass.
    *
    * Returns the kept directions; empty if none remains. @p axes, if not null, receives norms and condition number.
    */

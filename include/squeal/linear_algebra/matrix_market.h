@@ -24,6 +24,6 @@ namespace Squeal
   };
 
   /// Text of A in Matrix Market coordinate form with 17 significant digits, so that exactly the same numbers are read back. Process 0
-  /// returns the whole text, the other processes an empty text. Collective.
+  /// returns the whole text, the other processes return an empty string. Collective.
   std::string matrix_market(const SparseMatrix &A, MatrixMarketSymmetry symmetry = MatrixMarketSymmetry::general);
 } // namespace Squeal

@@ -88,7 +88,7 @@ namespace Squeal
     MultiVector &operator-=(const MultiVector &X);
     MultiVector &operator*=(double factor);
 
-    /// Appends the columns of X; large blocks grow without copying. Views of this block become invalid.
+    /// Appends the columns of X; large blocks normally grow without copying. Views of this block become invalid.
     void append(const MultiVector &X);
 
     /// View of columns [first, first + n), n ≥ 0; X must outlive the view.

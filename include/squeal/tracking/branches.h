@@ -21,12 +21,12 @@ namespace Squeal
   {
     double largest_circular_frequency = 0.;   ///< end of the band [rad/s]
     double threshold_tolerance        = 1e-6; ///< largest interval of μ around a threshold or a crossing [-]
-    double smallest_step              = 1e-5; ///< smallest step of μ: shorter steps are not halved to distinguish modes [-]
-    int    maximum_refinements        = 1000; ///< maximum number of evaluations in addition to the grid
+    double smallest_step              = 1e-5; ///< steps of μ up to this length are not divided to distinguish modes [-]
+    int    maximum_refinements        = 1000; ///< maximum number of refinement points in addition to the grid
   };
 
   /**
-   * A mode followed over the friction coefficient. The identity of two modes is lost at an exceptional point: by convention, the branch
+   * A mode tracked as the friction coefficient varies. The identity of two modes is lost at an exceptional point: by convention, the branch
    * with the lower frequency becomes the growing mode, and the growing mode has the lower frequency if the pair separates again.
    */
   struct Branch
@@ -101,7 +101,7 @@ namespace Squeal
     int    n_overdamped         = 0; ///< number of pairs of nonzero real λ
   };
 
-  /// Stability chart: modes over the friction coefficient, with thresholds and band crossings.
+  /// Stability chart: modes as functions of the friction coefficient, with thresholds and band crossings.
   struct StabilityChart
   {
     std::vector<ChartPoint>   points;               ///< evaluated points in ascending order, including refinement
@@ -110,42 +110,41 @@ namespace Squeal
     std::vector<Threshold>    thresholds;           ///< ascending
     std::vector<BandCrossing> crossings;            ///< ascending
     std::vector<ChartCount>   counts;               ///< numbers of modes at each point
-    int                       n_doubtful_steps = 0; ///< number of steps in which modes were distinguished only by closeness of λ
+    int                       n_doubtful_steps = 0; ///< number of steps in which the links between modes of the band are ambiguous
   };
 
   /**
-   * Follows modes over the friction coefficients of @p grid, ascending, possibly empty. Modes of neighbouring points are linked by
-   * link_modes(); doubtful steps are halved, and all points of a round are evaluated together. Further steps are divided in two cases: if
-   * two branches exchange their order, and the interpolation of Λ_a and of Λ_b, transformed to the modes at a, predicts an interaction; and
-   * if extrapolated growth rates approach zero, or extrapolated frequencies approach each other.
+   * Tracks modes through the friction coefficients of @p grid, in ascending order; the grid may be empty. Modes of neighbouring points are
+   * linked by link_modes(); steps with ambiguous links are halved, and all points of a round are evaluated together. A step is also divided
+   * if two branches exchange their order and the interpolation between Λ_a and Λ_b, transformed to the modes at a, predicts an interaction,
+   * or if extrapolated growth rates approach zero, or if extrapolated frequencies approach each other.
    *
    * A branch that grows at only one end of a step has a threshold in the step. At a coalescence δ²(μ) = (λ_1 − λ_2)² is analytic and real
-   * with a simple zero, while λ has a branch point; otherwise the zero of Re λ is computed. The interval of a zero is reduced until it is
-   * smaller than the tolerance, to two points close to the prediction of @p predict, or by inverse quadratic interpolation and bisection.
-   * If modes are neutral at the first point and grow from there, for example a double mode of the frictionless problem, their onset is at
-   * the first point. If the growth of a multiple mode exceeds rounding errors only at a later point, the uncertainty extends back to the
-   * first point.
+   * with a simple zero, while λ has a branch point; otherwise the zero of Re λ is computed. The interval of a zero is reduced to the
+   * tolerance, either to two points close to the prediction of @p predict, or by interpolation and bisection. If modes are neutral at the
+   * first point and grow from there, for example a double mode of the frictionless problem, their onset is at the first point. If the
+   * growth of a multiple mode exceeds rounding errors only at a later point, the uncertainty extends back to the first point.
    *
    * The uncertainty is the width of the interval (half the width if it exceeds the tolerance) plus three times the effect of the
    * corrections of λ. At a coalescence, this effect is the change of δ² to
    *
    *   (λ_1 + D_11 − λ_2 − D_22)² + 4 D_12 D_21,
    *
-   * divided by dδ²/dμ. It is evaluated at some distance from the coalescence, because D is large and cancels close to it. Otherwise the
-   * effect is the change of Re λ or Im λ divided by its slope. The change of Re λ is |Re D_ii| + Σ |D_ij D_ji / (λ_i − λ_j)|, but at most
-   * the uncertainty of λ.
+   * divided by dδ²/dμ. It is evaluated at some distance from the coalescence, close to which the entries of D are large and cancel.
+   * Otherwise the effect is the change of Re λ or Im λ divided by its slope. The change of Re λ is |Re D_ii| + Σ |D_ij D_ji / (λ_i − λ_j)|,
+   * similarly for Im λ, but at most the uncertainty of λ, which is used at the real axis.
    *
-   * Throws Error if the grid is not ascending or an option is not positive.
+   * Throws Error if the grid is not ascending or a real-valued option is not positive.
    */
   StabilityChart stability_chart(const std::vector<double> &grid,
                                  const EvaluateChart       &evaluate,
                                  const ChartOptions        &options,
                                  const PredictZero         &predict = {});
 
-  /// Fastest growing or least damped mode of the band; -1: none.
+  /// Mode of the band with the largest divergence rate; -1: none.
   int leading_mode(const ChartPoint &point, double largest_circular_frequency);
 
-  /// Branch at point k that is most similar to a mode of another point; only among growing branches if @p is_growing is set; -1: none.
+  /// Branch at point k that is most similar to a mode of another point; -1: none. Considers only growing branches if @p is_growing is set.
   int similar_branch(const StabilityChart &chart, int k, const ChartPoint &point, int mode, bool is_growing);
 
   /// Onset of growth, or of growth above a level, of the modes in the band.
@@ -158,11 +157,11 @@ namespace Squeal
   };
 
   /// Onset of growth beyond the uncertainty of λ for a branch in the band: the threshold or band crossing at which this growth begins. If
-  /// the branch grows at the first point, the onset is between this point and @p before, the last friction coefficient that was evaluated
-  /// below the chart; the uncertainty is their distance.
+  /// there is none, the result is the first point of the branch, with its distance from the previous point as uncertainty. @p before is the
+  /// last friction coefficient evaluated below the chart.
   std::optional<GrowthOnset> onset_of(int branch, const StabilityChart &chart, double largest_circular_frequency, double before);
 
-  /// The onset of all branches with the smallest friction coefficient.
+  /// The onset with the smallest friction coefficient among all branches.
   std::optional<GrowthOnset> first_onset(const StabilityChart &chart, double largest_circular_frequency, double before);
 
   /**

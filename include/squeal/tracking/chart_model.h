@@ -79,8 +79,8 @@ namespace Squeal
     ChartPoint evaluate(const OperatingPoint &point) const;
 
     /// Predicted zero of the function of a search between two points. The prediction uses a reduced model in the span of the right and left
-    /// vectors of the modes at both points, which reproduces λ and dλ/dμ there. The other parameters of the system vary linearly between
-    /// the points. Not collective.
+    /// vectors of the modes at both points, where it reproduces λ and dλ/dμ. The other parameters of the system vary linearly between the
+    /// points. Not collective.
     std::optional<double> predicted_zero(const ZeroSearch &search, const OperatingPoint &first, const OperatingPoint &second) const;
 
     /// Largest estimated |δλ| / |λ| of the modes in the band.
@@ -104,14 +104,15 @@ namespace Squeal
 
     /**
      * Principal axes, in the K_c-norm, of the components of right and left modes of the @p charts outside the span of the real modes, as
-     * coordinates in the basis. Modes are scaled to unit strain energy. Axes with squares below @p tolerance are dropped, because errors of
-     * λ are products of errors of right and left vectors. Collective.
+     * coordinates in the basis. Modes are scaled to unit strain energy. Axes whose squared length is below @p tolerance are dropped: the
+     * error of λ is a product of the errors of a right and a left vector. Collective.
      *
      * @param real_modes coordinates of the real modes
      */
     DenseMatrix principal_parts(const DenseMatrix &real_modes, const std::vector<ChartPoint> &charts, double tolerance) const;
 
-    /// A smaller basis with about the same span: the real modes and their principal_parts(), truncated to @p maximum vectors. Collective.
+    /// A smaller basis with about the same span: the real modes and the principal_parts() of the charts, truncated to @p maximum vectors.
+    /// Collective.
     MultiVector compressed_basis(const std::vector<ChartPoint> &charts, double tolerance, int maximum) const;
 
     /// Replaces the basis. Collective.

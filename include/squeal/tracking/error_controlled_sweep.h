@@ -24,7 +24,7 @@ namespace Squeal
   struct ErrorControlledSweep
   {
     std::size_t n_left;      ///< number of points that do not meet the tolerance
-    double      worst_error; ///< largest estimated |δλ| / |λ| of the other points [-]
+    double      worst_error; ///< largest estimated |δλ| / |λ| at the points that meet the tolerance [-]
     int         n_growths;
     std::string why_stopped; ///< reason for stopping; empty if all points meet the tolerance
   };
@@ -42,11 +42,11 @@ namespace Squeal
   PredictZero zero_predictor(const ChartModel &model, const std::function<OperatingPoint(double)> &at, MPI_Comm communicator);
 
   /**
-   * Extends the basis of @p model until the estimated errors of all modes in the band meet the tolerance at all operating @p points. The
+   * Extends the basis of @p model to reduce the estimated errors of all modes in the band to the tolerance at all operating @p points. The
    * basis is first extended at the points with the indices @p training, one after the other, and then compressed
    * (ChartModel::compressed_basis()); without training points it is not compressed. After that, all points are evaluated, and the basis is
-   * extended at the point with the largest remaining error until all points meet the tolerance. A result that meets the tolerance is final
-   * and is passed to @p keep; vectors added later are used only for the remaining points.
+   * extended at the point with the largest remaining error until all points meet the tolerance or the basis cannot be improved further. A
+   * result that meets the tolerance is final and is passed to @p keep; vectors added later are used only for the remaining points.
    */
   ErrorControlledSweep error_controlled_sweep(ChartModel                        &model,
                                               const std::vector<OperatingPoint> &points,

@@ -13,12 +13,12 @@ namespace Squeal
   /// Modes with a smaller |λ_i − λ_j| / |λ_i| form a multiple λ: their vectors are arbitrary within their common span [-].
   constexpr double indistinguishable = 1e-7;
 
-  /// Modes of two neighbouring points that span the same subspace.
+  /// Group of modes at one point and the corresponding group at a neighbouring point.
   struct ModeBlock
   {
     std::vector<int> first, second; ///< indices of the modes; the same number at both points
-    /// True if the modes of the block have definite counterparts: a single mode, a multiple λ at one of the points (any order), or two
-    /// modes with an exceptional point in between. Otherwise the step is too large.
+    /// True if both groups span similar subspaces and their modes have definite counterparts: a single mode, a multiple λ at one of the
+    /// points (any order), or two modes with an exceptional point in between. Otherwise the step is too large.
     bool resolved;
   };
 
@@ -27,7 +27,7 @@ namespace Squeal
   {
     std::vector<ModeBlock> blocks;
     std::vector<int>       lost, gained; ///< modes without counterpart, of the first and of the second point
-    bool                   resolved;     ///< true if all blocks with modes in the band are resolved
+    bool resolved; ///< true if blocks with modes in the band are resolved and modes without counterpart match the change in real λ
   };
 
   /// Index of the cluster of each λ: chains of indistinguishable neighbours.
@@ -55,13 +55,13 @@ namespace Squeal
    *
    *   T_ij = Re X_ij (X⁻¹)_ji,   Σ_i T_ij = Σ_j T_ij = 1,
    *
-   * the trace of the product of the spectral projectors (the relative gain array of X). This holds for any angles between the vectors at
-   * one point, which are nearly parallel close to a coalescence. T = ½ across an exceptional point of two modes for any step size; there
-   * the common subspace is analytic and (λ_1 − λ_2)², which is real, changes its sign. In all other cases T tends to a permutation as steps
-   * become smaller.
+   * the trace of the product of the spectral projectors (the relative gain array of X). Both sums are one for any angles between the
+   * vectors at one point, which are nearly parallel close to a coalescence. T = ½ across an exceptional point of two modes for any step
+   * size; there the common subspace is analytic and (λ_1 − λ_2)², which is real, changes its sign. In all other cases T tends to a
+   * permutation as steps become smaller.
    *
-   * Modes beyond @p largest_circular_frequency [rad/s] may appear and disappear. Modes in the band may do so only if the number of real
-   * pairs changes in the opposite way.
+   * Modes beyond @p largest_circular_frequency [rad/s] may appear and disappear. For modes in the band, the number of real pairs must
+   * change in the opposite way; otherwise, the links are unresolved.
    */
   ModeLinks link_modes(const ChartPoint &first, const ChartPoint &second, double largest_circular_frequency);
 } // namespace Squeal
