@@ -59,7 +59,7 @@ def choose_shift(problem, band):
 
 
 def solve_by_scipy(problem, band, n_modes, shift=0.0):
-    """All eigenvalues in the band by ARPACK on the companion form; requires one factorisation of size n."""
+    """Eigenvalues in the band by ARPACK on the companion form; requires one factorisation of size n."""
     solver = quadratic.ShiftInvert(problem.mass, problem.damping, problem.stiffness, "exported matrices")
     factor = solver.factor(shift)
 

@@ -7,7 +7,7 @@
 
 Sizes are given in thousands of coupled dofs. Each size is one run in a separate process, without fields.
 Prints for each run the wall time, the peak memory and the memory expected by `squeal --dry-run`, the steps, and the
-exponent of a power law through the last two sizes.
+exponent of a power law through this size and the previous one.
 """
 
 import math

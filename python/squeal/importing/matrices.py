@@ -19,7 +19,7 @@ HELD = 1e36
 
 @dataclasses.dataclass
 class Entries:
-    """Entries of a matrix by row and column from 0 or, if `shape` is None, by labels (node, dof).
+    """Entries of a matrix by zero-based row and column or, if `shape` is None, by labels (node, dof).
     is_half: True if the file contains one triangle of the symmetric matrix; None if this is unknown."""
 
     rows: np.ndarray
