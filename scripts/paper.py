@@ -6,7 +6,7 @@
     scripts/paper.py [--results DIR] [--set "Section/Name=value"]...
     scripts/paper.py --measured-modes FILE
 
-Runs squeal without radial dissipation (C_b) and with each form of it, unless DIR (results/paper) already contains these runs, prints the
+Runs squeal without radial dissipation (C_b) and with each form of it, unless DIR (results/paper) contains up-to-date results, prints the
 comparison, and writes to DIR:
 
     table1.csv       Table 1: component, coupled and complex modes without and with C_b, of the paper and of squeal

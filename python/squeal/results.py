@@ -173,7 +173,7 @@ class Results:
 
         path = self.folder / "system" / FILE
         if not path.is_file():
-            raise Error("the run did not write a system", f"folder {self.folder}", "run squeal with Output/Write system = full or reduced")
+            raise Error(f"there is no system/{FILE}", f"folder {self.folder}", "run squeal with Output/Write system = full or reduced")
         return System.read(path)
 
     def parameter(self, name):

@@ -195,7 +195,7 @@ class Maps(PlotTest):
             self.assertEqual(line_of(axes, "change in the contact set"), [])
         self.assertEqual([text.get_text() for text in panel.texts], ["F1"])
         self.assertEqual([text.get_text() for text in counts.texts], ["2", "2"])
-        # Edges are halfway between neighbours, in logarithmic scale for a logarithmic axis
+        # Edges are halfway between neighbours on the scale of the axis
         edges = stability_map.StabilityMap(table)
         self.assertAlmostEqual(edges.x_edges[2], 0.15)
         self.assertAlmostEqual(edges.y_edges[1], math.sqrt(1e5))
