@@ -109,7 +109,7 @@ def write_pictures(simple, results, numbers, rows, files, titles, arguments):
 
 
 def write_session_and_film(simple, results, numbers, rows, files, titles, arguments):
-    """Writes a session and a film of the motion of one mode, or a session of all modes."""
+    """Writes the requested session and film of one mode, or a session of all modes."""
     if numbers:
         number, = numbers
         scene, times = scene_of_one(simple, files[number], rows[number - 1], titles[number], arguments)

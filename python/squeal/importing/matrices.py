@@ -202,7 +202,7 @@ class Numbering:
             entries.rows, entries.columns = new[own], new[other]
 
     def matrix(self, entries, symmetry, where):
-        """The sparse matrix with both triangles. Raises Error if a triangle is missing and no symmetry is given."""
+        """The sparse matrix with both triangles. Raises Error if a missing triangle requires a symmetry that is not given."""
         rows, columns, values = entries.rows, entries.columns, entries.values
         if self.labels is not None:
             kept = (rows >= 0) & (columns >= 0)

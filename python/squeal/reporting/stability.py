@@ -18,7 +18,7 @@ def verdict(results):
     static = [row for row in results.table("real_eigenvalues").rows if number(row["growth rate [1/s]"]) > 0] if results.has("real_eigenvalues") else []
     undecided = [row for row in rows if row.get("verdict") == "undecided"]
     where = f"{len(rows)} modes up to {end_of_band(results)} at μ = {results.number('Operation/Friction coefficient'):g}"
-    text = f"None of the {where} grows."
+    text = f"None of the {where} is unstable."
     if growing:
         worst = max(growing, key=lambda row: number(row[RATE]))
         text = (f"{len(growing)} of the {where} {'grow' if len(growing) > 1 else 'grows'}; {worst['label']} at {number(worst[FREQUENCY]):.0f} Hz "
