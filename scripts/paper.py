@@ -220,8 +220,8 @@ def by_shape(modes):
 
 
 def largest_shift(before, after, pattern):
-    """Largest change in a frequency [%] and its mode, for shapes that match a pattern in both lists: a list with at
-    most one pair."""
+    """Largest change in a frequency [%] and its mode, for shapes that match a pattern in both lists, as a list
+    with at most one pair."""
     former = by_shape(before)
     shifts = [(abs(change(one.frequency, other.frequency)), one) for shape, modes in by_shape(after).items()
               if re.match(pattern, shape) and len(former.get(shape, [])) == len(modes) for one, other in zip(former[shape], modes)]

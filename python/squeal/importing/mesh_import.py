@@ -66,7 +66,7 @@ class Import:
         solids = {name for name, numbers in mesh.element_sets.items() if any(map(mesh.is_solid, numbers))}
         self.volumes = chosen(volumes, solids, "set of solids", is_volume, path)
         if not any(map(is_of_disc, self.volumes)):
-            raise Error("no set of elements becomes the disc", path,
+            raise Error("no set of elements is assigned to the disc", path,
                         f"use --volume disc=SET with a set from: {', '.join(sorted(solids)) or '(none)'}")
         for name, member in ((name, member) for name, members in self.volumes.items() for member in members):
             for number in mesh.element_sets[member]:
