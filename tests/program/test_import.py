@@ -252,7 +252,7 @@ class Import(ProgramTest):
         given = ("brake.inp", "refused.msh", "--unit", "mm")
         self.refused(["no unit of length", "--unit mm (0.6 m)"], "brake.inp", "refused.msh", *self.ABAQUS)
         self.refused(["`furlong`"], "brake.inp", "refused.msh", "--unit", "furlong", *self.ABAQUS)
-        self.refused(["becomes the disc", "PAD_B, PAD_T, ROTOR"], *given)
+        self.refused(["assigned to the disc", "PAD_B, PAD_T, ROTOR"], *given)
         self.refused(["no set of solids `ROTER`", "ROTOR"], *given, "--volume", "disc=ROTER")
         self.refused(["in volumes disc and pin_top"], *given, "--volume", "disc=ROTOR", "--volume", "pin_top=ROTOR")
         self.refused(["`disc`"], *given, "--volume", "disc")
