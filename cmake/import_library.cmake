@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-# squeal_import_library(NAME HEADER [OTHER_NAME...]) creates the target squeal::NAME for a library without a CMake target on
-# some supported systems. Some systems keep the headers in a separate folder.
+# squeal_import_library(NAME HEADER [OTHER_NAME...]) creates the target squeal::NAME for a library that has no CMake
+# target on some supported systems. Some systems keep the headers in a separate folder.
 function(squeal_import_library name header)
   string(TOUPPER SQUEAL_${name} variable)
   find_library(${variable} NAMES ${name} ${ARGN} REQUIRED)

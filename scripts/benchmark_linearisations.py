@@ -7,16 +7,16 @@
 
 DIRECTORY is the output of a run with Output/Write matrices = true and dissipation, such as prm/dissipation.prm.
 Projection onto the lowest 234 real modes without friction gives a small dense problem lambda^2 M + lambda C + K, with a
-nonsymmetric K. Right and left eigenvectors of the band are computed
+nonsymmetric K. Right and left eigenvectors are computed
 
     companion    by the QR algorithm (dgeev) on [[0, I], [-inv(M) K, -inv(M) C]], which ignores the structure
-    symmetric    by the QZ algorithm (dggev) on lambda [[C, M], [M, 0]] + [[K, 0], [0, -M]], which preserves the symmetry of K, C and M
+    symmetric    by the QZ algorithm (dggev) on lambda [[C, M], [M, 0]] + [[K, 0], [0, -M]], which would preserve symmetry of K, C and M
     values       by the QR algorithm for the eigenvalues of the companion form only, and two steps of inverse iteration with
                  lambda^2 M + lambda C + K for each eigenvalue of the band
     toar         by SLEPc's two-level orthogonal Arnoldi method, a Krylov method that preserves the structure of the companion form;
                  once for right and once for left vectors (requires scripts/setup.sh peers)
 
-Prints medians of the CPU seconds on one core, and the largest relative difference from the eigenvalues of the first method in the band.
+Prints medians of the CPU seconds on one core, and the largest relative difference from the eigenvalues of the companion method in the band.
 """
 
 import os

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Compares one reduced model for all samples with polynomial chaos and Kriging, trained on full-order solutions.
+"""Compares one reduced model for all samples with polynomial chaos and Kriging surrogates.
 
     scripts/benchmark_surrogate.py [--fresh 500] [--core 0]
 
@@ -31,7 +31,7 @@ from squeal.command_line import Parser, exit_on_error
 from squeal.program import SOURCE
 from squeal.results import Results
 
-SIZES = (50, 200)  # numbers of full-order solutions for training
+SIZES = (50, 200)  # numbers of training samples, each of which would require a full-order solution
 LEAST_RATE = 1e-4  # divergence rate above which a sample squeals
 
 
@@ -70,7 +70,7 @@ def kriging(ot, inputs, outputs, _distribution):
 
 
 def trained(ot, make, numbers, by_sample, n_train):
-    """Name -> eigenvalues of all samples, computed by surrogates of every mode, and the CPU seconds of training."""
+    """Name -> eigenvalues of all samples, computed by one surrogate per name, and the CPU seconds of training."""
     lower, upper = numbers.min(axis=0), numbers.max(axis=0)
     scaled = 2 * (numbers - lower) / (upper - lower) - 1
     distribution = ot.ComposedDistribution([ot.Uniform(-1, 1)] * numbers.shape[1])
@@ -91,7 +91,7 @@ def trained(ot, make, numbers, by_sample, n_train):
 
 
 def squeals(modes):
-    """True if the divergence rate of any mode, in lists by name, exceeds LEAST_RATE."""
+    """True if a divergence rate exceeds LEAST_RATE; `modes` consists of lists of eigenvalues."""
     return any(value.real / abs(value.imag) > LEAST_RATE for values in modes for value in values)
 
 

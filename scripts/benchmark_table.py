@@ -6,16 +6,17 @@ two.
 
     scripts/benchmark_table.py [--runs 3] [--cores 0,1] [--rows chart,damped,one,default]
 
-Each row is a run of squeal from the mesh to its tables and, in the same round, SLEPc in its fastest formulation for the problem:
+Each row except the last compares squeal with SLEPc in the same round:
 
-    chart    prm/sweep.prm, 90 friction coefficients without dissipation: 90 times the mean of SLEPc's times at five of them
-    damped   prm/sweep_damped.prm without mode count, 90 with dissipation and 90 without: 90 times the sum of both means
+    chart    the whole run of prm/sweep.prm, 90 friction coefficients without dissipation; SLEPc: 90 times its mean time at five of them
+    damped   the whole run of prm/sweep_damped.prm without mode count, 90 friction coefficients with dissipation and 90 without; SLEPc: 90
+             times the sum of both means
     one      one friction coefficient from the assembled matrices, including real modes and mode count, without and with dissipation;
              SLEPc in every applicable formulation of scripts/slepc_modes.py
     default  prm/disc_pins.prm with all fields, without SLEPc
 
 Times on one core are CPU seconds. SLEPc is given the number of modes; its times cover the solution from the assembled
-matrices in memory. On two cores, the wall time of the same run is measured with one and with two threads; the ratio is the
+matrices in memory. With two cores, the wall time of each whole run is measured on one core and on two; the ratio is the
 speed-up. Prints medians of all rounds with the smallest and largest values. All rows except the last require SLEPc
 (scripts/setup.sh peers).
 """
@@ -39,7 +40,7 @@ PARTS = (0.1, 0.3, 0.5, 0.7, 0.9)  # positions in the range of a sweep at which 
 
 
 def gain_of_cores(rounds, cores, parameter_file, folder, settings):
-    """Measures the speed-up by a second core and adds it to the rounds."""
+    """Measures the speed-up by a second core, if one is given, and adds it to the rounds."""
     if len(cores) < 2:
         return
     one, two = (benchmarking.run_squeal(chosen, parameter_file, folder / "by_the_clock", settings)["wall time [s]"]

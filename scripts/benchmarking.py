@@ -28,7 +28,7 @@ def cpu():
 
 
 def kernels():
-    """The OpenBLAS kernels for both programs: the user's choice, or the widest that the processor supports."""
+    """The OpenBLAS kernels for both programs: the user's choice, kernels for AVX-512 or AVX2, or None."""
     _, flags = cpu()
     widest = "SkylakeX" if "avx512vl" in flags else "Haswell" if "avx2" in flags else None
     return os.environ.get("OPENBLAS_CORETYPE", widest)

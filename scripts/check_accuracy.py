@@ -6,10 +6,10 @@
     scripts/check_accuracy.py RUN REFERENCE
 
 RUN and REFERENCE are result folders. Modes are paired by the smallest sum of distances of λ, with a penalty for
-different kinds (the letters of the labels), and not by shape as in the program. Prints the largest errors of frequencies
-and divergence rates of all modes and of converged modes, and the number of errors larger than estimated. Lists
-converged modes with a frequency error above the accuracy, or a divergence rate error in percentage points above a tenth
-of it; the exit status is 1 if there are any.
+different kinds (the beginning of the label, such as A0), and not by shape as in the program. Prints the largest errors of frequencies
+and divergence rates of all modes and of converged modes, and the number of converged modes with an error larger than
+estimated. Lists converged modes with a frequency error above the accuracy, or a divergence rate error in percentage
+points above a tenth of it; the exit status is 1 if there are any.
 """
 
 import pathlib
@@ -56,7 +56,7 @@ def main():
         if len(chosen):
             print(f"  {what:<44} {len(chosen):>4}   " + "   ".join(f"{chosen[column].max():>9.4f}" for column in FOUND))
     n_over = sum((converged[list(FOUND)].values > converged[list(ESTIMATED)].values).any(axis=1))
-    print(f"  errors larger than estimated: {n_over} of {len(converged)}")
+    print(f"  converged modes with errors larger than estimated: {n_over} of {len(converged)}")
     wrong = converged[(converged[FOUND[0]] > goal) | (converged[FOUND[1]] > goal / 10)]
     print(f"  reported as converged with errors above {goal:g} % or {goal / 10:g} points: {len(wrong)}")
     for _, mode in wrong.iterrows():

@@ -12,8 +12,8 @@ orthogonal Arnoldi with damping). The eigenvalues in the table are compared one 
 found. The exit status is 1 if a difference exceeds the tolerance, if the numbers of eigenvalues differ, or if the
 matrices do not have the required structure.
 
-If a body can move freely, the stiffness is singular and a nonzero real shift is chosen. If the table contains estimated errors of the
-eigenvalues, as for the residual iteration, differences up to three times the largest estimate are accepted.
+If the stiffness is singular, for example because a body can move freely, a nonzero real shift is chosen. If the table
+contains estimated errors of the eigenvalues, as for the residual iteration, differences up to three times the largest estimate are accepted.
 """
 
 import math
@@ -59,7 +59,7 @@ def choose_shift(problem, band):
 
 
 def solve_by_scipy(problem, band, n_modes, shift=0.0):
-    """All eigenvalues in the band by ARPACK on the companion form; requires one factorisation of size n."""
+    """Eigenvalues in the band by ARPACK on the companion form; requires one factorisation of size n."""
     solver = quadratic.ShiftInvert(problem.mass, problem.damping, problem.stiffness, "exported matrices")
     factor = solver.factor(shift)
 
@@ -145,7 +145,7 @@ def main():
     print(f"modes up to {band:g} Hz")
     shift = arguments.shift if arguments.shift is not None else choose_shift(problem, band)
     if arguments.shift is None and shift != 0:
-        print(f"  the stiffness is singular (a body can move freely): the shift is {shift:.0f} 1/s")
+        print(f"  the stiffness is singular to working precision: the shift is {shift:.0f} 1/s")
     error = "estimated error of lambda [-]"
     estimate = ESTIMATE_SAFETY * max(table.numbers(error), default=0.0) if error in table.columns else 0.0
     tolerance, source = TOLERANCE, "for converged eigenvalues"

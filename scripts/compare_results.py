@@ -8,8 +8,8 @@
 Every CSV file in OLD and its subfolders is compared, cell by cell, with the file of the same name in NEW: numbers by
 their difference relative to the largest number of the column in OLD, texts exactly. Columns that vary from run to run
 (times, memory, residuals, estimates at rounding level) are skipped unless --all is given. The exit status is 1 if a
-table or column is missing, a text differs or a number differs by more than the tolerance; additional columns in NEW are
-ignored.
+table or column is missing, if the number of rows or a text differs, or if a number differs by more than the tolerance.
+Additional columns in NEW are ignored.
 """
 
 import io
@@ -39,7 +39,7 @@ def compare(old_file, new_file, arguments):
     if missing := [name for name in old.columns if name not in new.columns]:
         return 0.0, [f"columns are missing: {', '.join(missing)}"]
     if len(old) != len(new):
-        return 0.0, [f"{len(old)} rows became {len(new)}"]
+        return 0.0, [f"{len(old)} rows in OLD, {len(new)} in NEW"]
     names = [name for name in old.columns if arguments.all or not VARYING.search(name)]
     old, new = old[names], new[names]
     x, y = (frame.apply(pandas.to_numeric, errors="coerce").astype(float).replace([np.inf, -np.inf], np.nan)
@@ -47,7 +47,7 @@ def compare(old_file, new_file, arguments):
     are_numbers = x.notna() & y.notna()
     differences = ((x - y).abs() / x.abs().max().replace(0, np.nan).fillna(1.0)).where(are_numbers, 0.0)
     differs = ~are_numbers & (old != new) | (differences > arguments.tolerance)
-    complaints = [f"{name}, row {row + 1}: {old[name][row]} became {new[name][row]}"
+    complaints = [f"{name}, row {row + 1}: {old[name][row]} in OLD, {new[name][row]} in NEW"
                   + (f", {differences[name][row]:.1e}" if are_numbers[name][row] else "")
                   for name in names for row in np.flatnonzero(differs[name])]
     return differences.to_numpy().max(initial=0.0), complaints
@@ -72,7 +72,7 @@ def main():
             agree = False
             continue
         largest, complaints = compare(arguments.old / file, arguments.new / file, arguments)
-        print(f"{str(file):<36} {largest:8.1e}" + (f"   {len(complaints)} cells differ" if complaints else ""))
+        print(f"{str(file):<36} {largest:8.1e}" + (f"   {len(complaints)} differences" if complaints else ""))
         for complaint in complaints[:5]:
             print(f"    {complaint}")
         agree = agree and not complaints

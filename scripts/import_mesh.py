@@ -12,14 +12,14 @@
 Element sets become volumes. Surfaces, shell sets and node sets become faces; a node set selects the boundary faces whose
 corners it contains. Sets with the name of a volume or surface of squeal, in upper or lower case, need no --volume or
 --surface. --names FILE reads names from a YAML or JSON file: {unit: mm, volumes: {disc: [ROTOR]}, surfaces: {...},
-contact: [disc_top / pad_face], mounts: ["pad_back: 2e10, 2e10, 2e10"]}. --unit, the unit of length of the file, is
-required. Omitted content is listed. A parameter file FILE.prm is written next to FILE.msh unless it exists. It contains
+contact: [disc_top / pad_face], mounts: ["pad_back: 2e10, 2e10, 2e10"]}. The unit of length of
+the file is required. Omitted elements and sets are listed. A parameter file FILE.prm is written next to FILE.msh unless it exists. It contains
 the given contact pairs and mounts, or comments to be completed; quadratic elements, if the mesh has them; and the
 elastic materials of an Abaqus file.
 
 Supported formats are Abaqus .inp (sets, surfaces, elastic materials), Nastran .bdf (volumes by property number), Exodus (blocks, side sets,
-node sets) and the formats of meshio: MED (groups), VTK (integer cell data: a set `part:3` for each value), Gmsh and others, but not Ansys and
-Permas. Requires python3-meshio, for Exodus python3-netcdf4, for MED python3-h5py.
+node sets) and the formats of meshio: MED (groups), VTK (integer cell data: a set `part:3` for each value), Gmsh and others, but not Ansys,
+Fluent and Permas. Requires python3-meshio, for Exodus python3-netcdf4, for MED python3-h5py.
 """
 
 import pathlib

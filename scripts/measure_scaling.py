@@ -1,13 +1,13 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Measures time and memory of the default model on successively finer meshes, in one process that uses all cores.
+"""Measures time and memory of the default model on successively finer meshes.
 
     scripts/measure_scaling.py [--sizes 32,78,138,281,670,1000] [--study stability|sweep]
 
-Sizes are given in thousands of coupled dofs. Each size is one run in a separate process, without fields.
+Sizes are given in thousands of coupled dofs. Each size is one run of a process that may use all cores and writes no fields.
 Prints for each run the wall time, the peak memory and the memory expected by `squeal --dry-run`, the steps, and the
-exponent of a power law through the last two sizes.
+exponent of a power law through this size and the previous one.
 """
 
 import math

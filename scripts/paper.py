@@ -6,13 +6,13 @@
     scripts/paper.py [--results DIR] [--set "Section/Name=value"]...
     scripts/paper.py --measured-modes FILE
 
-Runs squeal without radial dissipation (C_b) and with each form of it, unless DIR (results/paper) already contains these runs, prints the
+Runs squeal without radial dissipation (C_b) and with each form of it, unless DIR (results/paper) contains up-to-date results, prints the
 comparison, and writes to DIR:
 
     table1.csv       Table 1: component, coupled and complex modes without and with C_b, of the paper and of squeal
     statements.csv   section 4: the numbers of the paper and of squeal, and whether the statement holds by the rule in the row
     dissipation.csv  divergence rates of all modes with each form of C_b
-    figure6.svg      divergence rate over frequency without and with C_b; needs python3-matplotlib
+    figure6.svg      divergence rate versus frequency without and with C_b; requires python3-matplotlib
 
 "With C_b" means consistent dissipation about steady sliding, the form closest to the paper. The second command only
 writes the labelled component and coupled modes of Table 1 as measured modes for Study = updating.
@@ -220,8 +220,8 @@ def by_shape(modes):
 
 
 def largest_shift(before, after, pattern):
-    """Largest change of a frequency [%] and its mode, for shapes that match a pattern in both lists: a list with at
-    most one pair."""
+    """Largest change in a frequency [%] and its mode, for shapes that match a pattern in both lists, as a list
+    with at most one pair."""
     former = by_shape(before)
     shifts = [(abs(change(one.frequency, other.frequency)), one) for shape, modes in by_shape(after).items()
               if re.match(pattern, shape) and len(former.get(shape, [])) == len(modes) for one, other in zip(former[shape], modes)]

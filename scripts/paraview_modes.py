@@ -9,7 +9,7 @@
     scripts/paraview_modes.py RESULTS --mode MODE --film FILE.gif         the motion, including its growth
 
 With all modes, the time buttons step through the modes by frequency [Hz], each deformed by its real part. With one
-mode, the time buttons play --periods of Re(phi e^(lambda t)), including growth. The largest displacement is drawn as --size times
+mode, the time buttons play Re(phi e^(lambda t)), including growth, for --periods periods. The largest displacement is drawn as --size times
 the radius of the disc. MODE is a row of complex_modes.csv, counted from 1, or a label, which selects its fastest
 growing mode. Colours show the amplitude; the title shows mode, frequency, effective damping ratio and verdict. Views
 are iso, top, side, below; faces, the upper pins seen from below without the disc, with the normal reactions on their
@@ -36,7 +36,7 @@ def rows_of(results):
 
 
 def title_of(row):
-    """Title of a mode: "A0-4 +,  2353 Hz,  effective damping ratio -1.36 %,  unstable"."""
+    """Title of a mode: "A0-4 +,  2353.0 Hz,  effective damping ratio -1.36 %,  unstable"."""
     verdict = row.get("verdict") or ("unstable" if row["unstable [-]"] == "1" else "not unstable")
     ratio = float(row["effective damping ratio -2R/omega [%]"])
     return f"{row['label']},  {float(row['frequency [Hz]']):.1f} Hz,  effective damping ratio {ratio:.3g} %,  {verdict}"
@@ -109,7 +109,7 @@ def write_pictures(simple, results, numbers, rows, files, titles, arguments):
 
 
 def write_session_and_film(simple, results, numbers, rows, files, titles, arguments):
-    """Writes a session and a film of the motion of one mode, or a session of all modes."""
+    """Writes the requested session and film of one mode, or a session of all modes."""
     if numbers:
         number, = numbers
         scene, times = scene_of_one(simple, files[number], rows[number - 1], titles[number], arguments)

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 SIZE = (1600, 1000)
 INK, GREY = "#212126", "#737378"
 POINT = 0.72  # size of a pixel [points]
-# Suitable for all types of colour vision. Pale colours mark zero; the colours of the phase are cyclic
+# Suitable for readers with colour-vision deficiencies. Pale colours mark zero; the colours of the phase are cyclic
 ONE_SIGN, TWO_SIGNS, PHASE = colormaps["YlGnBu"], colormaps["RdBu_r"], colormaps["twilight"]
 
 

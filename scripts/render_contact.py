@@ -67,7 +67,7 @@ def draw(path, picture, field, view):
     shown, mesh = np.unique(faces), VtuFile(bodies)
     disc, disc_points = outer_faces(mesh, [0]), mesh.points
 
-    # If all pins are on one side of the axis, draw this side upwards, with the width of the disc there
+    # If the contact faces are not centred on the axis, draw their side upwards, with the width of the disc there
     distances, centre = np.linalg.norm(points[shown, :2], axis=1), points[shown, :2].mean(axis=0)
     up, around = np.array([0.0, 1.0]), disc_points[np.unique(disc), :2]
     if np.linalg.norm(centre) > 0.3 * distances.max():

@@ -168,8 +168,8 @@ class Mode:
         self.colours = colours_of(mesh, shape, field)
 
     def automatic_scale(self):
-        """Magnification that gives displacements of 8 % of the size of the bodies, or less if elements would be
-        inverted."""
+        """Magnification that gives displacements of 8 % of the size of the bodies, or less to limit the distortion of
+        elements."""
         largest = np.linalg.norm(self.displacement[self.used], axis=1).max()
         if largest == 0:
             return 1.0

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-# Computes the numbers quoted in README.md and the pages of doc/, and prints each next to the quoted number:
+# Computes numbers quoted in README.md and the pages of doc/, and prints each next to the quoted number:
 #
 #   scripts/reproduce.sh [--list] [--only WORDS] [PAGE]...
 #
@@ -10,7 +10,7 @@
 #   --only WORDS  only the sentences that contain WORDS
 #
 # Results are written to results/reproduce/. A run is not repeated if results of the same command exist and are newer than
-# the program. The exit status is 1 if a number differs from the page in a printed digit. All pages take hours on one core.
+# the program. The exit status is 1 if a number differs from the page in a printed digit or exceeds a bound. All pages take hours on one core.
 # Times are not reproduced; doc/benchmarks.md lists the commands that measure them.
 
 set -euo pipefail

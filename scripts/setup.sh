@@ -164,9 +164,8 @@ set_blas_kernels()
   esac
 }
 
-# Sets the environment of the programs: one BLAS thread per process, because threads that share cores with other
-# processes slow down factorisations many times; and settings of Open MPI for containers, for root, and for more
-# processes than cores.
+# Sets one BLAS thread per process, because threads that compete for cores slow down factorisations considerably, and
+# configures Open MPI for containers, for root, and for more processes than cores.
 set_environment()
 {
   set_blas_kernels

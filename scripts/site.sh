@@ -25,7 +25,7 @@ if [[ ${1:-} == --serve ]]; then
 fi
 mkdocs build --quiet --clean
 
-# Check links to files outside the site
+# Check relative links of the pages outside the site
 n_missing=0
 for page in README.md CONTRIBUTING.md SECURITY.md CHANGELOG.md; do
   while read -r link; do
@@ -45,7 +45,7 @@ printf '[AnchorCheck]\n' >"$readable/linkchecker.ini"
 chmod -R a+rX "$readable"
 if ! linkchecker --config "$readable/linkchecker.ini" --no-status --no-robots --ignore-url='sitemap\.xml' "$readable/index.html" >"$readable/log" 2>&1; then
   cat "$readable/log" >&2
-  complain "Links of the site are broken; see above."
+  complain "linkchecker reports errors in the site; see above."
   exit 1
 fi
 ((n_missing == 0))

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-# Installs missing packages, builds, and runs the tests; other arguments are passed to ctest:
+# Installs missing packages, builds, and runs the tests; arguments other than --extended are passed to ctest:
 #
 #   scripts/test.sh
 #   scripts/test.sh -R contact

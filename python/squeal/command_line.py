@@ -21,7 +21,7 @@ class Parser(argparse.ArgumentParser):
         raise Error(message, "command line", "correct the arguments; --help lists them")
 
 
-# Debian packages whose names differ from the module names
+# Debian packages that provide a module, unless the package is python3-MODULE
 PACKAGES = {"PIL": "python3-pil", "netCDF4": "python3-netcdf4", "paraview": "paraview python3-paraview (or scripts/setup.sh paraview)",
             "vtk": "python3-vtk9 (or scripts/setup.sh pictures)"}
 

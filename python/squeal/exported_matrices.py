@@ -18,8 +18,8 @@ The coupled problem is (lambda^2 M~_c + lambda C_c + K~_c) phi = 0 with
     K~ = K - mu P_t^T S K + (P_n + mu P_t)^T K_n P_n,  M~ = M - mu P_t^T S M,  C~ = C + G - mu P_t^T S (C + G) + C_b,
     K~_c = T_c^T K~ T_c, M~_c and C_c accordingly.
 
-S extracts the reactions of the rigid contact nodes from nodal forces: S [P_n; P_t; P_b]^T = [I, 0, 0]. It is the pseudo-inverse, 1/2 P_n for
-pairs of coincident nodes. For nonmatching faces the program uses another left inverse.
+S extracts the reactions of the rigid contact nodes from nodal forces: S [P_n; P_t; P_b]^T = [I, 0, 0]. S consists of rows of the
+pseudo-inverse; for pairs of coincident nodes, it is 1/2 P_n. For nonmatching faces the program uses another left inverse.
 
 Results computed from these matrices are an independent check of the program.
 """
@@ -50,7 +50,7 @@ class QuadraticProblem:
         return self.stiffness.shape[0]
 
     def backward_errors(self, eigenvalues, vectors):
-        """|Q(lambda) x| / ((|lambda|^2 |M| + |lambda| |C| + |K|) |x|) of each pair, with Frobenius norms."""
+        """|Q(lambda) x| / ((|lambda|^2 |M| + |lambda| |C| + |K|) |x|) of each eigenpair, with Frobenius norms."""
         return quadratic.errors(self.mass, self.damping, self.stiffness, eigenvalues, vectors)[1]
 
 

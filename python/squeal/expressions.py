@@ -141,8 +141,8 @@ def interval_of(node, ranges):
 
 
 def find_zero(node, ranges):
-    """Parameter values near a possible zero of a syntax tree; None if there is none. Bisects the ranges until every
-    interval excludes zero."""
+    """Parameter values near a possible zero of a syntax tree, or None. Bisects the ranges until no interval contains
+    zero, or until the limit HALVINGS is reached."""
     boxes = [(0, {name: ranges[name] for name in names_in(node)})]
     while boxes:
         halvings, box = boxes.pop()

@@ -17,8 +17,8 @@ def read_value(text):
 
 
 def read_parameters(path):
-    """Values of a parameter file as a dictionary "Section/Name" -> text. File names may contain bytes that are not
-    UTF-8."""
+    """Values of a parameter file as a dictionary "Section/Name" -> text. Bytes that are not UTF-8 are
+    preserved, because file names may contain them."""
     values, sections = {}, []
     for line in pathlib.Path(path).read_text(encoding="utf-8", errors="surrogateescape").split("\n"):
         line = line.strip(BLANKS)

@@ -25,7 +25,7 @@ FIRST_NUMBER, LARGEST_NUMBER = 24, 160
 EQUAL = 1e-8
 # A unit vector counts as linearly independent if its component outside the span of the others exceeds this value
 INDEPENDENT = 1e-3
-# The pencil counts as singular if relative changes of its entries by this value make Q(s) singular at an arbitrary s
+# The pencil counts as singular if relative changes in its entries by this value make Q(s) singular at an arbitrary s
 SINGULAR = 1e-13
 
 
@@ -66,7 +66,7 @@ def match(values, others):
 
 
 def scaling(M, C, K):
-    """Scaling factors γ and δ of Fan, Lin and Van Dooren: γ² δ M, γ δ C and δ K have norms of about one."""
+    """Scaling factors γ and δ of Fan, Lin and Van Dooren: γ² δ M, γ δ C and δ K have norms of at most two."""
     norms = [scipy.sparse.linalg.norm(matrix) for matrix in (M, C, K)]
     if norms[2] == 0:
         gamma = norms[1] / norms[0] or 1.0
@@ -112,7 +112,7 @@ class ShiftInvert:
     def check(self):
         """Raises Error if Q(σ) is singular to working precision at an arbitrary σ.
 
-        By Oettli and Prager, relative changes of the entries by max |Q x| / (|Q| |x|) make Q(σ) singular; x is computed
+        By Oettli and Prager, relative changes in the entries by max |Q x| / (|Q| |x|) make Q(σ) singular; x is computed
         by inverse iteration.
         """
         sigma, lu = self.factor(self.gamma * (0.6 + 0.7j))
@@ -138,7 +138,7 @@ class ShiftInvert:
 
     def nearest(self, sigma, number, seed, factor=None):
         """Finite eigenvalues among the `number` nearest to the shift, or all eigenvalues if `number` is at least n; their
-        vectors; and the radius about the shift within which no eigenvalue is missing."""
+        vectors; and the radius about the shift within which all simple eigenvalues are expected to be found."""
         n, scale = self.M.shape[0], self.gamma
         if number >= n:
             return *solve_dense(self.M, self.C, self.K, self.where), math.inf
@@ -255,7 +255,7 @@ def solve(M, C, K, number=None, largest=None, region=None, shift=None, where="sy
     if empty := np.flatnonzero(sum(abs(matrix).sum(axis=1).A1 for matrix in (M, C, K)) == 0).tolist():
         raise Error(f"row {empty[0] + 1} of M, C and K is zero: det Q(λ) = 0 for every λ", where, "remove this dof")
     if sum(choice is not None for choice in (number, largest, region)) > 1:
-        raise Error("`number`, `largest` and `region` exclude each other", where, "give only one of them")
+        raise Error("`number`, `largest` and `region` are mutually exclusive", where, "give only one of them")
     if n <= DENSE_SIZE or (number or 0) > n:
         eigenvalues, vectors = solve_dense(M, C, K, where)
     elif region is None and largest is None and number is None:

@@ -86,8 +86,8 @@ class Table:
         return [complex(rate, 2 * math.pi * frequency) for rate, frequency in zip(self.numbers("growth rate [1/s]"), self.numbers("frequency [Hz]"))]
 
     def frame(self):
-        """The table as a pandas data frame. Units move from the column names to `attrs["units"]`, unless columns differ
-        only in their units. Numeric columns are converted to numbers, empty cells to NaN."""
+        """The table as a pandas data frame. Units are stored in `attrs["units"]` and removed from the column names, unless
+        columns differ only in their units. Numeric columns are converted to numbers, and empty cells to NaN."""
         import pandas
 
         parts = [re.fullmatch(r"(.*?)(?: \[([^\]]*)\])?", column).groups() for column in self.columns]
@@ -107,7 +107,7 @@ class Table:
 
 
 def shape_files(folder):
-    """Files of the mode shapes by row of complex_modes.csv, counted from 1."""
+    """Files of the complex mode shapes by row of complex_modes.csv, counted from 1."""
     return {int(match[1]): path for path in sorted((pathlib.Path(folder) / "modes").glob("complex_*.vtu"))
             if (match := re.match(r"complex_(\d+)_", path.name)) and not path.stem.endswith("_contact")}
 
@@ -173,7 +173,7 @@ class Results:
 
         path = self.folder / "system" / FILE
         if not path.is_file():
-            raise Error("the run did not write a system", f"folder {self.folder}", "run squeal with Output/Write system = full or reduced")
+            raise Error(f"there is no system/{FILE}", f"folder {self.folder}", "run squeal with Output/Write system = full or reduced")
         return System.read(path)
 
     def parameter(self, name):

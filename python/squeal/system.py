@@ -258,7 +258,8 @@ class System:
                 raise Error(f"{name} = {value!r} is not a number", f"{self.where}, parameter `{name}`", "give a number")
             if not math.isfinite(value) or lower is not None and value < lower or upper is not None and value > upper:
                 ends = f"{'-inf' if lower is None else format(lower, 'g')} to {'inf' if upper is None else format(upper, 'g')}"
-                raise Error(f"{name} = {value:g} is outside the range {ends}", f"{self.where}, parameter `{name}`", "change the value or the range")
+                raise Error(f"{name} = {value:g} is not finite or is outside the range {ends}", f"{self.where}, parameter `{name}`",
+                            "change the value or the range")
             values[name] = float(value)
         return values
 

@@ -2,9 +2,9 @@
 
 """Reproduces the numbers quoted in the documentation: the runs for each statement, and the quantities to extract from them.
 
-Each page has a module of the same name in pages/. An entry is a function with the decorator entry(page, statement). It
-takes the runs (runs.Runs) and yields a Number for each number in the statement or in a table of the page, read by
-table().
+Each page with reproduced numbers has a module of the same name in pages/. An entry is a function with the decorator
+entry(page, statement). It takes the runs (runs.Runs) and yields a Number for each reproduced number in the statement, or
+in a table of the page read by table().
 """
 
 import pathlib

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Runs of squeal, shared by the entries and kept in results/reproduce/."""
+"""Runs of squeal, shared by the entries and kept in a folder."""
 
 import squeal.results
 from squeal.program import SOURCE, find_program, run

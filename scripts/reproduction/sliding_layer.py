@@ -3,7 +3,7 @@
 """Waves in an elastic layer that slides with friction on a rigid plane: a continuum solution for comparison with meshes.
 
 The layer 0 <= y <= H is fixed at y = H. At y = 0 it slides without lift-off: u_y = 0, sigma_xy = mu sigma_yy. Displacements
-u(y) exp(i k x + lambda t) give an ordinary differential equation in y, which Chebyshev collocation solves to about ten digits.
+u(y) exp(i k x + lambda t) give an ordinary differential equation in y, which is solved by Chebyshev collocation.
 In the half-space H -> infinity, waves travel at the complex speed c from
 
     q_p w = -i mu (2 - w - 2 q_s q_p),    w = (c / c_s)^2,  q_s^2 = 1 - w,  q_p^2 = 1 - w (c_s / c_p)^2,  Re q > 0

@@ -27,7 +27,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 os.environ["SQUEAL"] = os.path.abspath(os.environ.get("SQUEAL", HERE.parents[1] / "build/release/squeal"))
 sys.path.insert(0, str(HERE.parent / "program"))
 
-from blocks import BLOCKS, HEXAHEDRA, SURFACES, VOLUMES  # noqa: E402 (found by the line before)
+from blocks import BLOCKS, HEXAHEDRA, SURFACES, VOLUMES  # noqa: E402 (found by the path set above)
 from program import EXECUTABLE, SCENE, SOURCE, read_table, settings  # noqa: E402
 
 TIME_LIMIT = 120       # time limit of a run on a busy machine [s]
@@ -168,7 +168,7 @@ def try_case(case, is_whole):
             process = call(folder, temporary, ["--output", "results", *case.arguments, *options])
             if process is None:
                 return "hangs", [f"not finished within {TIME_LIMIT} s"]
-            outcome = {0: "dry run" if options else "run", 1: "refused" if options else "refused late"}.get(process.returncode, "crash")
+            outcome = {0: "dry run" if options else "run", 1: "rejected" if options else "rejected late"}.get(process.returncode, "crash")
             found = faults_of_message(process)
             there = names_below(folder)
             if outcome == "run":

@@ -113,7 +113,7 @@ def disc_with_pads(n_parts=24, pad_parts=(0, 3), disc_layers=1):
     levels = [-t + 2 * t * layer / disc_layers for layer in range(disc_layers + 1)]
     faces = {"disc": mesh.block("disc", radii, angles(n_parts), levels, is_ring=True)}
     mesh.name(faces["disc"]["-a"].values(), "disc_bore")
-    rubbed = [(1, part) for part in range(*pad_parts)]  # cells of the disc under the pad
+    rubbed = [(1, part) for part in range(*pad_parts)]  # cells of the disc that face the pads
     for body, side, z in (("pin_top", "+c", [t, t + 0.015, t + 0.03]), ("pin_bottom", "-c", [-t - 0.03, -t - 0.015, -t])):
         pad = mesh.block(body, radii[1:3], angles(n_parts, *pad_parts), z)
         faces[body] = pad

@@ -24,8 +24,8 @@ MPIRUN = os.environ.get("MPIRUN", "mpirun")
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(SOURCE / "scripts"), str(SOURCE / "python")]
 
-# Two pins on each side, seven contact nodes per pin, large elements: 38 modes, some of disc and pins unstable, in less
-# than a second
+# Two pins on each side, seven contact nodes per pin, large elements: 38 modes, including unstable modes of disc and pins;
+# a run takes less than a second
 SCENE = """
 subsection Geometry
   set Top pin radii = 0.2275, 0.2275
@@ -43,7 +43,7 @@ subsection Output
 end
 """
 
-# A disc with a fifth of the elements, for tests that do not need resolved modes
+# A disc with fewer elements, for tests that do not need resolved modes
 COARSE = SCENE.replace("Element size = 0.04", "Element size = 0.08")
 
 COMPLEX_COLUMNS = ["label", "share [-]", "frequency [Hz]", "growth rate [1/s]", "divergence rate [%]", "effective damping ratio -2R/omega [%]",
@@ -177,7 +177,7 @@ class ProgramTest(unittest.TestCase):
 
     def interrupt(self, output, overrides, ends, kind="design"):
         """Starts or resumes a study once for each (number, signal) in `ends`, and sends the signal when `number` designs
-        or sets of samples are stored. The interrupted study must not write results."""
+        or sets of samples have been stored. The interrupted study must not write results."""
         for number, how in ends:
             with open(self.folder / "interrupted.log", "w+", encoding="utf-8") as log:
                 process = subprocess.Popen([EXECUTABLE, "scene.prm", "--output", output, *settings(overrides)], cwd=self.folder, stdout=log, stderr=log)

@@ -34,7 +34,7 @@ class Cases(unittest.TestCase):
 
 class Oracle(unittest.TestCase):
     def test_finds_known_eigenvalues(self):
-        """Uncoupled oscillators: two close together, one overdamped inside and one outside the search radius."""
+        """Uncoupled oscillators: two with close eigenvalues, one overdamped within and one beyond the search radius."""
         squares, rates = np.array([1e2, 1e4, 1e4 * (1 + 1e-9), 4e4, 1e9]), np.array([0.0, 1.0, 1.0, 1e3, 1e6])
         none, unit = sparse.csr_matrix((0, len(squares))), sparse.identity(len(squares), format="csr")
         matrices = {"M": unit, "K": sparse.diags(squares).tocsr(), "C": sparse.diags(rates).tocsr(), "G": 0 * unit, "C_b": 0 * unit, "P_n": none, "P_t": none,

@@ -252,7 +252,7 @@ class Import(ProgramTest):
         given = ("brake.inp", "refused.msh", "--unit", "mm")
         self.refused(["no unit of length", "--unit mm (0.6 m)"], "brake.inp", "refused.msh", *self.ABAQUS)
         self.refused(["`furlong`"], "brake.inp", "refused.msh", "--unit", "furlong", *self.ABAQUS)
-        self.refused(["becomes the disc", "PAD_B, PAD_T, ROTOR"], *given)
+        self.refused(["assigned to the disc", "PAD_B, PAD_T, ROTOR"], *given)
         self.refused(["no set of solids `ROTER`", "ROTOR"], *given, "--volume", "disc=ROTER")
         self.refused(["in volumes disc and pin_top"], *given, "--volume", "disc=ROTOR", "--volume", "pin_top=ROTOR")
         self.refused(["`disc`"], *given, "--volume", "disc")
@@ -269,13 +269,13 @@ class Import(ProgramTest):
         text = abaqus(self.mesh)
         for broken, mentions in ((text.replace("*NSET", "*NODE\n1, 0., 0., 0.\n*NSET"), ["node 1 is defined twice", "parts"]),
                                  (text.replace("type=C3D8R", "type=C3D20", 1), ["*ELEMENT cannot be read", "C3D20"]),
-                                 (text.replace("*NODE\n", "*NODE, SYSTEM=C\n"), ["*NODE generates or moves"]),
+                                 (text.replace("*NODE\n", "*NODE, SYSTEM=C\n"), ["*NODE generates or transforms"]),
                                  (text.replace("\n1, ", "\n777, ", 1), ["has node 1, which is not in the file"]),
                                  ("*INCLUDE, INPUT=nodes.inp\n" + text, ["nodes.inp", "is missing"]),
                                  (text.replace("S2", "SPOS", 1), ["side SPOS", "use one of: S1, S2"]),
                                  (text + "*SURFACE, NAME=HUB\n1, S1\n", ["surface HUB is defined twice"]),
-                                 (text + "*ELSET, ELSET=MORE\nROTOR, STATOR\n", ["set MORE names `STATOR`"]),
-                                 (text + "*NSET, NSET=HUB\nBACKS\n", ["`HUB` names different faces"]),
+                                 (text + "*ELSET, ELSET=MORE\nROTOR, STATOR\n", ["set MORE refers to `STATOR`"]),
+                                 (text + "*NSET, NSET=HUB\nBACKS\n", ["several sets are called `HUB`"]),
                                  (text.replace("TYPE=SPRINGA, ELSET=SPRINGS", "TYPE=GK3D8, ELSET=PAD_T"), ["type GK3D8", "not supported"]),
                                  ("*PART, NAME=P\n" + text + "*END PART\n*INSTANCE, NAME=P-1, PART=P\n0., 0., 1.\n*END INSTANCE\n", ["moved"]),
                                  ("*NODE\n1, 0., 0., 0.\n", ["no solid elements"])):

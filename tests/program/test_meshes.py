@@ -258,7 +258,7 @@ class Tetrahedra(ProgramTest):
             return mesh
 
         def middle_at(part, beside=0.0):
-            """Moves the mid-side node of the last element's first edge to the fraction `part`, and by `beside` off the edge."""
+            """Moves the mid-side node of the last element's first edge to the fraction `part`, shifted by `beside` in x, y and z."""
             def change(mesh):
                 nodes = mesh.cells[-1][1]
                 first, last = mesh.points[nodes[0]], mesh.points[nodes[1]]

@@ -24,7 +24,7 @@ class OwnGeometry(ProgramTest):
     # ------------------------------------------------------------- permissions
 
     def test_geometry_reaches_nothing_but_the_mesh(self):
-        """A geometry script can affect only the mesh; tests/geometry/mesher.cc covers all statements and terminations
+        """A geometry script can affect only the mesh; tests/geometry/mesher.cc covers more statements, and terminations
         of Gmsh."""
         self.write("part.geo", 'x = 1;\nSystemCall "touch trace";')
         self.geometry_refused(["starts a program", "part.geo, line 2", "Allow shell commands"], 'Include "part.geo";')

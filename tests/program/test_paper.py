@@ -22,7 +22,7 @@ class Paper(ProgramTest):
             raise AssertionError(process.stdout + process.stderr)
 
     def test_every_printed_number_has_one_to_compare(self):
-        """Every number of the paper has a counterpart; growing modes are compared with growing modes."""
+        """Every number of the paper up to the end of the band has a counterpart; growing modes are compared with growing modes."""
         for row in read_table(self.results / "table1.csv"):
             if row["label"][:4] in ("A0-6", "A1-3"):
                 continue  # above the band on the coarse mesh

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Plots of every study: names, labels and files; repeated plotting."""
+"""Plots of several studies: names, labels and files; repeated plotting."""
 
 import json
 import os
@@ -34,7 +34,7 @@ def draw(folder, *options, environment=None):
 
 @unittest.skipIf(figures is None, "python3-matplotlib is not installed")
 class Studies(ProgramTest):
-    """Plots of every study; tests/scripts/test_plot_results.py checks their content for small tables."""
+    """Plots of several studies; tests/scripts/test_plot_results.py checks their content for small tables."""
 
     scene = COARSE
 

@@ -79,7 +79,7 @@ class Friction(ProgramTest):
         self.assertLess(worst["residual-grown 1e-07"], worst["residual-grown 0.0001"])
 
     def test_verdicts(self):
-        """An accurate basis gives the verdict of the reference for all modes with a rate above 0.001 %."""
+        """An accurate basis gives the verdict of the reference for all modes with an absolute rate above 0.001 %."""
         verdicts = set()
         for row in read_table(self.results / "reduction_modes.csv"):
             rate = float(row["reference divergence rate [%]"])

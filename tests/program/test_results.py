@@ -107,7 +107,7 @@ class Results(ProgramTest):
             self.assertEqual(set(VtuFile(picture).cell_types), {9})
 
     def test_energy(self):
-        """Contributions of all bodies add up to the divergence rate; work of friction is attributed to the pins."""
+        """Contributions of all bodies add up to the divergence rate; work of friction is listed with the pins."""
         rows = read_table(self.results / "energy.csv")
         modes = read_table(self.results / "complex_modes.csv")
         growing = [number for number, row in enumerate(modes, start=1) if row["unstable [-]"] == "1"]

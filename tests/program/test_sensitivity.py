@@ -11,7 +11,7 @@ from program import COARSE, ProgramTest, read_table
 STUDY = "Study=sensitivity"
 NO_THRESHOLDS, NO_GEOMETRY = "Sensitivity/Thresholds=false", "Sensitivity/Geometry=none"
 ITERATED = ["Complex modes/Solver=residual iteration", "Complex modes/Iteration tolerance=1e-12"]
-# Model in which all parameters are nonzero
+# Model with contact damping, material damping and rotation
 RICH = ["Operation/Radial dissipation=consistent", "Operation/Friction slope=-0.002", "Operation/Gyroscopic forces=true",
         "Operation/Rotation speed=20", "Operation/Load per side=2000", "Disc material/Rayleigh alpha=2", "Disc material/Rayleigh beta=1e-8",
         "Pin material/Rayleigh alpha=3", "Pin material/Rayleigh beta=2e-8", "Mounts/Elastic mounts=disc_bore: 3e10, 7.8e10, 1.88e10"]
@@ -187,7 +187,7 @@ class Sensitivity(ProgramTest):
                 self.check_difference(agrees, pair, nearest)
 
     def check_difference(self, agrees, pair, nearest):
-        """Passes if the central difference or, near a coalescence, where its error O(h^2) is large, its extrapolation agrees."""
+        """Passes if the central difference agrees or, because its error O(h^2) is large near a coalescence, its extrapolation."""
         def difference(size):
             before, after = (nearest(values) for values in pair(size))
             return (after - before) / (2 * size)
@@ -207,7 +207,7 @@ class Sensitivity(ProgramTest):
         return set(values)
 
     def test_differences(self):
-        """Model with all kinds of damping, a rotating disc and steady sliding; tests/sensitivity covers all material
+        """Model with contact and material damping, a rotating disc and steady sliding; tests/sensitivity covers all material
         constants."""
         paths = [*(f"Operation/{name}" for name in ("Friction coefficient", "Friction slope", "Load per side", "Rotation speed")),
                  "Disc material/Young modulus", "Disc material/Rayleigh beta", "Pin material/Poisson ratio", "Pin material/Rayleigh alpha",

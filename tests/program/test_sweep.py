@@ -80,7 +80,7 @@ class SweepTest(ProgramTest):
             self.assertAlmostEqual(divergence(value), divergence(nearest), delta=tolerance)
 
     def assert_complete(self, folder, suffix=""):
-        """Checks that the branches have the numbers of modes in counts.csv, and no branch twice at one friction
+        """Checks that the branches have the numbers of modes in counts.csv, and that no branch occurs twice at one friction
         coefficient."""
         rows = by_mu(read_table(folder / f"branches{suffix}.csv"))
         counts = read_table(folder / f"counts{suffix}.csv")
@@ -246,7 +246,7 @@ class Sweep(SweepTest):
             self.assertLessEqual(abs(eigenvalue(row) - leading), DEFAULT_ACCURACY * abs(leading))
 
     def test_maps(self):
-        """Contact damping is proportional to load over speed; nothing else depends on load and speed."""
+        """Contact damping is proportional to load over speed; without rotation terms, nothing else depends on load and speed."""
         by_load = read_table(self.results / "map.csv")
         fast = self.sweep("fast", CONSISTENT, "Sweep/Number of friction coefficients=4", "Sweep/Compare dissipation=false",
                           "Sweep/Map parameter=speed", "Sweep/First map value=1", "Sweep/Last map value=16", *MAP)
@@ -338,7 +338,7 @@ class OtherSweeps(SweepTest):
     def test_small_basis(self):
         screen = self.screen_of("small", CONSISTENT, "Sweep/Compare dissipation=false", "Sweep/Maximum basis=40", "Sweep/Tolerance=1e-9",
                                 "Sweep/Count modes at=0.4", "Sweep/Mode shapes at=0.4", "Output/Mode shapes=unstable")
-        # Reported once, although it affects three outputs
+        # The error is reported once, although it affects three outputs
         self.assertEqual(len(re.findall("at mu = 0.4, the estimated error .* of the modes exceeds the tolerance", screen)), 1)
         self.assertIn("operating points are omitted", screen)
         self.assertIn("Sweep/Maximum basis", screen)

@@ -386,7 +386,8 @@ class Brake(SystemTest):
                 self.assert_same(found, self.eigenvalues(omega), 1e-8)
 
     def test_accuracy(self):
-        """Definite systems have backward errors, condition numbers, and errors of λ that are at most 10 times too small."""
+        """Tables of definite systems contain backward errors, condition numbers and error estimates of λ, which are at most 10
+        times too small."""
         self.write_system({"omega": (2., 1., 4.)}, self.terms)
         results, exact = self.study("stability"), self.eigenvalues(2.)
         for row, value in zip(self.rows(results, "complex_modes"), self.lambdas(results)):
@@ -396,7 +397,7 @@ class Brake(SystemTest):
             self.assertLess(min(abs(value - other) for other in exact), (10. * row["error of lambda [-]"] + 1e-10) * abs(value))
 
     def test_reduction(self):
-        """First-order responses and responses to damping each reduce the error of a basis by a factor of 1000."""
+        """First-order responses and responses to damping each reduce the error of a basis by a factor of at least 1000."""
         self.write_system({"omega": (2., 1., 4.)}, self.terms)
         results = self.study("reduction", "Reduction/Snapshots=1, 2.5, 4", "Reduction/Grown tolerances=1e-4, 1e-7")
         bases = {row["basis"]: row for row in self.rows(results, "reduction_bases")}

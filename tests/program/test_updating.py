@@ -137,7 +137,7 @@ class OfScene(ProgramTest):
         for row in read_table(results / "component_modes.csv"):
             if (row["component"], row["contact"]) == ("pins", "sliding"):
                 pins.setdefault(row["label"], []).append(float(row["frequency [Hz]"]))
-        # Frequencies of clamped pins determine only the ratio of modulus and density
+        # Frequencies of clamped pins determine only the ratio of modulus to density
         rows = [("component", label, 1.01 * sum(found) / len(found)) for label, found in pins.items()]
         self.write("modes.csv", csv_text([*rows, *modes]))
         process = self.call_scene("alike", "Study=updating", "Updating/Measured modes=modes.csv",

@@ -88,7 +88,7 @@ class Words(ProgramTest):
             self.assertGreater(float(rows["A0-4 +"]["wave with rotation [-]"]), 0.8, rotation)
 
     def test_growing_modes_have_one_name(self):
-        """The growing mode of a doublet has the label `+` in every study."""
+        """The growing mode of a doublet has the label `+` in a stability run and in a sweep."""
         self.write("default.prm", "")
         sweep = ["Study=sweep", "Sweep/First friction coefficient=0.3", "Sweep/Last friction coefficient=0.4",
                    "Sweep/Number of friction coefficients=3"]

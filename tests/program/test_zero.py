@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The limit below which eigenvalues count as zero does not depend on the band; verdicts account for correct digits."""
+"""The limit below which eigenvalues count as zero does not depend on the band; verdicts account for the number of correct digits."""
 
 import json
 import math

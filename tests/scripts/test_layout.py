@@ -29,7 +29,7 @@ class Layout(unittest.TestCase):
                 room = path.relative_to(base).parts[0]
                 for other in re.findall(r"#include <squeal/(\w+)/", path.read_text(encoding="utf-8")):
                     n_includes += 1
-                    self.assertLessEqual(order[other], order[room], f"{path} includes from {other}/, a row below {room}/ in doc/structure.md")
+                    self.assertLessEqual(order[other], order[room], f"{path} includes from {other}/, whose row is below {room}/ in doc/structure.md")
         self.assertGreater(n_includes, 100)
 
 

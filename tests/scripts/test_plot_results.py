@@ -192,10 +192,10 @@ class Maps(PlotTest):
             self.assertEqual(len(self.patches(axes, "stable")), 5)
             # The boundary runs along one vertical and two horizontal cell edges
             self.assertEqual(points_and_parts(line_of(axes, "stability boundary")), (2 + 3, 2))
-            self.assertEqual(line_of(axes, "change of the contact set"), [])
+            self.assertEqual(line_of(axes, "change in the contact set"), [])
         self.assertEqual([text.get_text() for text in panel.texts], ["F1"])
         self.assertEqual([text.get_text() for text in counts.texts], ["2", "2"])
-        # Edges are halfway between neighbours, in logarithmic scale for a logarithmic axis
+        # Edges are halfway between neighbours on the scale of the axis
         edges = stability_map.StabilityMap(table)
         self.assertAlmostEqual(edges.x_edges[2], 0.15)
         self.assertAlmostEqual(edges.y_edges[1], math.sqrt(1e5))
@@ -209,7 +209,7 @@ class Maps(PlotTest):
                 return (mu, load, "", "", "", "", 4) if is_missing else (*row[:-1], 4)
 
             axes = stability_map.map_figure(self.read(change)).axes[0]
-            self.assertEqual(points_and_parts(line_of(axes, "change of the contact set")), (0, 0) if is_missing else (2 + 2, 2))
+            self.assertEqual(points_and_parts(line_of(axes, "change in the contact set")), (0, 0) if is_missing else (2 + 2, 2))
             self.assertEqual(len(self.patches(axes, "not computed")), int(is_missing))
 
 

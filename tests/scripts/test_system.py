@@ -259,7 +259,7 @@ class Solutions(InFolder):
         other = sparse.identity(n) - column @ column.T / (column.T @ column)[0, 0]
         large = System({}, [Term("M", 2, matrix=other), Term("K", 0, matrix=3.0 * other)])
         self.assert_rejected(lambda: large.solve(number=3), "singular")
-        self.assert_rejected(lambda: flutter().solve(number=1, largest=2.0), "exclude each other")
+        self.assert_rejected(lambda: flutter().solve(number=1, largest=2.0), "mutually exclusive")
 
     def test_time_integration_shows_the_growth_rate(self):
         """In a time integration of M, C and K by SciPy, the amplitude grows with the rate Re λ."""

@@ -8,7 +8,7 @@ import re
 from squeal.errors import Error
 from squeal.importing.mesh_shapes import faces_of, read_text, shape_of
 
-# Unsupported keywords that generate or move nodes and elements
+# Unsupported keywords that generate or transform nodes and elements
 GENERATORS = ("NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY", "SYSTEM", "IMPORT", "SYMMETRIC MODEL GENERATION", "IMPERFECTION")
 WITHOUT_PARTS = "write the input file with the option `Do not use parts and assemblies in input files`"
 
@@ -37,8 +37,9 @@ class AbaqusInput:
 
     points: label -> coordinates; elements: label -> (shape, node labels); element_sets, node_sets: name -> labels;
     surfaces: name -> [(element label, face index)]; materials: element label -> (constants, rho, axes) in the units of
-    the file, or None if incomplete: E and nu or nine engineering constants, and axes as returned by axes_of(); dropped:
-    descriptions of all omitted content. Names are in capitals, because Abaqus ignores case."""
+    the file, or None if incomplete, unsupported or ambiguous; dropped: descriptions of omitted surfaces and set members.
+    The constants are E and nu without axes, or nine engineering constants with axes as returned by axes_of(). Names are
+    in capitals, because Abaqus ignores case."""
 
     def __init__(self, path):
         self.points, self.elements, self.element_sets, self.node_sets = {}, {}, {}, {}
@@ -104,7 +105,7 @@ class AbaqusInput:
 
     def _take(self, keyword, options, rows):
         if keyword in GENERATORS or keyword == "NODE" and options.get("SYSTEM", "R") != "R":
-            raise self._error(f"*{keyword} generates or moves nodes or elements", "write all nodes and elements in global Cartesian coordinates")
+            raise self._error(f"*{keyword} generates or transforms nodes or elements", "write all nodes and elements in global Cartesian coordinates")
         if keyword in ("PART", "INSTANCE"):
             self._parts += keyword == "PART"
             if self._parts > 1 or keyword == "INSTANCE" and (self._instance or any(float(word) for row in rows for word in row if word)):
@@ -186,7 +187,7 @@ class AbaqusInput:
 
     def _known(self, sets, name, where):
         if name not in sets:
-            raise self._error(f"{where} names `{name}`, which is not in the file", "define it, or remove the reference")
+            raise self._error(f"{where} refers to `{name}`, which is not in the file", "define it, or remove the reference")
         return sets[name]
 
     def _labels(self, sets, known, name, above=()):

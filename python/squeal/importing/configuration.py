@@ -25,7 +25,7 @@ def read_json(path):
 
 
 def read_yaml(path, what):
-    """The content of a YAML or JSON file. Raises Error for duplicate keys, of which PyYAML would keep the last."""
+    """The content of a YAML or JSON file. Raises Error for invalid syntax and for duplicate keys, which PyYAML accepts."""
     import yaml
 
     class Loader(yaml.SafeLoader):

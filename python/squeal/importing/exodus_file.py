@@ -20,7 +20,7 @@ def face_number(shape, side):
 
 class ExodusFile:
     """The content of an Exodus file, with the attributes of AbaqusInput; elements are numbered in the order of the
-    file. Unnamed sets are called block_3, sideset_3 or nodeset_3 after their ID."""
+    file. The name of an unnamed set consists of its kind and ID, such as block_3, sideset_3 or nodeset_3."""
 
     def __init__(self, path):
         self.elements, self.element_sets, self.surfaces, self.materials, self.dropped = {}, {}, {}, {}, []

@@ -28,7 +28,7 @@ class ForeignMesh:
 
     points (n x 3); elements: [(shape, nodes)], including shells and unsupported types; element_sets, node_sets: name ->
     indices; faces: name -> tuples of nodes; materials: element index -> material as in AbaqusInput; dropped:
-    descriptions of all omitted content."""
+    descriptions of omitted content."""
 
     def __init__(self):
         self.points, self.elements, self.dropped = np.empty((0, 3)), [], []
@@ -64,7 +64,7 @@ def from_input_file(source, path):
 
 
 def with_meshio(action, path):
-    """Return value and printed output of a call of meshio."""
+    """Return value and printed output of a call to meshio."""
     said = io.StringIO()
     try:
         with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said), np.errstate(all="ignore"):

@@ -19,7 +19,7 @@ HELD = 1e36
 
 @dataclasses.dataclass
 class Entries:
-    """Entries of a matrix by row and column from 0 or, if `shape` is None, by labels (node, dof).
+    """Entries of a matrix by zero-based row and column or, if `shape` is None, by labels (node, dof).
     is_half: True if the file contains one triangle of the symmetric matrix; None if this is unknown."""
 
     rows: np.ndarray
@@ -202,7 +202,7 @@ class Numbering:
             entries.rows, entries.columns = new[own], new[other]
 
     def matrix(self, entries, symmetry, where):
-        """The sparse matrix with both triangles. Raises Error if a triangle is missing and no symmetry is given."""
+        """The sparse matrix with both triangles. Raises Error if a missing triangle requires a symmetry that is not given."""
         rows, columns, values = entries.rows, entries.columns, entries.values
         if self.labels is not None:
             kept = (rows >= 0) & (columns >= 0)

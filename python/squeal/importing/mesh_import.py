@@ -66,7 +66,7 @@ class Import:
         solids = {name for name, numbers in mesh.element_sets.items() if any(map(mesh.is_solid, numbers))}
         self.volumes = chosen(volumes, solids, "set of solids", is_volume, path)
         if not any(map(is_of_disc, self.volumes)):
-            raise Error("no set of elements becomes the disc", path,
+            raise Error("no set of elements is assigned to the disc", path,
                         f"use --volume disc=SET with a set from: {', '.join(sorted(solids)) or '(none)'}")
         for name, member in ((name, member) for name, members in self.volumes.items() for member in members):
             for number in mesh.element_sets[member]:
@@ -108,7 +108,7 @@ class Import:
                 self.left.append(f"{alone} boundary nodes of {member} that do not form a complete face")
         outside = [sorted(keys & self.outer.keys()) for keys in found] or [[]]
         if any(other != outside[0] for other in outside):
-            raise Error(f"`{member}` names different faces as a surface or set of shells and as a set of nodes", self.path, "rename one of them")
+            raise Error(f"several sets are called `{member}` and contain different faces", self.path, "rename one of them")
         if not outside[0]:
             raise Error(f"`{member}` has no face on the boundary of the volumes", self.path, f"choose boundary faces for {name}")
         if inside := len(found[0]) - len(outside[0]):

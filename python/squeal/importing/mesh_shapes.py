@@ -32,7 +32,7 @@ def faces_of(shape):
 
 
 def middle_nodes(shape, nodes):
-    """Mid-side node of each edge, given as the frozenset of its ends; empty for first-order elements."""
+    """Edge (frozenset of its ends) -> mid-side node; empty for first-order elements."""
     edges = EDGES.get(re.sub(r"\d+$", "", shape), ())
     n_corners = len({corner for edge in edges for corner in edge})
     return {frozenset((nodes[a], nodes[b])): node for (a, b), node in zip(edges, nodes[n_corners:])}
@@ -40,7 +40,7 @@ def middle_nodes(shape, nodes):
 
 def shape_of(element_type):
     """Shape and number of nodes of an Abaqus element type; 0 nodes for unsupported types. Variants such as C3D8R have
-    the nodes of the basic element, continuum shells the nodes of solids."""
+    the same nodes as the basic element, and continuum shells have the same nodes as solids."""
     if match := re.fullmatch(r"(?:C3D|SC)(\d+)[A-Z]*", element_type):
         shapes = SOLIDS
     elif match := re.fullmatch(r"(?:S|M3D|SFM3D|R3D)(\d)(?:R5?|RS|S|)", element_type):

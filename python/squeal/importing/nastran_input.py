@@ -21,7 +21,7 @@ def number(word):
 
 
 def cards(path):
-    """(line number, fields) of every card; continuation lines begin with a blank field, + or *."""
+    """(line number, fields) of every card of the bulk data; continuation lines begin with a blank field, + or *."""
     text = read_text(path)
     has_control = re.search(r"^\s*BEGIN\s+BULK", text, re.IGNORECASE | re.MULTILINE)
     begun, card, first = not has_control, [], 0

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Accuracy versus cost: errors of meshes, elements and bases over CPU time."""
+"""Accuracy versus cost: errors of meshes, elements and bases versus CPU time."""
 
 from squeal.plotting import style
 from squeal.plotting.reduction import pareto_front

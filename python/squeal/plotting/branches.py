@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Frequencies and divergence rates over the friction coefficient, as in figures 7 to 9 of the paper."""
+"""Frequencies and divergence rates versus the swept parameter, as in figures 7 to 9 of the paper."""
 
 import math
 
@@ -11,7 +11,7 @@ FAMILIES_PER_PICTURE = 3
 NAME_LENGTH = 0.2  # fraction of the width over which a curve must not cross its label
 NAME_MARGIN = 0.1  # space for labels above and below the frequencies of a family, as a fraction of their range
 
-# Looks of charts without and with dissipation; the first chart covers the second, which is therefore wider
+# Line styles of the first and the second series; the first is drawn on top, so the second is wider
 LOOKS = ({"color": style.BLACK, "linestyle": "-"}, {"color": style.GREY, "linestyle": (0, (4, 1.5))})
 GROWING_LOOKS = ({"color": style.VERMILLION, "linestyle": "-"}, {"color": style.ORANGE, "linestyle": (0, (3, 1))})
 WIDTHS, GROWING_WIDTHS = (0.9, 1.5), (2.4, 4.2)  # [points]
@@ -20,8 +20,8 @@ BREAK = (math.nan, math.nan)
 
 
 def lines_of(chart, branches, quantity):
-    """All points of branches, and their growing parts with the adjacent thresholds, as lines broken by NaN; empty if
-    there are no points."""
+    """All points of branches, and their growing points with the adjacent points, as lines broken by NaN; empty if there
+    are no points."""
     everything, growing = [], []
     for branch in branches:
         points = chart.curve(branch)
@@ -140,7 +140,7 @@ def set_friction_range(panels, all_charts):
 
 
 def family_figures(all_charts):
-    """Figures of the growing families, three per figure."""
+    """Figures of the growing families, at most three per figure."""
     names = growing_families(all_charts)
     parts = [names[i:i + FAMILIES_PER_PICTURE] for i in range(0, len(names), FAMILIES_PER_PICTURE)]
     return {"sweep_families" + (f"_{number}" if len(parts) > 1 else ""): family_picture(all_charts, part)
@@ -149,7 +149,7 @@ def family_figures(all_charts):
 
 def overview_figure(all_charts, band_end):
     """Figure of all modes in the band."""
-    picture = style.Picture("Modes in the band over " + axis_title(all_charts[0].parameter).split(" [")[0], 2, 2, (5.4, 5.2))
+    picture = style.Picture("Modes in the band versus " + axis_title(all_charts[0].parameter).split(" [")[0], 2, 2, (5.4, 5.2))
     for panel, title, quantity, label in zip(picture.panels, ("Frequencies", "Divergence rates"), ("frequency", "divergence"),
                                              (style.FREQUENCY, style.DIVERGENCE)):
         style.prepare(panel, title, axis_title(all_charts[0].parameter), label)

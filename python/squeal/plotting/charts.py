@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Branches and thresholds of a sweep over the friction coefficient."""
+"""Branches and thresholds of a sweep, by default over the friction coefficient. `mu` is the swept parameter."""
 
 import dataclasses
 import re
@@ -37,7 +37,7 @@ class Threshold:
 
 
 class Chart:
-    """Modes of the band over the friction coefficient at one load and speed, with one contact set.
+    """Modes of the band at all values of the swept parameter, with one contact set.
 
     `mus`: all values in ascending order; `modes[branch][mu]`: a mode; `labels[branch]`: the label of a branch.
     """
@@ -73,7 +73,7 @@ class Chart:
 
 
 def family(label):
-    """Label of a branch without the sign of its doublet: `A0-4` for `A0-4 -`."""
+    """Label of a branch without the doublet sign: `A0-4` for `A0-4 -`."""
     return label[:-2] if len(label) > 2 and label[-2:] in (" -", " +") else label
 
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The complex plane, as in figure 6 of the paper: divergence rate over frequency."""
+"""The complex plane, as in figure 6 of the paper: divergence rate versus frequency."""
 
 import collections
 import itertools
@@ -67,7 +67,7 @@ class Plane:
         self.points = ((size[0] - 0.9) * style.INCH, (size[1] - 0.9) * style.INCH)
 
     def place(self, mode):
-        """Position of a mode in the panel, from kHz and %."""
+        """Position of a mode in the panel [kHz, %]."""
         return 1e-3 * mode.frequency, max(mode.divergence, self.edge)
 
     def in_points(self, mode):
@@ -119,7 +119,7 @@ def draw(panel, size, title, series, band_end, limits=None):
 
 
 def planes_of_table(table):
-    """Friction coefficient -> series, in the order of the table complex_plane; series without radial dissipation come
+    """Value of the swept parameter -> series, in the order of the table complex_plane; series without radial dissipation come
     first."""
     planes = {}
     columns = (table.numbers(table.parameter), table.texts("radial dissipation"), table.texts("label"), table.numbers("frequency [Hz]"),
@@ -138,8 +138,7 @@ def last_plane(all_charts):
 
 
 def sweep_figure(results, all_charts, band_end):
-    """A panel for each friction coefficient in the table complex_plane or, without this table, for the last one of the
-    sweep."""
+    """A panel for each value in the table complex_plane or, without this table, for the last value of the sweep."""
     planes = planes_of_table(results.table("complex_plane")) if results.has("complex_plane") else last_plane(all_charts)
     picture = style.Picture("Modes in the complex plane", len(planes), 2, (5.2, 3.6))
     for panel, (mu, series) in zip(picture.panels, planes.items()):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Onset of squeal and largest divergence rate over each variable of a design study."""
+"""Onset of squeal and largest divergence rate versus each variable of a design study."""
 
 import math
 
@@ -33,7 +33,7 @@ def figures(results):
                 if not is_solved:
                     continue
                 if math.isnan(y):
-                    # No growth up to the last friction coefficient
+                    # No mode reaches 0.01 %, or none grows, up to the last friction coefficient
                     panel.plot(x, end if row == 0 else 0, linestyle="", marker="o", markersize=6, color=style.BLACK, markerfacecolor="white",
                                label="quiet")
                 else:

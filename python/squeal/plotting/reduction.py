@@ -37,7 +37,7 @@ def read_candidates(results):
 
 
 def draw_floor(panel, values):
-    """Draws a line at FLOOR if a value lies on it."""
+    """Draws a line at FLOOR if a value is drawn there."""
     if any(value <= FLOOR for value in values):
         panel.axhline(FLOOR, color=style.GREY, linestyle=(0, (2, 2)), linewidth=1.2, zorder=1, label=AT_FLOOR)
 
@@ -67,7 +67,7 @@ def error_figure(candidates):
     truncations = list(dict.fromkeys(candidate.truncation for candidate in candidates if candidate.truncation)) or [""]
     groups = list(dict.fromkeys(group for candidate in candidates for group in candidate.errors))
     names = list(dict.fromkeys(candidate.name for candidate in candidates))
-    # Omit criteria without errors, such as the divergence rate without growing modes
+    # Omit criteria without errors, such as the divergence rate if no mode grows
     criteria = [column for column in CRITERIA if any(candidate.largest(column) > 0 for candidate in candidates)]
     title = "Largest errors of reduced bases by group of modes"
     # One row for each truncation; if there is only one, its groups are wrapped
@@ -93,7 +93,7 @@ def pareto_front(points):
 
 
 def draw_costs(panel, candidates, column, costs):
-    """Draws the largest error of each basis over its cost, and the Pareto front."""
+    """Draws the largest error of each basis versus its cost, and the Pareto front."""
     errors = [max(candidate.largest(column), FLOOR) for candidate in candidates]
     front = pareto_front(zip(costs, errors))
     panel.plot(*zip(*front), color=style.GREY, linewidth=1.6, label="Pareto front", zorder=1)
@@ -110,7 +110,7 @@ def cost_figure(candidates, with_friction):
     times = ("time per friction coefficient" if with_friction else "solution time", "build time")
     seconds = ([candidate.solve_seconds for candidate in candidates], [candidate.build_seconds for candidate in candidates])
     for panel, time, costs in zip(picture.panels, times, seconds):
-        style.prepare(panel, f"Error over {time}", f"{time} [s of CPU]", label)
+        style.prepare(panel, f"Error versus {time}", f"{time} [s of CPU]", label)
         draw_costs(panel, candidates, column, costs)
     return picture.add_key()
 

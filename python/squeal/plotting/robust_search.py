@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""History of a search with uncertain parameters, and the goal of the search over the variables."""
+"""History of a search with uncertain parameters, and the goal of the search versus the variables."""
 
 from squeal.plotting import style
 

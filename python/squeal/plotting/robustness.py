@@ -49,7 +49,8 @@ def cloud(panel, modes):
 
 
 def cumulative(panel, onsets):
-    """Draws the percentage of samples with an onset up to each value of the swept parameter."""
+    """Draws the percentage of samples with an onset up to each value of the swept parameter; samples that miss the
+    tolerance are omitted."""
     known = [missed == 0. for missed in onsets.numbers("values that miss the tolerance [-]")]
     columns = [column for column in onsets.columns if " of " in column and column.endswith("[-]") and not column.startswith("uncertainty")]
     style.prepare(panel, "", f"first onset: {columns[0].split(' of ')[0]} [-]", "samples with an onset up to this value [%]")

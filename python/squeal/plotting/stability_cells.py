@@ -49,7 +49,8 @@ class StabilityMap:
 
 
 def cell_edges(values, logarithmic):
-    """Cell edges halfway between values. Outer cells are symmetric about their value, but end at zero."""
+    """Cell edges halfway between values on the scale of the axis. Outer cells are symmetric about their values, but the
+    first cell does not extend below zero unless its value is negative."""
     v = np.log(values) if logarithmic else np.asarray(values)
     if len(v) > 1:
         edges = np.concatenate([[1.5 * v[0] - 0.5 * v[1]], 0.5 * (v[:-1] + v[1:]), [1.5 * v[-1] - 0.5 * v[-2]]])

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Stability over the friction coefficient and the load or the rotation speed."""
+"""Stability versus the two parameters of a map."""
 
 import numpy as np
 from matplotlib.cm import ScalarMappable
@@ -31,12 +31,12 @@ def draw_cells(panel, stability, values, norm):
 
 
 def draw_limits(panel, stability, with_leaders):
-    """Draws lines between cells that differ in stability, contact set or most unstable mode."""
+    """Draws lines between cells that differ in stability, in the number of open nodes or in the most unstable mode."""
     is_unstable, leader, n_open = stability.is_unstable, stability.leader, stability.n_open
-    lines = [("change of the contact set", {"linewidth": 1.4, "linestyle": (0, (5, 3))}, lambda a, b: n_open[a] != n_open[b]),
+    lines = [("change in the contact set", {"linewidth": 1.4, "linestyle": (0, (5, 3))}, lambda a, b: n_open[a] != n_open[b]),
              ("stability boundary", {"linewidth": 2.8}, lambda a, b: is_unstable[a] != is_unstable[b])]
     if with_leaders:
-        lines.insert(0, ("change of the most unstable mode", {"linewidth": 0.9},
+        lines.insert(0, ("change in the most unstable mode", {"linewidth": 0.9},
                          lambda a, b: is_unstable[a] and is_unstable[b] and leader[a] != leader[b]))
     for label, look, differ in lines:
         style.draw_points(panel, limits(stability, differ), color=style.BLACK, label=label, **{"linestyle": "-", **look})
@@ -78,7 +78,7 @@ def prepare(panel, stability, title):
 def map_figure(table):
     """A panel for the divergence rate of the most unstable mode, and one for the number of unstable modes."""
     stability = StabilityMap(table)
-    picture = style.Picture(f"Stability over {axis_title(stability.abscissa).split(' [')[0]} and {stability.ordinate.split(' [')[0]}", 2, 2, (6.2, 4.6))
+    picture = style.Picture(f"Stability versus {axis_title(stability.abscissa).split(' [')[0]} and {stability.ordinate.split(' [')[0]}", 2, 2, (6.2, 4.6))
     rates, counts = picture.panels
     largest = np.where(stability.is_unstable, stability.rate, 0.0).max()
     n_largest = int(max(1, np.nan_to_num(stability.n_unstable).max()))

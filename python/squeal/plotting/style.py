@@ -8,8 +8,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-# Colours that are distinguishable with all types of colour vision (Okabe and Ito); markers, widths and dashes carry the
-# same information
+# Colours for readers with colour-vision deficiencies, based on Okabe and Ito; markers, widths and dashes carry the same
+# information
 BLACK, GREY, BLUE, VERMILLION, GREEN = "#000000", "#8c8c8c", "#0072b2", "#d55e00", "#009e73"
 PURPLE, ORANGE, SKY, BROWN = "#cc79a7", "#e69f00", "#56b4e9", "#7f5539"
 SERIES = (BLACK, BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY, BROWN)
@@ -89,7 +89,7 @@ def zero_line(panel):
 
 
 def cost_axes(panel, costs):
-    """Sets logarithmic axes for errors over costs, with plain numbers on the cost axis."""
+    """Sets logarithmic axes for errors versus costs, with plain numbers on the cost axis."""
     panel.set_xscale("log")
     panel.set_yscale("log")
     panel.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5) if max(costs) < WIDE * min(costs) else (1,)))

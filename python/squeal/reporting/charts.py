@@ -14,7 +14,7 @@ def number(text):
 
 
 def short(text, n=6):
-    """A number in a text, rounded to n digits, for a chart."""
+    """The number in a text, rounded to n digits, for a chart."""
     return float(f"{number(text):.{n}g}")
 
 
@@ -36,7 +36,7 @@ def points(name, x, y, about=None, mode="markers", **more):
 
 
 def best_so_far(rows, goal, **more):
-    """Series of the best value of a goal over the number of evaluated designs."""
+    """Series of the best value of a goal versus the number of evaluated designs."""
     return points("best so far", [int(row["design [-]"]) for row in rows], [short(row["best " + goal]) for row in rows], mode="lines",
                   line={"color": "#222", "width": 1.6, "shape": "hv"}, **more)
 

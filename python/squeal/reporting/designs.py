@@ -48,7 +48,7 @@ def verdict(results):
     table = results.table("designs")
     rows = solved(table)
     left = len(table) - len(rows)
-    outcome = f"{len(rows)} of {len(table)} designs solved" + (f", {left} refused or failed" if left else "")
+    outcome = f"{len(rows)} of {len(table)} designs solved" + (f", {left} rejected or failed" if left else "")
     if not rows:
         return "none", outcome + "."
     end = end_of_sweep(results)

@@ -1,4 +1,4 @@
-/* Draws the content of the page: charts by plotly.js, tables by DataTables, shapes by three.js. */
+/* Draws the content of the page: charts with plotly.js, tables with DataTables, shapes with three.js. */
 "use strict";
 
 const content = JSON.parse(document.getElementById("data").textContent);
@@ -144,7 +144,7 @@ class Viewer {
   }
 }
 
-/* Shows the energy of the mode that is animated. */
+/* Animates a mode and passes its number to `showEnergy`. */
 function drawShapes(showEnergy) {
   if (!content.shapes) return null;
   const viewer = new Viewer(content.shapes, document.getElementById("canvas"));

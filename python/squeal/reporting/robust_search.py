@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Page of a search with uncertain parameters: the best design, with the samples of the search and with other samples."""
+"""Page of a search with uncertain parameters: the best design, evaluated with the samples of the search and with other samples."""
 
 from squeal.reporting.charts import STABLE, UNSTABLE, best_so_far, confidence, digits, layout, number, plain, points, short
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Page of a search: its history, the best design with its check at full order, and all designs over their variables."""
+"""Page of a search: its history, the best design with its check at full order, and all designs versus their variables."""
 
 import re
 import shlex
@@ -72,7 +72,7 @@ def checks(results):
 
 
 def history_section(search):
-    """Chart of the goal over the evaluations, with the best value so far."""
+    """Chart of the goal versus the number of the evaluation, with the best value so far."""
     first = search.table.rows.index(search.solved[0]) if search.solved else len(search.table)
     best = best_so_far(search.table.rows[first:], search.goal, hovertemplate="best of %{x} designs: %{y:.4g}<extra></extra>")
     traces = [best, *designs_traces(search, lambda row: int(row["design [-]"]))]
@@ -80,7 +80,7 @@ def history_section(search):
     if left:
         worst = (min if search.goal == ONSET else max)(map(search.value, search.solved), default=0)
         reasons = [search.designs[row["design [-]"]]["reason"] for row in left]
-        traces.append(points("refused or failed", [int(row["design [-]"]) for row in left], [worst] * len(left),
+        traces.append(points("rejected or failed", [int(row["design [-]"]) for row in left], [worst] * len(left),
                              [f"<b>design {row['design [-]']}</b><br>{'<br>'.join(textwrap.wrap(reason, 44))}" for row, reason in zip(left, reasons)],
                              marker={"symbol": "x", "color": "#8a939c", "size": 9}))
     caption = ("Each mark is a design; the line shows the best value so far. Searches from the best two samples follow the samples of the ranges."
@@ -134,12 +134,12 @@ def baseline_value(results, name):
 
 
 def variables_section(results, search):
-    """Chart of the goal over each variable."""
+    """Chart of the goal versus each variable."""
     choices = []
     for name in search.variables:
         ring = points("the best", [number(search.best[name])], [short(search.best[search.goal])], hoverinfo="skip",
                       marker={"symbol": "circle-open", "size": 17, "color": "#222", "line": {"width": 2}})
         traces = [*designs_traces(search, lambda row: number(row[name])), ring]
         choices.append({"key": name, "name": name_of(name), "data": traces, "layout": layout(name, GOALS[search.goal])})
-    return {"id": "over_variables", "title": "Designs over their variables", "choices": choices, "chosen": search.variables[0],
-            "caption": "Each mark is a solved design; a ring marks the best one. Variable:"}
+    return {"id": "over_variables", "title": "Designs versus their variables", "choices": choices, "chosen": search.variables[0],
+            "caption": "Each mark is a solved design; a ring marks the best design. Variable:"}

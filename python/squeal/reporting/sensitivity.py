@@ -23,10 +23,10 @@ def verdict(results):
     grows = number(rows[0][RATE]) / 100 - 3 * error > ROUNDING
     text = f"At μ = {results.number('Operation/Friction coefficient'):g}, {rows[0]['label']} at {number(rows[0][FREQUENCY]):.0f} Hz "
     text += (f"grows fastest, with a divergence rate of {digits(number(rows[0][RATE]), 3)} %. " if grows else
-             "is the least damped mode; no mode grows. ")
+             "is the least damped mode; no mode grows by more than the estimated errors. ")
     first, second = (*ranking(rows), None, None)[:2]
     if first is None or abs(number(first[CHANGE])) < LEAST_CHANGE:
-        text += f"A 1 % increase of any single parameter changes its divergence rate by less than {LEAST_CHANGE:g} percentage points."
+        text += f"A 1 % increase in any single parameter changes its divergence rate by less than {LEAST_CHANGE:g} percentage points."
     else:
         text += f"{first['parameter']} has the largest effect, {signed(first[CHANGE])} percentage points for a 1 % increase"
         text += f", followed by {second['parameter']} with {signed(second[CHANGE])}." if second else "."
@@ -114,9 +114,9 @@ def modes_section(modes):
     for rows in modes:
         data, axes = bars(rows, CHANGE, "change [% points]", about_mode, squeals=1)
         choices.append({"key": rows[0]["mode [-]"], "data": data, "layout": axes, "name": name_of_mode(rows[0])})
-    return {"id": "sensitivity", "title": "Effect of a 1 % increase of each parameter on growth", "choices": choices,
+    return {"id": "sensitivity", "title": "Effect of a 1 % increase in each parameter on growth", "choices": choices,
             "chosen": choices[0]["key"], "height": height_of(modes, CHANGE),
-            "caption": "Change of the divergence rate by a 1 % increase of each parameter: red bars raise it, blue ones reduce it. Mode:"}
+            "caption": "Change in the divergence rate for a 1 % increase in each parameter (red: higher, blue: lower). Mode:"}
 
 
 def about_mode(row):
@@ -137,14 +137,14 @@ def thresholds_sections(thresholds):
         return []
     choices = []
     for i, rows in enumerate(known):
-        data, axes = bars(rows, MU_CHANGE, "change of μ", about_threshold, squeals=-1)
+        data, axes = bars(rows, MU_CHANGE, "change in μ", about_threshold, squeals=-1)
         choices.append({"key": str(i), "name": threshold_text(rows[0]), "data": data, "layout": axes})
     moves = [max((abs(number(row[MU_CHANGE])) for row in ranking(rows, MU_CHANGE)), default=0) for rows in known]
     most = max(range(len(known)), key=lambda i: (known[i][0]["event"] == "onset", moves[i]))
     return [{"id": "sensitivity_thresholds", "title": "Effect of a 1 % increase on a threshold", "choices": choices, "chosen": str(most),
              "height": height_of(known, MU_CHANGE),
-             "caption": "Change of the friction coefficient of a threshold by a 1 % increase of each parameter: red bars lower it, blue "
-                        "ones raise it. The onset that moves most is shown first. Threshold:"}]
+             "caption": "Change in the friction coefficient of a threshold for a 1 % increase in each parameter (red: lower, blue: higher). "
+                        "The onset with the largest change is shown first. Threshold:"}]
 
 
 def threshold_text(row):
@@ -179,6 +179,6 @@ def notes_sections(results):
             elif error > ROUGH:
                 notes.append(f"{threshold_text(rows[0])}: estimated errors reach {100 * error:.2g} % of the largest derivative.")
     if all(rows[0]["derivative of"] == "lambda" for rows in modes):
-        notes.insert(0, "No mode is close to coalescence: all eigenvalues are simple and have derivatives.")
+        notes.insert(0, "No mode in the table is close to coalescence: all derivatives are derivatives of simple eigenvalues.")
     return [{"id": "sensitivity_notes", "title": "Pairs near exceptional points, and limits", "notes": notes,
              "caption": "Derivatives are valid for changes that are small compared with the distance to the next mode."}]

@@ -18,7 +18,7 @@ def verdict(results):
     static = [row for row in results.table("real_eigenvalues").rows if number(row["growth rate [1/s]"]) > 0] if results.has("real_eigenvalues") else []
     undecided = [row for row in rows if row.get("verdict") == "undecided"]
     where = f"{len(rows)} modes up to {end_of_band(results)} at μ = {results.number('Operation/Friction coefficient'):g}"
-    text = f"None of the {where} grows."
+    text = f"None of the {where} is unstable."
     if growing:
         worst = max(growing, key=lambda row: number(row[RATE]))
         text = (f"{len(growing)} of the {where} {'grow' if len(growing) > 1 else 'grows'}; {worst['label']} at {number(worst[FREQUENCY]):.0f} Hz "
@@ -41,7 +41,7 @@ def checks(results):
 
 
 def damping_section(rows):
-    """Chart of the effective damping ratio -2R/omega over frequency; it is negative for growing modes."""
+    """Chart of the effective damping ratio -2R/omega versus frequency; the ratio is negative for growing modes."""
     traces, ratios = [], [number(row[DAMPING]) for row in rows] or [0]
     for title, colour, flag in (("does not grow", STABLE, "0"), ("grows", UNSTABLE, "1")):
         own = [row for row in rows if row["unstable [-]"] == flag]
@@ -51,7 +51,7 @@ def damping_section(rows):
                              text=[row["label"] if i in names else "" for i, row in enumerate(own)],
                              marker={"color": colour, "size": 9 if flag == "1" else 7, "symbol": "diamond" if flag == "1" else "circle"}))
     line = {"type": "line", "xref": "paper", "x0": 0, "x1": 1, "y0": 0, "y1": 0, "line": {"color": "#444", "width": 1}}
-    return {"id": "damping", "title": "Effective damping ratio over frequency",
+    return {"id": "damping", "title": "Effective damping ratio versus frequency",
             "caption": "Effective damping ratio −2R/ω of every mode; modes below zero grow.",
             "data": traces, "layout": layout("frequency [Hz]", "effective damping ratio [%]", shapes=[line])}
 

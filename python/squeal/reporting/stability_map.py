@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Page of the map of a sweep: stability over the friction coefficient and the load or the rotation speed."""
+"""Page of the map of a sweep: stability versus two parameters."""
 
 import math
 
@@ -52,7 +52,7 @@ def sections(results):
                              ticktext=[f"{tick:g}" for tick in ticks])
     caption = ("Colour: divergence rate of the fastest growing mode, which labels its region; " + "; ".join(meanings) +
                ". The black line is the stability boundary.")
-    return [{"id": "map", "title": f"Stability over {axis_title(stability.abscissa).split(' [')[0]} and {ordinate(stability)}", "caption": caption, "data": traces,
+    return [{"id": "map", "title": f"Stability versus {axis_title(stability.abscissa).split(' [')[0]} and {ordinate(stability)}", "caption": caption, "data": traces,
              "layout": axes}]
 
 

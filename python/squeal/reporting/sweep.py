@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Page of a sweep: growth over the friction coefficient, and coalescing modes."""
+"""Page of a sweep: growth versus the swept parameter, and coalescing modes."""
 
 from squeal.reporting.charts import FREQUENCY, PALE, RATE, UNSTABLE, WEAK, digits, end_of_band, layout, names_apart, number, points, short
 from squeal.results import MU, axis_title, symbol
@@ -22,7 +22,7 @@ def verdict(results):
         weak = any(row["growing [-]"] not in ("", "0") for row in table.rows)
         return "stable", f"No mode grows {span}" + (f" by more than a divergence rate of {WEAK} %." if weak else ".")
     worst = max(strong, key=lambda row: number(row[RATE]))
-    return "unstable", (f"{len({row['branch [-]'] for row in strong})} modes grow by more than {WEAK} % {span}: {first[0]['label']} at "
+    return "unstable", (f"{len({row['branch [-]'] for row in strong})} modes exceed a divergence rate of {WEAK} % {span}: {first[0]['label']} at "
                         f"{number(first[0][FREQUENCY]):.0f} Hz from {name} = {number(first[0][parameter]):.3g}; {worst['label']} at "
                         f"{number(worst[FREQUENCY]):.0f} Hz "
                         f"grows fastest, with a divergence rate of {digits(number(worst[RATE]), 3)} % at {name} = {number(worst[parameter]):g}.")
@@ -31,7 +31,7 @@ def verdict(results):
 def sections(results):
     parameter = results.table("branches").parameter
     growth_over = "the friction coefficient" if parameter == MU else symbol(parameter)
-    found = [branch_section(results, "branches", "Growth over " + growth_over)]
+    found = [branch_section(results, "branches", "Growth versus " + growth_over)]
     if results.has("branches_without_dissipation"):
         found.append(branch_section(results, "branches_without_dissipation", "Growth without radial dissipation"))
     return found + bifurcation_sections(results)
@@ -58,7 +58,7 @@ def events_of(results, name):
 
 
 def branch_section(results, name, title):
-    """Chart of the divergence rate of every branch over the friction coefficient."""
+    """Chart of the divergence rate of every branch versus the swept parameter."""
     (branches, peaks), parameter = branches_of(results, name), results.table(name).parameter
     lowest = min(number(row[RATE]) for rows in branches.values() for row in rows)
     named = names_apart({branch: peak for branch, peak in peaks.items() if peak > WEAK}, max(peaks.values()) - lowest)
@@ -104,7 +104,7 @@ def bifurcation_sections(results):
                                  showlegend=is_first, line={"color": colour, "width": 1.6},
                                  hovertemplate=f"<b>{rows[0]['label']}</b><br>{symbol(parameter)} = %{{x:.4g}}<br>%{{customdata[0]:.2f}} Hz"
                                                "<br>divergence rate %{customdata[1]:.4g} %<extra></extra>"))
-    caption = ("Frequencies of two modes minus the frequency at which they coalesce. After coalescence, both have the same frequency and one "
-               f"grows. Shown are the {len(events)} pairs that grow most" + (", without radial dissipation." if "without" in name else "."))
+    caption = ("Frequencies of two modes minus the frequency at which they coalesce. After coalescence, their frequencies are nearly equal "
+               f"and one mode grows. Number of pairs shown: {len(events)}" + (", without radial dissipation." if "without" in name else "."))
     return [{"id": "bifurcations", "title": "Coalescing modes", "caption": caption, "data": traces,
              "height": 500, "layout": layout(axis_title(parameter), "frequency difference [Hz]")}]

@@ -50,7 +50,7 @@ LARGEST, RMS = "frequency error [%]", "rms frequency error [%]"
 
 
 def compared(results, quoted, columns):
-    """Errors of full order, compared with rows of element, mesh factor and these columns."""
+    """Errors at full order, compared with quoted rows: element, mesh factor, and values of `columns`."""
     rows = {(row["element"], row["mesh factor [-]"]): row for row in results.rows("accuracy") if row["method"] == "full order"}
     for element, factor, *texts in quoted:
         yield from several(f"{element}, mesh factor {factor}: ", columns, texts, map(rows[element, float(factor)].get, columns))

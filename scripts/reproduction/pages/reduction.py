@@ -21,8 +21,8 @@ NAMES = {"the same + damping": "real + 1st-ord. two-sided + damping", "POD of μ
 
 
 def compared(runs, head, columns, group=None):
-    """Errors of bases compared with a table of the page, whose cells contain two numbers, without and with dissipation,
-    if they differ. None skips a column."""
+    """Errors of bases, compared with a table of the page. A cell contains two numbers, without and with dissipation, if
+    they differ. In `columns`, None skips a column."""
     for number, dissipation in enumerate(STUDIES):
         rows = study(runs, dissipation, "errors")
         for basis, *cells in table("reduction", head):

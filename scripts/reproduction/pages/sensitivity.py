@@ -10,7 +10,7 @@ PARAMETERS = ("Geometry/Disc outer radius", "Geometry/Pin height", "Geometry/Dis
               "Geometry/Disc inner radius", "Disc material/Poisson ratio", "Geometry/Pin diameter")
 
 
-@entry("sensitivity", "Effect of a 1 % increase of each parameter on the fastest growing mode")
+@entry("sensitivity", "Effect of a 1 % increase in each parameter on the fastest growing mode")
 def leading_mode(runs):
     rows = [row for row in runs("sensitivity", "studies/sensitivity.prm").rows("sensitivities")
             if row["mode [-]"] == 1 and not row["body"]]

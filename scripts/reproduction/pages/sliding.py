@@ -13,7 +13,7 @@ MEAN_PRESSURE = 1000.0 / (6 * 0.002028)  # load per side divided by the area of 
 
 
 def steady(runs, name, *settings):
-    """Steady sliding of the default model, with as few modes as possible."""
+    """Steady sliding of the default model, with few modes."""
     return runs(name, "sliding.prm", NO_SHAPES, FEW_MODES, *settings)
 
 
@@ -32,7 +32,7 @@ def proof(runs):
     yield Number("the state is unique below mu =", "1.348", values["friction coefficient below which the state is unique [-]"])
 
 
-@entry("sliding", "The table over mu: open nodes, ratio of largest to mean pressure, travel of the backplates")
+@entry("sliding", "The table by mu: open nodes, ratio of largest to mean pressure, travel of the backplates")
 def over_friction(runs):
     for cells in table("sliding", "open nodes of 228"):
         mu, n_open, ratio, travel = numbers_in(*cells)

@@ -96,7 +96,7 @@ def beyond_band(runs):
 
 
 def all_eigenvalues(results, friction_coefficient):
-    """lambda with Re >= 0 and Im >= 0 of the exported matrices without damping, with every growing mode once."""
+    """lambda with Re >= 0 and Im >= 0 of the undamped problem from exported matrices; every growing mode occurs once."""
     problem = exported_matrices.couple(exported_matrices.read_matrices(results.folder), friction_coefficient)
     squares = scipy.linalg.eigvals(scipy.linalg.solve(problem.mass.toarray(), problem.stiffness.toarray()))
     roots = np.sqrt(-squares[squares.imag >= 0])
