@@ -92,7 +92,7 @@ namespace Squeal
       return epsilon * theta * theta / (lambda * lambda) * (1. + theta + 2. * s / radius) * std::hypot(1., theta);
     }
 
-    /// With a tolerance of 10⁻⁹, the error of λ² of a zero is below 10⁻² of the threshold [-].
+    /// Safety factor for zero eigenvalues: at a tolerance of 10⁻⁹, the error of λ² stays below 1 % of the threshold [-].
     static constexpr double zero_margin = 1e-7;
 
     const QuadraticPencil &pencil;

@@ -33,7 +33,8 @@ namespace Squeal
     /// relative to the element [-].
     constexpr double off_curved_faces = 0.3;
 
-    /// Smallest overlap that is an error, relative to the element [-]. Chords of a curved face may cause smaller overlaps.
+    /// Overlaps deeper than this fraction of the extent of the element normal to the face are errors [-]; chords of a curved face may cause
+    /// smaller overlaps.
     constexpr double chord_depth = 0.05;
 
     std::string place(const Position &p)

@@ -388,9 +388,12 @@ namespace Squeal
     for (const Term &term : terms)
       {
         std::vector<double> coefficients;
+        double              mean = 0.; // of absolute values, because coefficients may have different signs
         for (const ParameterValues &values : members)
-          coefficients.push_back(term.coefficient.at(values));
-        const double mean = std::accumulate(coefficients.begin(), coefficients.end(), 0.) / static_cast<double>(members.size());
+          {
+            coefficients.push_back(term.coefficient.at(values));
+            mean += std::abs(coefficients.back()) / static_cast<double>(members.size());
+          }
         if (mean == 0.)
           continue;
         for (double &x : coefficients)

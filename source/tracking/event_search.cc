@@ -212,8 +212,7 @@ namespace Squeal
         error *= 2. * modes.lambda(search.branch, search.upward ? search.interval + 1 : search.interval).imag();
       if (error == 0.)
         return 0.;
-      // If there is no slope, for example if a mode begins at zero, the uncertainty is the width of the interval, in which the number of
-      // modes changes
+      // The slope cannot be computed if the mode is missing at one end of the interval: use the width of the interval
       const double change = slope(modes, search);
       return change > 0. ? error / change : modes.width(search.interval);
     }

@@ -82,3 +82,23 @@ TEST(Terms, VanishWithTheirParametersOrWeights)
   t.values["a"] = {0.};
   EXPECT_EQ(names(), "of low rank, ");
 }
+
+TEST(Terms, FamilyRepresentsMembersOfOppositeSign)
+{
+  Terms             t;
+  std::vector<Term> sparse_terms;
+  for (const Term &term : t.terms)
+    if (term.matrix)
+      sparse_terms.push_back(term);
+  const std::vector<ParameterValues> members = {{{"a", {0.7}}, {"b", {1.3}}}, {{"a", {-0.7}}, {"b", {2.}}}};
+  const TermFamily                   family  = term_family(sparse_terms, members);
+  for (std::size_t m = 0; m < members.size(); ++m)
+    {
+      ParameterValues values = family.values;
+      for (const auto &[name, value] : family.members[m])
+        values[name] = value;
+      const auto actual = sparse_matrices(family.terms, values), expected = sparse_matrices(sparse_terms, members[m]);
+      EXPECT_LT(deviation(to_dense(*actual.damping), to_dense(*expected.damping)), 1e-15);
+      EXPECT_LT(deviation(to_dense(*actual.mass), to_dense(*expected.mass)), 1e-15);
+    }
+}

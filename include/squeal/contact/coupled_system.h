@@ -147,7 +147,6 @@ namespace Squeal
                                       const MultiVector                       &real_part,
                                       const MultiVector                       &imaginary_part);
 
-  /// couple() for a family of terms, with the contribution of each term to the reactions. Mass, stiffness and parameter values are for the
-  /// middle of the family.
+  /// couple() for the common terms of a family of systems. Mass, stiffness and parameter values are those of the averaged system.
   CoupledSystem coupled_family(const TermFamily &bodies, const ContactOperators &contact, const ContactDamping &damping = {});
 } // namespace Squeal

@@ -39,7 +39,7 @@ namespace Squeal
     std::vector<double> modes;                     ///< κ of each λ [-]
     std::vector<double> errors;                    ///< |δλ| / |λ| of each λ [-]
     double              largest_cancellation = 1.; ///< largest γ [-]
-    double              span                 = 1.; ///< condition number of G, the problem projected on the computed modes [-]
+    double              span                 = 1.; ///< condition number of G for normalised states; large if modes are nearly dependent [-]
     double              largest_residual     = 0.; ///< largest √ε_res [-]
 
     double largest_error() const;

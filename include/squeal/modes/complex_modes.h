@@ -79,8 +79,8 @@ namespace Squeal
    *
    * An error of zero, as for branches of a sweep, allows only for rounding errors: R = ± ε ω is still neutral.
    *
-   * @param growth_needs_coalescence true without damping if no coalescence is possible within the errors. Then −λ̄ is also an eigenvalue,
-   * R = 0 is exact for any error of ω, and u is not applied to R ≤ ε ω.
+   * @param growth_needs_coalescence true if the system is undamped and the mode cannot coalesce with another mode within the errors. Since
+   * −λ̄ is then also an eigenvalue, R = 0 is exact even if ω is not, and the criterion for `stable` is R ≤ ε ω, without u.
    */
   Verdict verdict_of(const std::complex<double> &lambda, double error = 0., bool growth_needs_coalescence = false);
 } // namespace Squeal

@@ -11,7 +11,7 @@ namespace Squeal
   enum class GeometrySensitivities
   {
     none,
-    sizes,           ///< lengths of the disc and of all pins
+    sizes,           ///< dimensions of the disc, and the common height and diameter of the pins
     sizes_and_places ///< also the position of each pin
   };
 

@@ -222,7 +222,7 @@ namespace Squeal
 
   /**
    * Terms Σ θ_k A_k of a family with as few matrices as possible. Terms of the same power and symmetry whose coefficients θ_k have the same
-   * ratio in all members are summed, with the means of θ_k over the members. All terms must be sparse.
+   * ratio in all members are summed, with the means of |θ_k| over the members. All terms must be sparse.
    *
    * @param members values of the parameters of the terms for each member, at least one
    */

@@ -98,7 +98,7 @@ class Plane:
         for one in self.series:
             for mode in sorted((mode for mode in one.modes if mode.grows and not mode.is_undecided), key=lambda mode: -mode.divergence):
                 x, y = self.in_points(mode)
-                # One label is sufficient for nearby modes of both series
+                # Do not repeat a label if a mode of the other series at nearly the same frequency has it already
                 serves = any(other is not one and name == mode.label and abs(x - place) < SAME_PLACE * self.points[0]
                              for other, name, place in named)
                 if not serves and (found := room.find(x, y, mode.label)):

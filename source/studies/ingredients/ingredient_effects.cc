@@ -60,7 +60,7 @@ namespace Squeal
       return result;
     }
 
-    /// Largest effect relative to the required accuracy that is acceptable [-].
+    /// Largest acceptable effect, relative to the required accuracy [-].
     constexpr double allowed = 1.;
 
     /// The next change of the same ingredient after @p number that is acceptable and has a smaller effect.

@@ -63,7 +63,7 @@ namespace Squeal
     }
 
     /// Largest relative offset of a minimum: remaining steps are small compared with the standard deviations of the parameters [-].
-    constexpr double offset_at_minimum = 0.1;
+    constexpr double offset_at_minimum = 0.01;
 
     /// √(‖P r‖²/n) / √(‖r − P r‖²/(m − n)) with the projection P onto the columns of J, m numbers and n free parameters (D. M. Bates,
     /// D. G. Watts, Technometrics 23 (1981) 179); infinite for m <= n.

@@ -65,8 +65,8 @@ namespace Squeal
     /// Products for modes at a point of the main line. Collective.
     SensitivityProducts products(const ChartPoint &point, const std::vector<int> &modes) const;
 
-    /// ψ_iᵀ (dQ(λ_j)/dp) φ_j due to friction and damping of moving contact nodes, from the vectors on the dofs of the bodies and the
-    /// reactions.
+    /// Contribution of friction and contact damping to ψ_iᵀ (dQ(λ_j)/dp) φ_j when contact nodes move. @p apart: modes on the dofs of the
+    /// uncoupled bodies, with left vectors without friction; @p reactions: normal reactions of the modes.
     ComplexDenseMatrix by_moved_contact(const ContactMotion      &motion,
                                         double                    friction_coefficient,
                                         const Eigentriples       &apart,
