@@ -75,7 +75,7 @@ install_packages()
   if ! { "${apt[@]}" update && "${apt[@]}" install --yes --no-install-recommends "${missing[@]}"; } >"$log" 2>&1; then
     cat "$log" >&2
     rm -f "$log"
-    complain "apt-get could not install: ${missing[*]}"
+    complain "apt-get update or install failed for: ${missing[*]}; check the network and the sources of packages, then repeat"
     exit 1
   fi
   rm -f "$log"

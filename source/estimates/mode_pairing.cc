@@ -20,7 +20,7 @@ namespace Squeal
     /// Fraction of a mode's energy that its connections cover, and smallest share of a connection relative to the largest share [-].
     constexpr double connecting = 0.75, side = 0.25;
 
-    /// Smallest energy fraction in the span of the other modes for which a mode has a counterpart [-].
+    /// A mode has a counterpart if at least this fraction of its energy lies in the span of the modes of the other mesh [-].
     constexpr double least_represented = 0.5;
 
     /// Directions of smaller relative size are linearly dependent up to rounding [-].

@@ -145,7 +145,7 @@ namespace Squeal
     {
       const SparseMatrix &K = *system.stiffness, &M = *system.mass;
 
-      // Compute the real modes, and the inverse for these modes and for the series
+      // Factorise once: the real modes and the Chebyshev series of CondensedDeterminant use the same factor
       progress.update("real modes beyond the band");
       SymmetricModesOptions real = options.real_modes;
       if (real.what == SymmetricModesOptions().what)

@@ -38,7 +38,7 @@ namespace Squeal
         if (value < range.first || value > (range.number > 1 ? range.last : range.first))
           throw ParameterError("the value " + exact_text(value) + " is outside the sweep", std::string("parameter Sweep/") + name,
                                "give values from " + exact_text(range.first) + " to " +
-                                 exact_text(range.number > 1 ? range.last : range.first) + ", with decimal points");
+                                 exact_text(range.number > 1 ? range.last : range.first) + "; commas separate values");
     }
   } // namespace
 

@@ -24,8 +24,7 @@ namespace Squeal
     constexpr double negligible_part = 0.25;
     /// |φ_iᴴφ_j|² at one point above which two modes are about to coalesce [-].
     constexpr double parallel = 0.7;
-    /// The remainder of a unit vector after Gram-Schmidt is a rounding error below this limit [-]. Such remainders occur close to a
-    /// coalescence.
+    /// Below this limit, the remainder of a unit vector after Gram-Schmidt is a rounding error [-], as happens near a coalescence.
     constexpr double defective = 1e-7;
     /// δ² of two λ counts as real if |Im δ²| / |δ²| is below this limit [-]; modes that may coalesce have a real δ².
     constexpr double real_discriminant = 1e-6;

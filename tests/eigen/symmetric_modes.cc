@@ -91,7 +91,7 @@ TEST_P(SymmetricModesBy, LaplacianOnACube)
 
 TEST_P(SymmetricModesBy, EigenvaluesOfMoreCopiesThanABlockHas)
 {
-  // Twelve equal bodies with simple and threefold modes have multiplicities of 12 and 36, which exceed the block size
+  // Twelve identical bodies turn simple and triple eigenvalues into eigenvalues of multiplicity 12 and 36, more than the block size
   const int            m = 5, n_copies = 12;
   const auto           K     = laplacian(m, n_copies, distribution());
   const auto           M     = diagonal(K->rows(), [](int) { return 1.; });

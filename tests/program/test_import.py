@@ -278,5 +278,5 @@ class Import(ProgramTest):
                                  (text + "*NSET, NSET=HUB\nBACKS\n", ["several sets are called `HUB`"]),
                                  (text.replace("TYPE=SPRINGA, ELSET=SPRINGS", "TYPE=GK3D8, ELSET=PAD_T"), ["type GK3D8", "not supported"]),
                                  ("*PART, NAME=P\n" + text + "*END PART\n*INSTANCE, NAME=P-1, PART=P\n0., 0., 1.\n*END INSTANCE\n", ["moved"]),
-                                 ("*NODE\n1, 0., 0., 0.\n", ["no solid elements"])):
+                                 ("*NODE\n1, 0., 0., 0.\n", ["no supported solid elements"])):
             self.refused(mentions, self.write("broken.inp", broken), "refused.msh", "--unit", "mm", *self.ABAQUS)

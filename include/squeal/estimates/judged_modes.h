@@ -15,7 +15,7 @@ namespace Squeal
   struct JudgedModes
   {
     ComplexModes         modes;
-    std::vector<Verdict> verdicts; ///< verdict on each mode, within the uncertainty of λ
+    std::vector<Verdict> verdicts; ///< verdict on each mode, allowing for the uncertainty of λ
     std::vector<bool>    unstable; ///< true if the growth of the mode exceeds the uncertainty
     Conditioning         conditioning;
     int n_slow = 0; ///< number of pairs of λ that count as zero but are not rigid-body modes, usually slow decay due to strong dampers

@@ -53,7 +53,7 @@ namespace Squeal
    *
    * Each reduced mode is used at most once, and the sum of MAC-M is maximised. (Eq. (17) of the paper selects the reduced mode with the
    * largest MAC-M for each reference mode individually and may select a reduced mode several times or never; the `closest_` errors use this
-   * selection.) For clusters of reference modes, chains with |λ_i − λ_j| ≤ @p cluster_tolerance |λ_i|, individual MAC-M are not
+   * selection.) Reference modes with |λ_i − λ_j| ≤ @p cluster_tolerance |λ_i| form clusters, in which individual MAC-M are not
    * meaningful. Reduced modes are then ranked by their share in the span of the cluster, and angles between the subspaces are given in
    * addition to ε_mac, all in the complex M-inner product. A reference mode that a poor basis does not represent gets the best match within
    * 30 % of its λ, if there is one.

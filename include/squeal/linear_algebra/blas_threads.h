@@ -11,7 +11,7 @@ namespace Squeal
    */
   int set_blas_threads(int n_threads);
 
-  /// Current number of BLAS threads.
+  /// Number of OpenBLAS threads; 0 for other BLAS libraries.
   int blas_threads();
 
   /// Number of rows above which the fronts of a factorisation are large enough for several threads.

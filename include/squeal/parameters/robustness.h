@@ -61,7 +61,7 @@ namespace Squeal
 
     void declare(Declarations &declarations);
 
-    /// Parsed Robustness/Distributions and Correlations. Throw ParameterError.
+    /// Parse Robustness/Distributions and Robustness/Correlations; throw ParameterError for invalid entries.
     std::vector<UncertainParameter> uncertain_parameters() const;
     std::vector<Correlation>        parsed_correlations() const;
   };

@@ -63,7 +63,7 @@ namespace Squeal
 
     virtual double at(const ParameterValues &values) const = 0;
 
-    /// Partial derivative at the values of all parameters; zero if @p parameter does not occur.
+    /// Partial derivative with respect to @p parameter at these values; zero if the function does not depend on it.
     virtual double derivative(const std::string &parameter, const ParameterValues &values) const = 0;
 
     virtual bool contains(const std::string &parameter) const = 0;

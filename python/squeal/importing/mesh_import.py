@@ -244,7 +244,8 @@ def run(arguments):
     mesh = read(path)
     shapes = ", ".join(f"{n} {shape}" for shape, n in collections.Counter(shape for shape, _ in mesh.elements).items())
     if not any(map(mesh.is_solid, range(len(mesh.elements)))):
-        raise Error("the file has no solid elements", path, f"mesh the volumes; the file has {shapes or 'no elements'}")
+        raise Error(f"the file has no supported solid elements; it has {shapes or 'no elements'}", path,
+                    "mesh the volumes with tetrahedra, wedges, pyramids or hexahedra, and export these elements")
     if not np.isfinite(mesh.points).all():
         raise Error("a coordinate is not finite", path, "export the mesh again")
     size, fitting = length_hint(mesh)

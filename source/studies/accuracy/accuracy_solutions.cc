@@ -101,7 +101,7 @@ namespace Squeal
       result.geometry.outlines                = mesh.outlines;
       result.discretization.element           = mesh.element;
       result.discretization.maximum_frequency = (1. + result.accuracy.margin) * result.discretization.maximum_frequency;
-      result.reduction                        = {}; // clears the parameters of the study of reduced bases
+      result.reduction                        = {}; // settings of the reduction study must not affect the accuracy study
       result.reduction.problem                = ReductionProblem::friction;
       result.reduction.bases                  = result.accuracy.bases;
       result.reduction.grown_tolerances       = {result.accuracy.grown_tolerance};

@@ -190,9 +190,10 @@ namespace Squeal
     const std::string how = model.reduced ? text(model.reduced->size(), " vectors") : "full order";
     run.progress.finish(text(followed.size(), " samples, ", how, ", ", n_onsets, " onsets"));
     if (n_missed > 0)
-      run.warn(
-        text(n_missed, " points of the followed samples have no results within the tolerance of ", options.tolerance, ": ", why_stopped,
-             "; distributions of onsets exclude these samples. Raise Sweep/Tolerance, or Sweep/Maximum basis if it limits the basis"));
+      run.warn(text(n_missed, n_missed == 1 ? " operating point" : " operating points",
+                    " of the followed samples did not meet the tolerance of ", options.tolerance, ": ", why_stopped,
+                    "; samples with such points are excluded from the distributions of onsets. Raise ",
+                    "Sweep/Tolerance, or raise Sweep/Maximum basis if the basis has reached this limit"));
   }
 
   void write_onsets(const std::vector<FollowedSample> &followed, const std::string &parameter, Run &run)

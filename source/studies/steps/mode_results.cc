@@ -27,10 +27,9 @@ namespace Squeal
                           "no counterpart",
                         ")");
       if (n > 0)
-        run.warn(text(n, n == 1 ? " unstable mode is" : " unstable modes are", " not converged on this mesh within ",
-                      100. * limits.frequency, " % of the frequency and ", 100. * limits.divergence,
-                      " percentage points of the divergence rate: ", names, n > n_named ? ", ..." : "",
-                      "; refine the mesh to decide whether they grow"));
+        run.warn(text(n, n == 1 ? " unstable mode has" : " unstable modes have", " not converged on this mesh to within ",
+                      100. * limits.frequency, " % in frequency and ", 100. * limits.divergence, " percentage points in divergence rate: ",
+                      names, n > n_named ? ", ..." : "", "; refine the mesh to confirm the instability"));
     }
 
     /// File name of a mode: type, row in the table from 1, and label.

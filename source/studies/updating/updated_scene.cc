@@ -70,7 +70,7 @@ namespace Squeal
       return result;
     }
 
-    /// (X2 − X1)/h of merged terms; missing matrices count as zero.
+    /// (after − before)/h for the matrices of merged terms; a missing matrix counts as zero.
     std::vector<Term> difference_quotient(const std::vector<Term> &before, const std::vector<Term> &after, const double h)
     {
       const auto counterpart = [](const Term &term, const std::vector<Term> &others) {

@@ -23,12 +23,12 @@ namespace Squeal
   GivenSystem given_system(Run &run);
 
   /**
-   * Frictionless modes of an imported system without skew terms, labelled `mode 1`, `mode 2`, ..., as steps of the run. Modes of the system
-   * with all terms inherit these labels. The linearisation has no meshed model.
+   * Frictionless modes of an imported system, labelled `mode 1`, `mode 2`, ...; skew terms are ignored. Modes of the complete system inherit
+   * these labels. The linearisation has no meshed model. Progress is reported as steps of the run.
    *
-   * @param system system for the modes and the factor: @p whole or a part of it, for example without damping
+   * @param system system that is factorised and solved: @p whole or a part of it, for example without damping
    *
-   * Throws SolverError if the system has no definite part.
+   * Throws SolverError if no shift makes its stiffness positive definite.
    */
   FrictionlessModes imported_modes(const CoupledSystem &system, const CoupledSystem &whole, Run &run, double margin = 0.);
 
