@@ -75,7 +75,7 @@ class ModuleResults(unittest.TestCase):
         self.assert_rejected(lambda: results.branches, "no table `branches`", "complex_modes")
         self.assert_rejected(lambda: results.fields("modes/none"), "no field file `modes/none`")
         self.assertEqual(results.field_names(), [])
-        self.assert_rejected(results.system, "not write a system", "Write system")
+        self.assert_rejected(results.system, "system.json", "Write system")
         self.assert_rejected(lambda: squeal.Results(self.folder / "none"), "no folder")
         self.assert_rejected(lambda: squeal.Results(self.folder), "run.json is missing")
 
