@@ -24,7 +24,8 @@ namespace Squeal
       "CSV file of designs: names as in Variables in the first line, then one design per line. It is searched for in the folder of the "
       "parameter file, then in the current directory.");
     declarations.add("Number of designs", n_samples, "none", "Number of samples of a Latin hypercube or a Sobol sequence.", {1., 1e5});
-    declarations.add("Seed", seed, "none", "Seed of the random number generator; the same seed generates the same designs.", {0., 2147483647.});
+    declarations.add("Seed", seed, "none", "Seed of the random number generator; the same seed generates the same designs.",
+                     {0., 2147483647.});
     declarations.add(
       "Processes", n_processes, "none",
       "Number of designs that each MPI process solves concurrently; 0: as many as the cores and the available memory permit.", {0., 1024.});

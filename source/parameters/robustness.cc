@@ -116,7 +116,8 @@ namespace Squeal
                      "Correlation coefficients of the normal scores of two parameters (normal copula), as `name, name = value; ...`.");
     declarations.add("Number of samples", n_samples, "none", "Number of independent samples from which the probabilities are computed.",
                      {10., 1e6});
-    declarations.add("Seed", seed, "none", "Seed of the random number generator; the same seed generates the same samples.", {0., 2147483647.});
+    declarations.add("Seed", seed, "none", "Seed of the random number generator; the same seed generates the same samples.",
+                     {0., 2147483647.});
     declarations.add("Tolerance", tolerance, "none", "Maximum estimated relative error of lambda at every sample.", {1e-12, 0.1});
     declarations.add("Sobol indices", has_indices,
                      "Computes first-order and total Sobol' indices. Each uncertain number requires Number of samples / 2 additional "
