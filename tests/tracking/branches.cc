@@ -253,7 +253,9 @@ namespace
       {
         EXPECT_EQ(of_branches[i].has_value(), result[i].has_value());
         if (of_branches[i] && result[i])
-          EXPECT_NEAR(of_branches[i]->friction_coefficient, result[i]->friction_coefficient, 1e-9);
+          {
+            EXPECT_NEAR(of_branches[i]->friction_coefficient, result[i]->friction_coefficient, 1e-9);
+          }
       }
     return result;
   }
