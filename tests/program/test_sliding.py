@@ -111,8 +111,8 @@ class State(SlidingTest):
         for name, pin in self.pins.items():
             with self.subTest(name):
                 self.assertEqual([pin[column] for column in ("nodes [-]", "open nodes [-]", "largest gap [m]", "c_t [N s/m]")], [7, 0, 0, 0])
-                # Friction tilts a pin about its clamp: the centre of pressure of a stiff pin moves by mu times half its
-                # height
+                # Clamp and disc keep the ends of a softer pin parallel, and each end carries half of the moment mu N h: the
+                # centre of pressure moves by mu times half the height
                 self.assertAlmostEqual(pin["pressure offset along t [m]"], -FRICTION * height / 2, delta=0.05 * FRICTION * height / 2)
                 self.assertGreater(pin["backplate travel [m]"], 0)
                 self.assertGreater(pin["largest pressure [Pa]"], pin["load [N]"] / (math.pi * 0.026**2))

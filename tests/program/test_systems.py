@@ -516,7 +516,7 @@ class RoundTrip(SystemTest):
         self.assertEqual(set(points), set(others))
 
     def test_derivatives(self):
-        """Derivatives with respect to coefficients of terms agree for the mesh and its system."""
+        """Derivatives agree between a run on the mesh and a run on the system written from it."""
         damping = ["Pin material/Rayleigh beta=1e-7", "Disc material/Rayleigh alpha=2", "Materials/Volumes=pin_top_1: 2e9, 0.25, 3000",
                    "Operation/Gyroscopic forces=true", "Mounts/Dashpots=disc_bore: 0, 1e4, 1e4"]
         study = ["Study=sensitivity", "Sensitivity/Thresholds=false", "Sensitivity/Geometry=none", "Sensitivity/Tolerance=1e-10", "Sensitivity/Largest number of modes=3"]

@@ -29,7 +29,8 @@ class PaperTest(unittest.TestCase):
             csv.writer(file).writerows([columns, *rows])
 
     def results(self, folder, complex_modes, real_modes=(), component_modes=()):
-        """A run with one pin and these complex modes: label, Hz, %, share of the wave with the rotation or None."""
+        """Writes results of a run with one pin. Complex modes: (label, frequency [Hz], divergence rate [%], fraction of the
+        wave that travels with the rotation [-] or None)."""
         self.write(folder, "complex_modes", ("label", "frequency [Hz]", "divergence rate [%]", "unstable [-]", "wave with rotation [-]",
                                              "wave against rotation [-]"),
                    [(label, frequency, rate, int(rate > 0), wave, wave and 1 - wave) for label, frequency, rate, wave in complex_modes])
