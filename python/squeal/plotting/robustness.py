@@ -21,7 +21,7 @@ def figures(results):
     parameters = parameters[:MOST_SCATTERS]
 
     has_onsets = results.has("sample_onsets")
-    picture = style.Picture("Uncertain parameters: modes of all samples", 2 + bool(indices) + has_onsets + len(parameters), 3)
+    picture = style.Picture("Modes and divergence rates with uncertain parameters", 2 + bool(indices) + has_onsets + len(parameters), 3)
     panels = iter(picture.panels)
     cloud(next(panels), modes)
     rates = [0. if math.isnan(rate) else rate for rate in samples.numbers(RATE)]

@@ -67,7 +67,7 @@ def damped(runs):
     yield Number("T1, least damped [%]", "-1.36", rates("T1")[-1][0])
 
 
-@entry("table1", "What differs by more than 7 %")
+@entry("table1", "Differences of more than 7 %")
 def large_differences(runs):
     rows = {row["label"]: row for row in table_one(runs)}
     for label, column, quoted in (("C0-0", "component", "-8.0"), ("C0-0", "coupled", "-8.0"), ("R0-1 -", "component", "6.3"),
