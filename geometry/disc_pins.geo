@@ -2,8 +2,8 @@
 
 // Plan of the built-in geometry: an annular disc and round pins on its two faces. Squeal meshes this plan in two
 // dimensions, fills the pins' circles with a structured grid and extrudes disc and pins layer by layer. Squeal sets the
-// values below from section "Geometry" of the parameter file. If the file is opened in Gmsh, it shows the plan with
-// these values. Units: m, degree.
+// values below from section "Geometry" of the parameter file. Opened in Gmsh, the file shows the plan with these
+// values. Units: m, degree.
 
 DefineConstant[
   disc_inner_radius  = 0.1505,
