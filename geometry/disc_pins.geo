@@ -142,7 +142,7 @@ For pass In {1 : 50}
   EndIf
 EndFor
 If(crowded)
-  Error("The plan has no space for top and bottom pins that overlap without being opposite. Move the pins of one side, or draw a custom plan");
+  Error("The plan has no space for top and bottom pins that overlap without being opposite. Change the radii or angles of the pins of one side in section Geometry, or set Geometry/File to a custom plan");
 EndIf
 
 // Circles of three arcs; the first pin of a pair creates the common circle
