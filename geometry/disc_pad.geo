@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 // Plan of a disc with one brake pad on each face instead of pins: a sector of an annulus, the same on both faces. This
-// is an example of a custom plan, from which Squeal extrudes the disc and both pads. The plan defines neither volumes
+// is an example of a custom plan, from which squeal extrudes the disc and both pads. The plan defines neither volumes
 // nor layers: thickness, height, the radii of the disc and the element size come from section "Geometry" of the
-// parameter file. If the file is opened in Gmsh, it shows the plan with the values below. Units: m, degree.
+// parameter file. Opened in Gmsh, the file shows the plan with the values below. Units: m, degree.
 
 DefineConstant[
   disc_inner_radius = 0.1505,
@@ -14,7 +14,7 @@ DefineConstant[
   pad_angle         = 50
 ];
 
-// Every element is halved after meshing.
+// Every element is halved after meshing
 size = 2 * element_size;
 Mesh.RecombineAll         = 1;
 Mesh.SubdivisionAlgorithm = 1;

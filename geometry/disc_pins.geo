@@ -2,8 +2,8 @@
 
 // Plan of the built-in geometry: an annular disc and round pins on its two faces. Squeal meshes this plan in two
 // dimensions, fills the pins' circles with a structured grid and extrudes disc and pins layer by layer. Squeal sets the
-// values below from section "Geometry" of the parameter file. If the file is opened in Gmsh, it shows the plan with
-// these values. Units: m, degree.
+// values below from section "Geometry" of the parameter file. Opened in Gmsh, the file shows the plan with these
+// values. Units: m, degree.
 
 DefineConstant[
   disc_inner_radius  = 0.1505,
@@ -142,7 +142,7 @@ For pass In {1 : 50}
   EndIf
 EndFor
 If(crowded)
-  Error("The plan has no space for top and bottom pins that overlap without being opposite. Move the pins of one side, or draw a custom plan");
+  Error("The plan has no space for top and bottom pins that overlap without being opposite. Change the radii or angles of the pins of one side in section Geometry, or set Geometry/File to a custom plan");
 EndIf
 
 // Circles of three arcs; the first pin of a pair creates the common circle

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 // The built-in disc and pins as a solid of quadratic tetrahedra, with curved elements on round surfaces. Disc and pins
-// are meshed individually, so that their contact faces do not match. Squeal sets the variables from section "Geometry"
-// of the parameter file, pin_size and refinement only if they are given there. Numbers of layers and of nodes per pin
-// face have no effect. Edges of disc elements have twice the element size, because nodes of quadratic elements are half
-// an edge apart. Units: m, degree.
+// are meshed separately; their contact faces do not match. Squeal sets the variables from section "Geometry" of the
+// parameter file; pin_size and refinement are set only if they are given there. The numbers of layers and of nodes per
+// pin face have no effect. Edges of disc elements have twice the element size, because nodes of quadratic elements are
+// half an edge apart. Units: m, degree.
 
 SetFactory("OpenCASCADE");
 
