@@ -32,7 +32,7 @@ namespace
 {
   constexpr const char *usage = R"(squeal PRM [options]
 
-Predicts whether a disc with friction pins squeals.
+Predicts whether a disc brake tends to squeal.
 
   PRM                        parameter file
   --set "Section/Name=value" overrides a parameter; may be repeated
@@ -179,7 +179,7 @@ int main(int argc, char **argv)
   const bool                               is_root = dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
   std::ostream                             silence(nullptr);
   std::ostream                            &screen = is_root ? std::cout : silence;
-  // Under mpirun, isatty() is true on every process, even without a terminal
+  // Under mpirun, isatty() may be true without a terminal
   const bool        live    = isatty(STDOUT_FILENO) != 0 && dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) == 1;
   const std::string command = Squeal::shell_command({argv, argv + argc});
   try

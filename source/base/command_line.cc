@@ -61,7 +61,7 @@ namespace Squeal
             else if (i + 1 < words.size() && !boost::starts_with(words[i + 1], "--"))
               option->second->push_back(words[++i]);
             else
-              refuse("this option lacks its value", word, "write " + name + "=VALUE");
+              refuse("this option requires a value", word, "write " + name + "=VALUE");
           }
         else
           refuse("unknown option", word, "squeal --help lists the options; write ./NAME for a file whose name begins with `-`");

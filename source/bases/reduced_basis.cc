@@ -92,8 +92,8 @@ namespace Squeal
       const int    n_r0    = T_r0.n_columns();
       connection.rank = std::count_if(values.begin(), values.end(), [&](const double value) { return value / largest / tolerance > 1.; });
       if (connection.rank == n_r0)
-        throw SolverError("no combination of the " + std::to_string(n_r0) + " vectors of T_r0 keeps the contact closed", where(recipe),
-                          "use more component modes");
+        throw SolverError("no combination of the vectors of T_r0 (number: " + std::to_string(n_r0) + ") keeps the contact closed",
+                          where(recipe), "use more component modes");
       connection.smallest_kept   = connection.rank > 0 ? values[connection.rank - 1] / largest : 0.;
       connection.largest_dropped = connection.rank < static_cast<int>(values.size()) ? values[connection.rank] / largest : 0.;
 

@@ -38,7 +38,7 @@ namespace Squeal
     void resolve_contact(SlaveRows &rows)
     {
       if (!resolve(rows)) // slaves may depend on slaves: edge and corner nodes of quadratic faces
-        throw MeshError("contact nodes depend on each other circularly", "surfaces disc_contact and pin_contact",
+        throw MeshError("contact nodes depend on each other circularly", "contact surfaces, parameter Contact/Pairs",
                         "change positions or meshes of the contact faces so that they overlap by whole elements");
     }
 

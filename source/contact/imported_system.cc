@@ -155,8 +155,8 @@ namespace Squeal
     if (is_definite(0.))
       return 0.;
     const double shift = part_of_band * largest_circular_frequency;
-    // Negative eigenvalues within this limit are rounding errors of rigid-body motions; larger ones are growing motions, which a shift must
-    // not hide
+    // Negative eigenvalues within this limit are rounding errors of rigid-body motions; negative eigenvalues of larger magnitude are
+    // growing motions, which a shift must not hide
     return is_definite(std::min(shift * shift, system.hidden_square)) && is_definite(shift * shift) ? std::optional(shift) : std::nullopt;
   }
 } // namespace Squeal

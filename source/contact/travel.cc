@@ -60,11 +60,12 @@ namespace Squeal
         const auto         n_away  = std::count_if(away.begin(), away.end(), [&](const ContactNode *node) { return is_of(*node); });
         const auto         n_nodes = std::count_if(interface.begin(), interface.end(), is_of);
         const auto        &p       = away.front()->position;
-        throw MeshError(text("the contact faces of one body have no common direction of loading: ", n_away, " of its ", n_nodes,
-                             " contact nodes do not face the mean direction, the first at (", p[0], ", ", p[1], ", ", p[2], ") m"),
-                        "volume " + model.component_names()[pin],
-                        "divide the body into one part for each face; or set Operation/Radial dissipation = none, Operation/Friction slope "
-                        "= 0 and Steady sliding/Contact state = equal load, which require no direction of loading");
+        throw MeshError(
+          text("the contact faces of one body have no common direction of loading (contact nodes that do not face the mean direction: ",
+               n_away, " of ", n_nodes, ", the first at (", p[0], ", ", p[1], ", ", p[2], ") m)"),
+          "volume " + model.component_names()[pin],
+          "divide the body into one part for each face; or set Operation/Radial dissipation = none, Operation/Friction slope "
+          "= 0 and Steady sliding/Contact state = equal load, which require no direction of loading");
       }
     return result;
   }

@@ -284,7 +284,7 @@ namespace Squeal
     const lapack_int    info = LAPACKE_dgees(LAPACK_COL_MAJOR, 'V', 'N', nullptr, dimension, T.data(), dimension, &n_sorted, real.data(),
                                              imaginary.data(), Z.data(), dimension);
     if (info != 0)
-      throw SolverError("The QR algorithm did not converge for a projected matrix of " + std::to_string(dimension) + " rows",
+      throw SolverError("the QR algorithm did not converge for a projected matrix of " + std::to_string(dimension) + " rows",
                         "eigenvalues of the quadratic pencil",
                         "check the parameters and matrices for values that are not finite, or change Band/Maximum frequency");
     agree(map.communicator(), T);

@@ -162,7 +162,7 @@ namespace Squeal
       DenseMatrix                  T, R;
     };
 
-    /// Number of Ritz values, in descending order, before the first that has not converged.
+    /// Number of Ritz values, in descending order, before the first value that has not converged.
     int n_converged(const BlockLanczos::RitzPairs &ritz, const double tolerance)
     {
       int n = 0;

@@ -184,14 +184,14 @@ namespace Squeal
         throw SolverError(what, "options of the complex modes", change);
       };
       if (!(options.largest_circular_frequency > 0.))
-        refuse("The largest frequency is " + scientific(options.largest_circular_frequency) + " rad/s, but must be positive",
+        refuse("the largest frequency is " + scientific(options.largest_circular_frequency) + " rad/s, but must be positive",
                "give a positive frequency");
       if (!(options.shift >= 0.))
-        refuse("The shift is " + scientific(options.shift) + " 1/s, but must not be negative", "give a positive shift or zero");
+        refuse("the shift is " + scientific(options.shift) + " 1/s, but must not be negative", "give a positive shift or zero");
       if (!(options.tolerance > 0.) || options.block_size < 1 || options.n_fresh_directions < 0)
-        refuse("The tolerance or the block size is not positive, or the number of fresh directions is negative", "give positive values");
+        refuse("the tolerance or the block size is not positive, or the number of fresh directions is negative", "give positive values");
       if (inverse.map().n() != pencil.mass->map().n())
-        refuse("The operators have different sizes", "pass the inverse of the same pencil");
+        refuse("the operators have different sizes", "pass the inverse of the same pencil");
     }
 
     /// Extends the Krylov space, restarts it, and checks convergence.

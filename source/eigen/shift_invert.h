@@ -16,7 +16,7 @@ namespace Squeal
   class ShiftInvert : public LinearOperator
   {
   public:
-    /// @p deflated, M-orthonormal, may be null; all must outlive this object.
+    /// @p deflated, M-orthonormal, may be null; the arguments must outlive this object.
     ShiftInvert(const LinearOperator &inverse, const SparseMatrix &mass, const MultiVector *deflated)
       : mass(mass)
       , inverse(inverse)
@@ -74,7 +74,7 @@ namespace Squeal
   /// Approximate eigenvectors of the largest eigenvalues by Anasazi: at most n_wanted, empty if none converged.
   std::optional<MultiVector> anasazi_vectors(const ShiftInvert &A, const KrylovRequest &request);
 
-  /// Converged eigenvectors by block Lanczos, in descending order of the eigenvalues up to the first that has not converged.
+  /// Converged eigenvectors by block Lanczos, in descending order of the eigenvalues, before the first eigenvalue that has not converged.
   std::optional<MultiVector> lanczos_vectors(const ShiftInvert &A, const KrylovRequest &request);
 
   std::optional<MultiVector> arpack_vectors(const ShiftInvert &A, const KrylovRequest &request);

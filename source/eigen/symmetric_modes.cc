@@ -186,8 +186,8 @@ namespace Squeal
     while (upper.n_modes < n_modes)
       {
         if (!(upper.limit < highest))
-          throw SolverError(what + ": fewer than " + std::to_string(n_modes) + " modes lie below " +
-                              std::to_string(std::lround(hertz(std::sqrt(highest)))) + " Hz",
+          throw SolverError("the number of modes below " + std::to_string(std::lround(hertz(std::sqrt(highest)))) + " Hz is less than " +
+                              std::to_string(n_modes),
                             what, "lower the number of modes");
         lower = upper;
         upper = count_below(K, M, std::min(2. * upper.limit, highest), what);

@@ -31,7 +31,7 @@ namespace Squeal
 
     constexpr int most_refinements = 3;
 
-    /// Number of starts without new modes after which the solver gives up; the last one uses the other solver.
+    /// Number of starts without new modes after which the solver gives up; the last start uses another solver.
     constexpr int most_fruitless_starts = 4;
 
   } // namespace
@@ -299,8 +299,8 @@ namespace Squeal
 
   void SymmetricSolver::fail_incomplete(const int n_found) const
   {
-    throw SolverError(std::to_string(n_found) + " modes were found but " + std::to_string(count.n_modes) + " exist below " +
-                        std::to_string(std::sqrt(count.limit) / (2. * M_PI)) + " Hz",
+    throw SolverError("the numbers of found and counted modes below " + std::to_string(std::sqrt(count.limit) / (2. * M_PI)) +
+                        " Hz differ: " + std::to_string(n_found) + " and " + std::to_string(count.n_modes),
                       options.what, "choose another Real modes/Solver, or move the end of the band away from a cluster of modes");
   }
 

@@ -62,7 +62,7 @@ namespace Squeal
 
     const LinearOperator &inverse();
 
-    /// At most three steps of block inverse iteration, until the residuals meet their limits.
+    /// Performs at most three steps of block inverse iteration, until the residuals meet their limits.
     Residuals refine(RitzPairs &pairs);
 
     Residuals      residuals(const RitzPairs &pairs) const;

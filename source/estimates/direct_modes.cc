@@ -50,7 +50,7 @@ namespace Squeal
       return result;
     }
 
-    /// Sorts the columns of @p modes so that their eigenvalues match @p lambda; each is used once.
+    /// Sorts the columns of @p modes so that their eigenvalues match @p lambda; each mode is used once.
     QuadraticModes in_order_of(const std::vector<std::complex<double>> &lambda, const QuadraticModes &modes)
     {
       if (modes.values.size() != lambda.size())

@@ -118,8 +118,8 @@ namespace Squeal
     if (k == 0)
       return {};
     if (n_reduced < k)
-      throw SolverError("the reduced model has " + std::to_string(n_reduced) + " oscillating modes, fewer than the " + std::to_string(k) +
-                          " modes of the reference",
+      throw SolverError("the reduced model has fewer oscillating modes than the reference: " + std::to_string(n_reduced) + " and " +
+                          std::to_string(k),
                         "errors of a reduced model", "use a larger basis and all of its modes");
 
     // M-inner products of reference modes, of reduced modes, and of reference with reduced modes

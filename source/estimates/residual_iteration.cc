@@ -193,7 +193,7 @@ namespace Squeal
         const auto fresh = new_vectors(system, model, inaccurate_directions(state, options.tolerance));
         if (!fresh || step == options.maximum_steps || model.size() + fresh->n_columns() > options.maximum_basis)
           throw SolverError(text("the residual iteration ended with an estimated relative error of lambda of ", worst,
-                                 ", above the tolerance of ", options.tolerance, " (", model.size(), " vectors, ", step, " extensions)"),
+                                 ", above the tolerance of ", options.tolerance, " (vectors: ", model.size(), ", extensions: ", step, ")"),
                             "complex modes",
                             "raise Complex modes/Maximum basis or Complex modes/Iteration tolerance, or choose the Krylov solver");
         model.extend(*fresh);

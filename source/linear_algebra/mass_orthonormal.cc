@@ -196,8 +196,8 @@ namespace Squeal
     const int                  n = X.n_columns();
     std::optional<MultiVector> W = orthonormalize_if_any(M, Q, std::move(X), tolerance, axes);
     if (!W)
-      throw SolverError("all " + std::to_string(n) + " vectors are zero or linearly dependent on existing vectors", "orthonormalisation",
-                        "use other vectors, or a smaller tolerance");
+      throw SolverError("all vectors (number: " + std::to_string(n) + ") are zero or linearly dependent on existing vectors",
+                        "orthonormalisation", "use other vectors, or a smaller tolerance");
     return std::move(*W);
   }
 
@@ -205,7 +205,7 @@ namespace Squeal
   {
     const std::optional<MultiVector> W = orthonormal_axes(M, nullptr, X, tolerance, Scaling::none, FirstProjection::wanted, axes);
     if (!W)
-      throw SolverError("all " + std::to_string(X.n_columns()) + " vectors are zero", "proper orthogonal decomposition",
+      throw SolverError("all vectors (number: " + std::to_string(X.n_columns()) + ") are zero", "proper orthogonal decomposition",
                         "use nonzero vectors");
     if (maximum < 1)
       throw SolverError("a basis of " + std::to_string(maximum) + " vectors was requested", "proper orthogonal decomposition",

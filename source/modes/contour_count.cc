@@ -106,8 +106,8 @@ namespace Squeal
 
       const double turns = contour.multiplicity * phase / (2. * M_PI), whole = std::round(turns);
       if (!(std::abs(turns - whole) < 1e-3))
-        throw SolverError("the phase of the determinant changes by " + text(turns) + " turns along the contour, not by an integer", place,
-                          "change Band/Maximum frequency or Band/Maximum rate");
+        throw SolverError("the phase of the determinant changes by " + text(turns) + " turns along the contour, which is not an integer",
+                          place, "change Band/Maximum frequency or Band/Maximum rate");
       return whole;
     }
 
@@ -133,8 +133,9 @@ namespace Squeal
               contour.refuse("a real mode lies on the contour", {0., end});
         }
       if (n_inside != n_frictionless)
-        throw SolverError(text(n_inside, " real modes were found in the band, but ", n_frictionless, " are counted by inertia"), place,
-                          "change Band/Maximum frequency");
+        throw SolverError(
+          text("the numbers of real modes found in the band and counted by inertia differ: ", n_inside, " and ", n_frictionless), place,
+          "change Band/Maximum frequency");
     }
 
     std::vector<ContourCount> count_condensed(const CoupledSystem       &system,
@@ -252,8 +253,8 @@ namespace Squeal
   {
     if (const int n_found = n_in_rectangle(lambda, contour); n_found != n_counted)
       throw SolverError(
-        text(n_found, " complex modes were found in the band up to |Re lambda| = ", contour.largest_growth, " 1/s, but ", n_counted,
-             " were counted"),
+        text("the numbers of found and counted complex modes in the band up to |Re lambda| = ", contour.largest_growth,
+             " 1/s differ: ", n_found, " and ", n_counted),
         place,
         "lower Complex modes/Tolerance (or Complex modes/Iteration tolerance for residual iteration), or change Band/Maximum frequency or "
         "Band/Maximum rate");

@@ -253,9 +253,8 @@ namespace Squeal
         return best->solution;
 
     throw SolverError(text("no steady sliding state was found at friction coefficient ", mu, ": ",
-                           best ? text("in the best iterate, ", best->violated.size(), " of ", n,
-                                       " contact nodes violate the contact conditions, by up to ", best->pull, " N of tension and ",
-                                       best->overlap, " m of overlap") :
+                           best ? text("in the best iterate, the contact conditions are violated at ", best->violated.size(), " of ", n,
+                                       " contact nodes, by up to ", best->pull, " N of tension and ", best->overlap, " m of overlap") :
                                   "the closed contact nodes do not determine the reactions in any attempt"),
                       "steady sliding", "lower the friction coefficient or the gaps, or set Steady sliding/Contact state = equal load");
   }

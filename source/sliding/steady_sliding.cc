@@ -288,7 +288,7 @@ namespace Squeal
         const unsigned int pin    = interface[c].pin;
         const double       height = heights[pin];
         if (std::abs(gaps[c]) >= height)
-          throw ParameterError("in magnitude, the gap of " + exact_text(gaps[c]) + " m is not smaller than the height of the pin, " +
+          throw ParameterError("the gap of " + exact_text(gaps[c]) + " m is not smaller in magnitude than the height of the pin, " +
                                  exact_text(height) + " m",
                                "parameter Steady sliding/Gaps, pin " + model.component_names()[pin],
                                "give smaller gaps or tapers, in metres (1e-5 is 10 micrometres)");

@@ -212,7 +212,7 @@ namespace Squeal
           entry.refuse(text("the matrix of positions is ", n_points, " x ", positions.cols(), ", not n x 3 with n > 0"),
                        "give a row with x, y and z for each point");
         if (!root.has("displacements") && 3 * n_points != n)
-          entry.refuse(text(n_points, " points have ", 3 * n_points, " displacements, but the system has ", n, " dofs"),
+          entry.refuse(text("the number of dofs is ", n, ", but the points have ", 3 * n_points, " displacements"),
                        "give `displacements`, the matrix from dofs to displacements of the points");
         ShapePoints  result{positions, nullptr};
         const RowMap rows = ShapePoints::rows_of(n_points, communicator);
@@ -300,7 +300,8 @@ namespace Squeal
             size_from  = name;
           }
         if (result.rows() != system.map.n())
-          file.refuse(text(in_quotes(name), " has ", result.rows(), " rows, but ", in_quotes(size_from), " has ", system.map.n()),
+          file.refuse(text("the numbers of rows of ", in_quotes(name), " and ", in_quotes(size_from), " differ: ", result.rows(), " and ",
+                           system.map.n()),
                       "give all matrices the same number of rows");
         return result;
       }
@@ -349,8 +350,9 @@ namespace Squeal
         term.left  = factor(left);
         term.right = factor(right);
         if (term.left->rank() != term.right->rank())
-          right.refuse(text("the right factor has ", term.right->rank(), " columns, but the left factor has ", term.left->rank()),
-                       "give both factors the same number of columns");
+          right.refuse(
+            text("the numbers of columns of the right and the left factor differ: ", term.right->rank(), " and ", term.left->rank()),
+            "give both factors the same number of columns");
         if (entry.has("weights"))
           {
             const JsonEntry   file = entry["weights"];

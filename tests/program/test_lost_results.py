@@ -162,7 +162,7 @@ class CommandLine(LostResults):
     def test_words(self):
         self.assertEqual(self.call("-h").stdout, self.call("--help").stdout)
         for words, mentions in {("scene.prm", "--ouput", "x"): ["unknown option", "`--ouput`"],
-                                ("scene.prm", "--output", "--dry-run"): ["lacks its value", "`--output`"],
+                                ("scene.prm", "--output", "--dry-run"): ["requires a value", "`--output`"],
                                 ("results",): ["is a directory", "results"],
                                 ("--", "--missing.prm"): ["cannot be read", "--missing.prm"]}.items():
             with self.subTest(words):

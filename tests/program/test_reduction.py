@@ -140,7 +140,7 @@ class Refusals(ProgramTest):
                 self.assert_refused(mentions, STUDY, *overrides)
 
     def test_modes(self):
-        for mentions, modes in ((["fewer than 90000 modes lie below", "lower the number of modes"], "90000, 3, 3"),
+        for mentions, modes in ((["Hz is less than 90000", "lower the number of modes"], "90000, 3, 3"),
                                 (["for reduced bases below 1 Hz", "raise the truncation frequency"], "1")):
             process = self.call_scene("refused", STUDY, "Reduction/Bases=free", f"Reduction/Component modes={modes}")
             self.assertEqual(process.returncode, 1)

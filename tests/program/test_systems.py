@@ -302,7 +302,7 @@ class Flutter(SystemTest):
         head = "%%MatrixMarket matrix coordinate real "
         for text, mentions in ((head + "general\n2 2 2\n1 1 1.5D2\n2 2 1\n", ["line 3", "1.5D2"]), (head + "general\n2 2 1\n1 1 3,5\n", ["3,5"]),
                                (head + "general\n2 2 1\n1.5 1 3\n", ["1.5"]), (head + "general\n2 2 1\n1 1 3 4\n", ["value"]),
-                               (head + "general\n2 2 1\n1 1 3\n2 2 1\n", ["more than 1"]), (head + "general\n2 2 3\n1 1 3\n2 2 1\n", ["contains 2 entries, not 3"]),
+                               (head + "general\n2 2 1\n1 1 3\n2 2 1\n", ["exceeds 1"]), (head + "general\n2 2 3\n1 1 3\n2 2 1\n", ["contains only 2 of 3 entries"]),
                                (head + "symmetric\n2 2 1\n1 2 3\n", ["above the diagonal"]), (head + "general\n2 2 1\n0 1 3\n", ["row 0"]),
                                (head + "general\n2 2 -1\n", ["-1"]), (head + "general\n2000000000 2000000000 1\n1 1 3\n", ["2000000000"]),
                                (head.replace("real", "pattern") + "general\n2 2 1\n1 1\n", ["pattern"])):
@@ -325,7 +325,7 @@ class Flutter(SystemTest):
         self.write("system/no_motion.mtx", matrix_text([[0., 0.]] * 3))
         self.write("system/one_point.mtx", matrix_text([[1., 2., 3.]]))
         self.write("system/infinite.mtx", matrix_text([[1., math.inf, 3.]]))
-        for change, mentions in (({"positions": "points.mtx"}, ["positions", "1 x 2"]), ({"positions": "one_point.mtx"}, ["3 displacements", "2 dofs"]),
+        for change, mentions in (({"positions": "points.mtx"}, ["positions", "1 x 2"]), ({"positions": "one_point.mtx"}, ["3 displacements", "number of dofs is 2"]),
                                  ({"positions": "infinite.mtx"}, ["infinite.mtx", "row 1 and column 2"]), ({"positions": 1}, ["entry positions"]),
                                  ({"positions": "one_point.mtx", "displacements": "A0.mtx"}, ["displacements", "2 x 2, not 3 x 2"]),
                                  ({"positions": "one_point.mtx", "displacements": "no_motion.mtx"}, ["displacements", "zero"]),

@@ -16,8 +16,8 @@ namespace Squeal
 
   /**
    * Frequency band of a run. The argument principle counts the eigenvalues in the rectangle Im λ ≤ end, |Re λ| ≤ rate; modes with |Re λ| >
-   * rate depend on the mesh. The run lists the eigenvalues in the circle |λ| ≤ radius(), which encloses the rectangle, except those with Re
-   * λ < −largest_decay.
+   * rate depend on the mesh. The run lists the eigenvalues with |λ| ≤ radius(), a circle that encloses the rectangle, and Re λ ≥
+   * −largest_decay.
    */
   struct Band
   {
@@ -31,7 +31,7 @@ namespace Squeal
 
     double end;             ///< largest Im λ [rad/s]
     double rate;            ///< largest |Re λ| of the rectangle [1/s]
-    double largest_damping; ///< largest |Re λ| within the radius, relative to the end [-]
+    double largest_damping; ///< largest |Re λ| within the radius at Im λ = end, relative to the end [-]
     double largest_decay;   ///< largest −Re λ of listed modes [1/s]
 
     double radius() const

@@ -10,7 +10,7 @@ namespace Squeal
   /// Writes a complete text file and closes it. Returns 0 or `errno`.
   int write_file(const std::filesystem::path &file, std::string_view text);
 
-  /// Replaces a file atomically, via `FILE.incomplete`, so that an interrupted run leaves either the complete old or the complete new text.
+  /// Replaces a file atomically, via `FILE.incomplete`, so that it contains the complete old or new text even if the run is interrupted.
   /// Throws std::filesystem::filesystem_error.
   void replace_file(const std::filesystem::path &file, std::string_view text);
 } // namespace Squeal

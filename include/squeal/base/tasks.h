@@ -6,8 +6,8 @@
 
 namespace Squeal
 {
-  /// Number of threads of this process: @p wanted if positive, else OMP_NUM_THREADS if positive, else the number of usable cores, limited
-  /// to the share of one of @p n_processes processes on this machine.
+  /// Number of threads of this process: @p wanted if positive, else OMP_NUM_THREADS if positive, else the number of usable cores, but at
+  /// most the cores of this machine divided by @p n_processes.
   unsigned int usable_threads(unsigned int wanted, unsigned int n_processes = 1);
 
   /// Sets the number of threads of run_tasks(); initially 1.

@@ -11,7 +11,7 @@
 
 namespace Squeal
 {
-  /// Cores that this process may use according to its affinity.
+  /// Number of cores that this process may use according to its affinity.
   unsigned int n_usable_cores();
 
   /// Runs this program in a separate process, so that a failure does not affect the calling process. The new process does not join the
@@ -24,9 +24,9 @@ namespace Squeal
      *
      * @param arguments command-line arguments without the name of the program
      * @param log       file for its output
-     * @param n_threads value of OMP_NUM_THREADS unless the user has set this variable; limits the threads to the number of cores
+     * @param n_threads value of OMP_NUM_THREADS unless the user has set this variable
      *
-     * Throws FileError if it cannot be started.
+     * Throws FileError if the process cannot be started.
      */
     WorkerProcess(const std::vector<std::string> &arguments, const std::filesystem::path &log, unsigned int n_threads);
 

@@ -77,7 +77,7 @@ namespace Squeal
     }
   };
 
-  /// A block of basis vectors: a set from the input, or responses computed from it.
+  /// A block of basis vectors: a set from the input, or computed responses.
   struct BasisPart
   {
     const char              *symbol;

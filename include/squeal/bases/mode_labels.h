@@ -125,11 +125,10 @@ namespace Squeal
                                                      const MultiVector            &imaginary_part);
 
   /**
-   * Labels modes of all bodies except the disc. Modes of bodies `pin_*` are F (flexural), T (torsional) or L (longitudinal), depending on
-   * the largest energy relative to the axis, which is the mean normal through the centre of the pin's contact nodes. In each family they
-   * are numbered in ascending order of frequency: with n pins, the first 2n F modes are F1, and the first n T modes are T1. Modes of other
-   * bodies have the name of the body with the largest kinetic energy, and their number among its modes. Modes must be in ascending order of
-   * frequency.
+   * Labels modes of all bodies except the disc. Modes of bodies `pin_*` are F (flexural), T (torsional) or L (longitudinal), after the
+   * motion with the largest energy. The axis of a pin is the mean normal through the centre of its contact nodes. Each family is numbered
+   * in ascending order of frequency: with n pins, the first 2n F modes are F1, and the first n T modes are T1. Modes of other bodies have
+   * the name of the body with the largest kinetic energy, and their number among its modes. Modes must be in ascending order of frequency.
    */
   std::vector<ModeLabel> pin_labels(const Model               &model,
                                     const ContactInterface    &interface,

@@ -24,7 +24,7 @@ namespace Squeal
   using WeightedNodes = std::vector<WeightedNode>;
 
   /// A contact node of a pin, the opposite point of the disc, and their local frame. Matching faces give pairs of coincident nodes with
-  /// weight 1; other faces are coupled by mortar(), with one node for each of its rows.
+  /// weight 1; other faces are coupled by mortar(), with one contact node for each MortarRow.
   struct ContactNode
   {
     WeightedNodes   on_disc, on_pin; ///< Σ weight u: displacements of both sides

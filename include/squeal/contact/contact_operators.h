@@ -36,8 +36,8 @@ namespace Squeal
    * Any S with these properties gives the same eigenvalues. If all contact nodes are node pairs, S = ½ P_n, because P_n P_nᵀ = 2 I.
    * Otherwise, S is a weighted sum of the forces on the nodes of the pin.
    *
-   * T_c eliminates the displacement component of each rigid contact node of a pin that is closest to the normal. For node pairs whose
-   * normal is a coordinate axis, T_c selects dofs.
+   * At each rigid contact node of a pin, T_c eliminates the displacement component closest to the normal. For node pairs whose normal is a
+   * coordinate axis, T_c selects dofs.
    */
   struct ContactOperators
   {

@@ -16,11 +16,11 @@ namespace Squeal
   enum class AttachmentModes
   {
     at_once,     ///< computed with the factor
-    when_needed, ///< computed on first use; solvers that work on a basis never need X
+    when_needed, ///< computed on first use; residual iteration does not need X
     not_kept     ///< computed for each product with X, by solves with the factor
   };
 
-  /// True if a dense n × n_c matrix fits into an eighth of the available memory.
+  /// True if there are contact nodes and a dense n × n_c matrix fits into an eighth of the available memory.
   bool may_keep_attachment_modes(const CoupledSystem &system);
 
   /**

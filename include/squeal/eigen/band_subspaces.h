@@ -33,7 +33,8 @@ namespace Squeal
    *   P (T − ω² I) + (T − ω² I)ᵀ P positive definite, or
    * Z = (T − ω² I − a I) (T − ω² I + a I)⁻¹: ‖Z^m‖ < 1 for any m => Re(−λ²) > ω² for all eigenvalues −λ² of T.
    *
-   * @return empty if there is no sufficiently wide gap above the band, if the iteration does not converge, or if neither test succeeds
+   * @return empty if there is no sufficiently wide gap above the band within the lowest 60 % of the modes, if the iteration does not
+   * converge, or if neither test succeeds
    */
   std::optional<BandSubspaces> band_subspaces(const DenseMatrix &A, const std::vector<double> &squares, double largest_circular_frequency);
 

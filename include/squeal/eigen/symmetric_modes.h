@@ -98,7 +98,7 @@ namespace Squeal
    * @param first   start of the search [rad²/s²]
    * @param highest limit of the search [rad²/s²]
    *
-   * Throws a SolverError that names @p what if there are fewer modes below @p highest.
+   * Throws a SolverError that names @p what if fewer than @p n_modes modes lie below @p highest.
    */
   double end_of_lowest(const SparseMatrix &K, const SparseMatrix &M, int n_modes, double first, double highest, const std::string &what);
 } // namespace Squeal

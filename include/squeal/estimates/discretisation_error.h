@@ -40,7 +40,7 @@ namespace Squeal
    * most |Δω| / 2, because their coupling does not cause flutter at a distance of Δω. This limit also counts as an error of ξ.
    *
    * A mode is unstable if verdict_of() with the error of the solver is `unstable` and ξ exceeds its estimated error. It is stable if
-   * verdict_of() is `stable` and −ξ exceeds the estimated error, or if it is neutral with an estimated error of ξ of at most
+   * verdict_of() is `stable` and −ξ is at least the estimated error, or if it is neutral with an estimated error of ξ of at most
    * weak_divergence. All other modes, and modes without a counterpart, are undecided.
    *
    * @param coarse        modes on the coarser mesh, in a wider band

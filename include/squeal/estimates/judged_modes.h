@@ -18,7 +18,7 @@ namespace Squeal
     std::vector<Verdict> verdicts; ///< verdict on each mode, allowing for the uncertainty of λ
     std::vector<bool>    unstable; ///< true if the growth of the mode exceeds the uncertainty
     Conditioning         conditioning;
-    int n_slow = 0; ///< number of pairs of λ that count as zero but are not rigid-body modes, usually slow decay due to strong dampers
+    int n_slow = 0; ///< number of pairs of λ that count as zero but are not rigid-body modes, usually because strong dampers slow the decay
 
     std::size_t n_unstable() const;
 

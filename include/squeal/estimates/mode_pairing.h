@@ -34,8 +34,8 @@ namespace Squeal
    * - A group with several modes of a mesh: a cluster. The eigenvalues are so close that discretisation mixes the eigenvectors, as in a
    * doublet or for equal pins. Only their spans have counterparts: members are marked, and paired so that the sum of squared distances of
    * λ, after a common shift, is smallest.
-   * - A mode with less than half of its energy in the span of the modes of the other mesh has no counterpart; nor have surplus modes of a
-   * cluster. To provide counterparts near the end of a band, the band of the other mesh should be wider.
+   * - A mode with less than half of its energy in the span of the modes of the other mesh has no counterpart. The same applies to surplus
+   * modes of a cluster. To provide counterparts near the end of a band, the band of the other mesh should be wider.
    *
    * Collective; the rows of both sets of modes must have the same distribution.
    */

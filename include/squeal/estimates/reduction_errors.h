@@ -55,8 +55,8 @@ namespace Squeal
    * largest MAC-M for each reference mode individually and may select a reduced mode several times or never; the `closest_` errors use this
    * selection.) Reference modes with |λ_i − λ_j| ≤ @p cluster_tolerance |λ_i| form clusters, in which individual MAC-M are not
    * meaningful. Reduced modes are then ranked by their share in the span of the cluster, and angles between the subspaces are given in
-   * addition to ε_mac, all in the complex M-inner product. A reference mode that a poor basis does not represent gets the best match within
-   * 30 % of its λ, if there is one.
+   * addition to ε_mac, all in the complex M-inner product. A reduced mode whose λ̂ differs from λ by more than 30 % becomes a
+   * counterpart only if there is no other candidate.
    *
    * @param mass      M
    * @param modes     computed with BandEnd::open; otherwise modes near the end of the band may lack counterparts
@@ -72,8 +72,8 @@ namespace Squeal
                                           const std::function<EigenvalueEstimates(const ReducedModes &)> &estimate,
                                           double                                                          cluster_tolerance = 1e-3);
 
-  /// Errors of reduced modes for a @p system with a definite part; undamped() for the frictionless problem. Uses the factor of K_c or of
-  /// the shifted stiffness.
+  /// Errors of reduced modes for a @p system with a definite part; for the frictionless problem, pass undamped(). Uses the factor of K_c
+  /// or of the shifted stiffness.
   std::vector<ModeError> reduction_errors(const CoupledSystem  &system,
                                           const UpdatedInverse &inverse,
                                           const ReducedModel   &model,

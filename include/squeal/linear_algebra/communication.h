@@ -13,7 +13,7 @@ namespace Squeal
   /// Rank of this process.
   int this_process(MPI_Comm communicator);
 
-  /// True if this is the only process. Makes no MPI call in a serial run, so that any thread may call it.
+  /// True if this is the only process. In a serial run, only the first call uses MPI, so that any thread may make later calls.
   bool is_alone(MPI_Comm communicator);
 
   /// Replace n numbers (double or int) by their sums or minima over all processes.

@@ -10,7 +10,7 @@
 
 namespace Squeal
 {
-  /// Dense matrices, mainly of reduced models and contact nodes; those are identical on every process.
+  /// Dense matrices, mainly of reduced models and contact nodes; such matrices are identical on every process.
   using DenseMatrix        = Eigen::MatrixXd;
   using ComplexDenseMatrix = Eigen::MatrixXcd;
 

@@ -79,7 +79,7 @@ namespace Squeal
     unsigned int volume; ///< index into volume_names()
   };
 
-  /// A face of only one cell, whose normal points outwards by the right-hand rule.
+  /// A face of only one cell. Its normal by the right-hand rule points outwards.
   struct Face : NodalElement
   {
     std::vector<unsigned int> surfaces; ///< indices of the named surfaces that contain the face

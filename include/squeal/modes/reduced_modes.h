@@ -33,7 +33,7 @@ namespace Squeal
     open ///< all reduced modes are kept, because they may be counterparts of reference modes
   };
 
-  /// All modes of @p model at the friction coefficient @p mu. Real λ are separated from oscillating modes by thresholds relative to @p
+  /// Modes of @p model at the friction coefficient @p mu. Real λ are separated from oscillating modes by thresholds relative to @p
   /// largest_circular_frequency [rad/s], the end of the band.
   ReducedModes reduced_modes(const ReducedModel &model, double mu, double largest_circular_frequency, BandEnd end = BandEnd::cut);
 

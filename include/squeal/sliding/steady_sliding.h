@@ -20,7 +20,7 @@ namespace Squeal
   {
     double residual;        ///< ‖K u − P_nᵀ r_n − μ P_tᵀ r_n − f_p‖ / ‖P_nᵀ r_n‖ without the drive's force [-]
     double load;            ///< largest relative error of the load of a backplate; 0 if none is prescribed [-]
-    double tension;         ///< largest r_n relative to the largest load of a backplate; ≤ 0 without tension [-]
+    double tension;         ///< largest r_n relative to the largest load of a backplate or pressed face; ≤ 0 without tension [-]
     double overlap;         ///< largest g from P_n u, relative to the travel: the largest |P_n u| (with pressed faces: the largest |u|) [-]
     double complementarity; ///< largest |r_n g| relative to load × travel [-]
     double force_balance;   ///< resultant of contact, pressure and support forces of each component, relative to the load [-]
@@ -125,7 +125,7 @@ namespace Squeal
     unsigned int n_nodes, n_open;
     double       load;             ///< −Σ r_n [N]
     double       sliding_offset;   ///< offset of the centre of pressure from the centre of the face along t [m]
-    double       radial_offset;    ///< offset in the outward direction, or along the axis if side = 0 [m]
+    double       radial_offset;    ///< offset outwards; along the axis if side = 0, and along b if the disc does not rotate about z [m]
     double       largest_pressure; ///< largest −r_n / area of the node [Pa]
     double       sliding_speed;    ///< mean of w_0, weighted by the load [m/s]
     double       radial_damping;   ///< Σ c_b [N s/m]
