@@ -88,7 +88,7 @@ namespace Squeal
     DesignOutcome            outcome = DesignOutcome::failed;
     std::string              reason; ///< reason for rejection or failure
 
-    int    n_dofs = 0, n_modes = 0, n_counted = 0; ///< number of modes at the smallest friction coefficient, and of real modes by inertia
+    int    n_dofs = 0, n_modes = 0, n_counted = 0; ///< modes at the smallest friction coefficient; real modes by inertia
     bool   is_complete = false;                    ///< the numbers of modes agree with all counts
     int    n_unstable = 0, n_undecided = 0;        ///< numbers of modes at the largest friction coefficient
     int    n_growing     = 0;                      ///< number of modes that grow at any friction coefficient
@@ -120,7 +120,7 @@ namespace Squeal
 
   Table design_mode_table(const std::vector<DesignResult> &designs);
 
-  /// The quietest solved designs: first those without weak_onset, then the others by descending weak_onset; limited to one screen.
+  /// The quietest solved designs: designs without weak_onset, then designs by descending weak_onset; limited to one screen.
   Table quietest_designs(const std::vector<std::string> &names, const std::vector<DesignResult> &designs);
 
   /// Lines with the quietest design, the loudest design and the numbers of solved, rejected, failed and incomplete designs.
