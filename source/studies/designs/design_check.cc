@@ -78,7 +78,7 @@ namespace Squeal
     [[noreturn]] void refuse_unused(const UnusedParameter &variable, const std::string &where)
     {
       throw ParameterError(in_quotes(variable.path) + " varies, but has no effect: " + variable.why, where,
-                           "vary other parameters instead, or change the setting that disables this one");
+                           "vary other parameters instead, or change the setting that disables this parameter");
     }
 
     /// True if two designs differ only in the unused variables.
