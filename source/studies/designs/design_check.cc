@@ -48,7 +48,7 @@ namespace Squeal
         }
     }
 
-    /// Reason why no parameter of a variable has an effect; empty if any parameter has an effect.
+    /// Reason why no parameter of a variable has an effect; empty if at least one has an effect.
     std::string why_all_unused(const std::string &variable, const Parameters &design, const Parameters &as_written)
     {
       std::string reason;

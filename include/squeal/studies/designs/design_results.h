@@ -91,13 +91,13 @@ namespace Squeal
     int    n_dofs = 0, n_modes = 0, n_counted = 0; ///< modes at the smallest friction coefficient; real modes by inertia
     bool   is_complete = false;                    ///< the numbers of modes agree with all counts
     int    n_unstable = 0, n_undecided = 0;        ///< numbers of modes at the largest friction coefficient
-    int    n_growing     = 0;                      ///< number of modes that grow at any friction coefficient
+    int    n_growing     = 0;                      ///< number of modes that grow at one or more friction coefficients
     double largest_error = 0., largest_residual = 0.;
     int    n_doubtful = 0; ///< number of steps in which modes were distinguished only by frequency
 
     boost::optional<DesignGrowth> onset;      ///< smallest friction coefficient at which a mode grows
     boost::optional<DesignGrowth> weak_onset; ///< smallest friction coefficient with a divergence rate above weak_divergence
-    boost::optional<DesignGrowth> worst;      ///< unstable mode with the largest divergence rate at any friction coefficient
+    boost::optional<DesignGrowth> worst;      ///< unstable mode with the largest divergence rate over all friction coefficients
     std::vector<DesignThreshold>  thresholds;
     std::vector<DesignMode>       modes;
     double                        seconds = 0.; ///< wall time [s]

@@ -17,7 +17,7 @@ namespace Squeal
   /// A design in a search, in the unit cube: fractions of the ranges of its variables.
   using SearchPoint = std::vector<double>;
 
-  /// Variables of Designs/Variables. Throws ParameterError unless all have ranges.
+  /// Variables of Designs/Variables. Throws ParameterError unless every variable has a range.
   std::vector<DesignVariable> search_variables(const DesignParameters &designs);
 
   /// Divergence rate assumed for a design without a result, larger than usual divergence rates [-].
