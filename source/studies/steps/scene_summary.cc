@@ -159,8 +159,8 @@ namespace Squeal
     if (const UnnamedContact contact = find_unnamed_contact(mesh); contact.n_nodes > 0)
       run.warn(text(contact.n_nodes, " pairs of nodes of different bodies coincide outside disc_contact and pin_contact, the first one of ",
                     contact.body, " and ", contact.other, " at (", contact.place[0], ", ", contact.place[1], ", ", contact.place[2],
-                    ") m: the bodies touch there, but are not coupled; to couple them, add these faces to disc_contact "
-                    "and pin_contact"));
+                    ") m: the bodies touch there, but are not coupled; to couple a pin to the disc, add the faces to "
+                    "disc_contact and pin_contact"));
     check_memory(size, typical_modes, parameters.geometry.path(), run.communicator);
   }
 } // namespace Squeal
