@@ -136,7 +136,7 @@ namespace Squeal
                                               Progress                          &progress)
   {
     if (points.empty())
-      throw SolverError("there is no operating point to evaluate", "sweep", "give at least one");
+      throw SolverError("there is no operating point to evaluate", "sweep", "give at least one point");
     ErrorControlledSweep result{points.size(), 0., 0, ""};
     const auto           report = [&](const double error) {
       progress.update(text(points.size() - result.n_left, " of ", points.size(), " operating points, ", model.size(),

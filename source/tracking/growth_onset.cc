@@ -26,7 +26,8 @@ namespace Squeal
     /// the same shape [-].
     constexpr double alike = 0.9;
 
-    /// Mode between points k - 1 and k of the chart that continues a branch: the fastest growing mode among the most similar modes.
+    /// Mode between points k - 1 and k of the chart that continues a branch: the mode with the largest divergence rate among the most
+    /// similar modes.
     int mode_between(const StabilityChart &chart, const int branch, const int k, const ChartPoint &point)
     {
       const auto          n = static_cast<int>(point.lambda.size());

@@ -24,7 +24,7 @@ namespace Squeal
     constexpr double negligible_part = 0.25;
     /// |φ_iᴴφ_j|² at one point above which two modes are about to coalesce [-].
     constexpr double parallel = 0.7;
-    /// Below this limit, the remainder of a unit vector after Gram-Schmidt is a rounding error [-], as happens near a coalescence.
+    /// Near a coalescence, the remainder of a unit vector after Gram-Schmidt may be a rounding error: it is dropped below this limit [-].
     constexpr double defective = 1e-7;
     /// δ² of two λ counts as real if |Im δ²| / |δ²| is below this limit [-]; modes that may coalesce have a real δ².
     constexpr double real_discriminant = 1e-6;
@@ -40,8 +40,8 @@ namespace Squeal
       return basis.Q(Eigen::placeholders::all, kept);
     }
 
-    /// cos² of the largest angle between two subspaces. If one has a lower dimension because its vectors are parallel, its largest angle to
-    /// its projection on the other is used.
+    /// cos² of the largest angle between two subspaces. If one subspace has a lower dimension because its vectors are
+    /// parallel, the largest angle to its projection on the other subspace is used.
     double agreement_of(const ComplexDenseMatrix &first, const ComplexDenseMatrix &second)
     {
       const ComplexDenseMatrix C       = safe_basis(first).adjoint() * safe_basis(second);
@@ -131,7 +131,7 @@ namespace Squeal
             if (!first.empty())
               sort_block(first, second);
           }
-        // The number of modes lost in the band, minus those gained, must equal the increase in real pairs
+        // The number of modes lost in the band minus the number of modes gained must equal the increase in real pairs
         const int lost = in_band(a, links.lost), gained = in_band(b, links.gained);
         links.resolved = 2 * (lost - gained) == b.point.n_real() - a.point.n_real() && (lost == 0 || gained == 0);
         for (const ModeBlock &block : links.blocks)

@@ -117,7 +117,7 @@ namespace Squeal
    * Tracks modes through the friction coefficients of @p grid, in ascending order; the grid may be empty. Modes of neighbouring points are
    * linked by link_modes(); steps with ambiguous links are halved, and all points of a round are evaluated together. A step is also divided
    * if two branches exchange their order and the interpolation between Λ_a and Λ_b, transformed to the modes at a, predicts an interaction,
-   * or if extrapolated growth rates approach zero, or if extrapolated frequencies approach each other.
+   * or if interpolated growth rates approach zero, or if interpolated frequencies approach each other.
    *
    * A branch that grows at only one end of a step has a threshold in the step. At a coalescence δ²(μ) = (λ_1 − λ_2)² is analytic and real
    * with a simple zero, while λ has a branch point; otherwise the zero of Re λ is computed. The interval of a zero is reduced to the
@@ -156,9 +156,9 @@ namespace Squeal
     std::complex<double> lambda; ///< λ at the onset [rad/s]
   };
 
-  /// Onset of growth beyond the uncertainty of λ for a branch in the band: the threshold or band crossing at which this growth begins. If
-  /// there is none, the result is the first point of the branch, with its distance from the previous point as uncertainty. @p before is the
-  /// last friction coefficient evaluated below the chart.
+  /// Onset of growth beyond the uncertainty of λ for a branch in the band: the threshold or band crossing at which this growth begins.
+  /// Without a threshold or crossing, the result is the first point of the branch, with its distance from the previous point as
+  /// uncertainty. Empty if the branch does not grow. @p before is the last friction coefficient evaluated below the chart.
   std::optional<GrowthOnset> onset_of(int branch, const StabilityChart &chart, double largest_circular_frequency, double before);
 
   /// The onset with the smallest friction coefficient among all branches.
@@ -167,7 +167,7 @@ namespace Squeal
   /**
    * Smallest friction coefficient at which the largest divergence rate ξ of the band exceeds a level. Modes are evaluated between two
    * points of the chart until the interval meets the tolerance; the uncertainty is the width of the interval plus three times the estimated
-   * error of ξ divided by dξ/dμ. See onset_of() for @p before.
+   * error of ξ divided by dξ/dμ. Empty if ξ does not exceed the level. See onset_of() for @p before.
    *
    * @param level    divergence rate [-]
    * @param evaluate see stability_chart()

@@ -20,11 +20,11 @@ namespace Squeal
   {
     double          friction_coefficient = 0.;
     ParameterValues values;   ///< values of other parameters that differ from the values of the system
-    int             line = 0; ///< line of the chart: its points differ only in μ and in quantities that depend on μ
+    int             line = 0; ///< line of the chart; points on a line differ only in μ and in quantities that depend on μ
   };
 
-  /// A two-sided reduced model for all operating points of a chart: residuals are computed at full order, and the basis is extended if they
-  /// are too large (see grow_residual_basis()).
+  /// A two-sided reduced model for all operating points of a chart: residuals are computed at full order, and the basis is extended if the
+  /// residuals are too large (see grow_residual_basis()).
   class ChartModel
   {
   public:

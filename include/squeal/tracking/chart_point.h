@@ -72,7 +72,7 @@ namespace Squeal
     ModeFunction              function;
     double                    bound;         ///< bound of the frequency [rad/s]
     ModesAtPoint              first, second; ///< the same one or two modes at both points
-    std::vector<ModesAtPoint> beyond;        ///< these modes at the adjacent points on both sides, if they exist
+    std::vector<ModesAtPoint> beyond;        ///< the same modes at the adjacent points where all these modes exist
   };
 
   /// Function that predicts the zero between the points; empty if there is no prediction. The result is identical on every process.

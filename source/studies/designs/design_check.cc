@@ -48,7 +48,7 @@ namespace Squeal
         }
     }
 
-    /// Reason why no parameter of a variable has an effect; empty if any parameter has an effect.
+    /// Reason why no parameter of a variable has an effect; empty if at least one has an effect.
     std::string why_all_unused(const std::string &variable, const Parameters &design, const Parameters &as_written)
     {
       std::string reason;
@@ -78,7 +78,7 @@ namespace Squeal
     [[noreturn]] void refuse_unused(const UnusedParameter &variable, const std::string &where)
     {
       throw ParameterError(in_quotes(variable.path) + " varies, but has no effect: " + variable.why, where,
-                           "vary other parameters instead, or change the setting that disables this one");
+                           "vary other parameters instead, or change the setting that disables this parameter");
     }
 
     /// True if two designs differ only in the unused variables.

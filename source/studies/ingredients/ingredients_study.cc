@@ -154,7 +154,7 @@ namespace Squeal
           result.n_dofs             = variant.scene->model->free_map().n();
           result.answer             = answer_of(variant);
         }
-      // Report a model that cannot be solved as a result
+      // Store the error, so that the other variants are still solved
       catch (const Error &error)
         {
           result.obstacle = error.reason;
@@ -310,8 +310,8 @@ namespace Squeal
       const double here = reference.costs.sum(&Cost::cpu_seconds), there = cheapest.together.costs.sum(&Cost::cpu_seconds);
       const std::vector<std::string> result = {
         text("  cheapest model within ", asked, ": ", changes_text(cheapest.changes)),
-        text("    largest changes: ", largest_changes(cheapest.together.effect), "; ", cheapest.together.effect.n_unstable(true),
-             " unstable modes instead of ", cheapest.together.effect.n_unstable(false)),
+        text("    largest changes: ", largest_changes(cheapest.together.effect),
+             "; unstable modes: ", cheapest.together.effect.n_unstable(true), " instead of ", cheapest.together.effect.n_unstable(false)),
         text("    ", decimal_text(there, 3), " s of CPU time instead of ", decimal_text(here, 3), " s")};
       return result;
     }

@@ -186,7 +186,7 @@ namespace Squeal
     }
   } // namespace
 
-  /// `Study = reduction`: compares modes of reduced bases, for example those of Tables 2, 4 and 5 of the paper, with full-order modes.
+  /// `Study = reduction`: compares modes of reduced bases, for example the bases of Tables 2, 4 and 5 of the paper, with full-order modes.
   /// Reports sizes, ranks, errors by groups of modes, error estimates with their verdicts, and costs.
   static void run_reduction_study(Scene &scene, Run &run)
   {

@@ -12,7 +12,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Onsets of instability of the modes with one label, over all samples.
+    /// Onsets of instability of the modes with one label, over the samples that meet the tolerance.
     struct OnsetDistribution
     {
       std::string         label;           ///< empty: the first onset of any mode
@@ -21,7 +21,7 @@ namespace Squeal
       std::vector<double> onsets;          ///< onsets of the samples in which the divergence rate is exceeded, ascending
       double              uncertainty;     ///< largest uncertainty of an onset
 
-      /// @p p-quantile of the onsets over all samples; empty if too few samples have an onset.
+      /// @p p-quantile of the onsets over these samples; empty if too few samples have an onset.
       Entry quantile_of_all(const double p) const
       {
         std::vector<double> all = onsets;

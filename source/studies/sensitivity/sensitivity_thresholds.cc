@@ -77,7 +77,7 @@ namespace Squeal
       {
         result = {&threshold, "", {}, {}};
         if (threshold.friction_coefficient <= chart.points.front().friction_coefficient)
-          result.obstacle = "the threshold is at the first friction coefficient of the sweep";
+          result.obstacle = "the threshold is at the first friction coefficient of the sweep or contact set";
         else if (threshold.mechanism == ThresholdMechanism::zero_growth)
           at_zero_growth();
         else
@@ -157,7 +157,7 @@ namespace Squeal
         samples.clear();
         if (!(step > 3. * threshold.uncertainty))
           {
-            result.obstacle = "another threshold of these modes, or an end of the sweep, is too close";
+            result.obstacle = "another threshold of these modes, or an end of the sweep or contact set, is too close";
             return;
           }
         std::vector<std::array<Complex, 3>> means(model.parameters.size(), std::array<Complex, 3>{});
@@ -225,7 +225,7 @@ namespace Squeal
                    "; raise Sweep/Maximum basis if it limits the basis");
         else
           {
-            std::vector<ThresholdSensitivity> now = find("again threshold ");
+            std::vector<ThresholdSensitivity> now = find("extended basis: threshold ");
             for (std::size_t t = 0; t < now.size(); ++t)
               for (std::size_t p = 0; p < std::min(now[t].derivatives.size(), result[t].derivatives.size()); ++p)
                 now[t].errors[p] += std::abs(now[t].derivatives[p] - result[t].derivatives[p]);

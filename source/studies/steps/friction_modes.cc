@@ -13,7 +13,7 @@ namespace Squeal
     /// audible vibration.
     constexpr double fastest_oscillating_divergence = 1.;
 
-    /// Summary of the unstable modes; names the fastest growing oscillating mode.
+    /// Summary of the unstable modes; names the oscillating mode with the largest divergence rate.
     std::string squeal(const FrictionModes &friction)
     {
       const auto &lambda = friction.modes.lambda;
@@ -39,7 +39,7 @@ namespace Squeal
       if (n_weak > 0)
         result += text("; ", n_weak, " below ", 100. * weak_divergence, " %");
       if (n_monotonic > 0)
-        result += text("; ", n_monotonic, " above ", 100. * fastest_oscillating_divergence, " %, which diverge rather than oscillate");
+        result += text("; ", n_monotonic, " above ", 100. * fastest_oscillating_divergence, " %, diverging rather than oscillating");
       return result;
     }
   } // namespace

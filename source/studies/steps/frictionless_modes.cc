@@ -31,7 +31,7 @@ namespace Squeal
         run.warn(text(n_held, " of the ", n, " modes of zero frequency ", n_held == 1 ? "is" : "are",
                       " held by mounts that are too soft: rounding errors of the stiffness hide frequencies below ",
                       decimal_text(hertz(std::sqrt(coupled.hidden_square))),
-                      " Hz. Increase Mounts/Elastic mounts, or remove these directions if the body is unconstrained"));
+                      " Hz. Increase Mounts/Elastic mounts, or set the stiffness to 0 in these directions if the body is unconstrained"));
     }
 
     /// Rejects supercritical speeds, at which K − Ω² ρ N has eigenvalues ≤ 0 and no Cholesky factor.

@@ -55,7 +55,8 @@ namespace Squeal
     const auto   shift     = system.stiffness ? definite_shift(system, omega_max) : std::nullopt;
     if (!shift)
       throw SolverError(
-        "stiffness or mass has no symmetric terms, the symmetric stiffness has negative eigenvalues, or both are singular for the same motion",
+        "stiffness or mass has no symmetric terms, the symmetric stiffness has negative eigenvalues, or stiffness and mass are singular "
+        "for the same motion",
         "file " + run.parameters.system.path(),
         "mark destabilising terms with \"kind\": \"friction\", eliminate constraints, correct the signs of terms, "
         "or, for Study = updating, give complex modes only");

@@ -95,8 +95,8 @@ namespace Squeal
         writer.write_animation("unstable_modes", animated, animation_options(output));
       std::string growth; // the amplitude grows by e^{2π ξ n} in n periods
       if (const double exponent = 2. * M_PI * highest; output.animation_growth && highest > 0.)
-        growth = text("; during the animation, the fastest mode grows by a factor of ", std::exp(exponent * output.animation_periods),
-                      ", or by a factor of e in ", 1. / exponent, " periods");
+        growth = text("; during the animation, the mode with the largest divergence rate grows by a factor of ",
+                      std::exp(exponent * output.animation_periods), ", or by a factor of e in ", 1. / exponent, " periods");
       run.progress.finish(text(list.size(), " modes, ", animated.size(), " animated", growth));
     }
 
@@ -253,7 +253,7 @@ namespace Squeal
         converged = text("; ", n, " of ", errors.size(), " converged");
         warn_of_unconverged(errors, friction, limits, run);
       }
-    run.progress.note(text("  with the discretisation error: ", count(Verdict::unstable), " modes unstable, ", count(Verdict::stable),
+    run.progress.note(text("  verdicts with the discretisation error: ", count(Verdict::unstable), " unstable, ", count(Verdict::stable),
                            " stable, ", count(Verdict::undecided), " undecided", converged));
   }
 

@@ -12,7 +12,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Properties of the eigenproblem that decide which bases apply.
+    /// Properties of the eigenproblem that determine which bases apply.
     struct Problem
     {
       explicit Problem(const Parameters &p)
@@ -101,7 +101,7 @@ namespace Squeal
       else if (!problem.has_friction && recipe->needs_friction)
         refuse(*recipe, "requires friction", "set Reduction/Problem = friction, or remove the basis");
       else if (!problem.has_damping && recipe->needs_damping)
-        refuse(*recipe, "needs damping, but there is none", "add damping, or remove the basis");
+        refuse(*recipe, "needs damping, but the model has none", "add damping, or remove the basis");
       else if (!problem.has_definite_part && !recipe->is_pod)
         refuse(*recipe, "needs real modes, but the system has no definite part", "set it to POD");
     if (plan.rests_on(BasisSource::snapshots) && parameters.reduction.snapshots.empty())

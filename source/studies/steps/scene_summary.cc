@@ -13,7 +13,7 @@ namespace Squeal
 {
   namespace
   {
-    // Plausible ranges for model discs to large machines, and for rubber to beryllium
+    // Plausible ranges: sizes from model discs to large machines, materials from rubber to beryllium
     constexpr Range disc_radii = {5e-3, 5.};    ///< [m]
     constexpr Range heights    = {1e-5, 1.};    ///< [m]
     constexpr Range densities  = {50., 25000.}; ///< [kg/m³]
@@ -21,14 +21,14 @@ namespace Squeal
 
     constexpr double alike = 1e-3; ///< relative difference below which pins count as equal
 
-    /// Number of modes assumed for the memory estimate, which depends on it only slightly.
+    /// Number of modes assumed for the memory estimate, which depends only slightly on this number.
     constexpr double typical_modes = 70.;
 
     /// Summary of the disc, or of equal pins.
     struct Body
     {
       std::vector<std::string> names;
-      double                   inner_radius = std::numeric_limits<double>::infinity(), outer_radius = 0.; ///< of its nodes about z [m]
+      double                   inner_radius = std::numeric_limits<double>::infinity(), outer_radius = 0.; ///< of the nodes about z [m]
       double                   height = 0., contact_area = 0., volume = 0.; ///< height along z [m], area [m²], volume [m³]
       double                   mass           = 0.;                         ///< mass of each body [kg]
       double                   bar_speed      = 0.;                         ///< √(E/ρ), speed of longitudinal waves in a bar [m/s]
@@ -47,7 +47,7 @@ namespace Squeal
       return std::sqrt(material.young_modulus / material.density);
     }
 
-    /// Volumes, starting with the disc; volumes with equal height, contact area, volume and material are combined.
+    /// Summaries, starting with the disc; other volumes with equal height, contact area, volume, mass and bar speed are combined.
     std::vector<Body> summarise_bodies(const Mesh &mesh, const MaterialParameters &materials)
     {
       std::vector<Body>                     bodies(mesh.volume_names.size());
@@ -159,7 +159,8 @@ namespace Squeal
     if (const UnnamedContact contact = find_unnamed_contact(mesh); contact.n_nodes > 0)
       run.warn(text(contact.n_nodes, " pairs of nodes of different bodies coincide outside disc_contact and pin_contact, the first one of ",
                     contact.body, " and ", contact.other, " at (", contact.place[0], ", ", contact.place[1], ", ", contact.place[2],
-                    ") m: the bodies touch there, but are not coupled"));
+                    ") m: the bodies touch there, but are not coupled; to couple a pin to the disc, add the faces to "
+                    "disc_contact and pin_contact"));
     check_memory(size, typical_modes, parameters.geometry.path(), run.communicator);
   }
 } // namespace Squeal

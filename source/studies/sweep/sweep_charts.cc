@@ -117,7 +117,7 @@ namespace Squeal
       return stability_chart(grid, evaluate, options_of(model), predict);
     }
 
-    /// Compares the number of modes without friction with the count by inertia.
+    /// Reports if the number of modes at μ = 0 differs from the count by inertia, or at any point from the number expected from crossings.
     void compare_with_inertia(const SweepModel &model, const StabilityChart &chart)
     {
       Progress             &progress = model.run.progress;
@@ -225,7 +225,7 @@ namespace Squeal
                       const double                   largest_circular_frequency,
                       const std::string             &parameter)
   {
-    double          at = 0.; // friction coefficient of the fastest growing mode
+    double          at = 0.; // friction coefficient of the mode with the largest divergence rate
     ModalQuantities most{};
     std::string     label;
     std::size_t     n_known = 0; // number of requested values that are known

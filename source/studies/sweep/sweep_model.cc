@@ -38,7 +38,7 @@ namespace Squeal
       return result;
     }
 
-    /// Throws ParameterError if modes are to be counted, but cannot be.
+    /// Throws ParameterError if counts are requested, but is_countable() is false.
     void check_countable(const CoupledSystem &system, const Run &run)
     {
       if (run.parameters.study->has("Sweep/Count modes at") && !run.parameters.sweep.counts.empty() && !is_countable(system))
@@ -172,7 +172,7 @@ namespace Squeal
   std::vector<ShapeShares> SweepModel::shape_shares(const ChartPoint &point, const std::vector<int> &modes) const
   {
     const ReducedModel &model = reduced->reduced();
-    // Compute products for new vectors only, because the basis only grows after modes have been labelled
+    // Compute products for new vectors only: once modes have been labelled, the basis is extended, but not replaced
     const int n_known = reference_products.empty() ? 0 : static_cast<int>(reference_products.front().cols());
     if (n_known < model.size())
       {
@@ -289,8 +289,8 @@ namespace Squeal
                             2. * options.tolerance, run);
       }
     if (!sweep.why_stopped.empty())
-      run.progress.note(text("  note: ", points.size() - model.known.size(),
-                             " operating points are omitted, because their estimated errors exceed the tolerance of ", options.tolerance,
-                             ": ", sweep.why_stopped, ". Raise Sweep/Tolerance, or Sweep/Maximum basis if it limits the basis"));
+      run.progress.note(text("  note: omitted operating points: ", points.size() - model.known.size(),
+                             ", because estimated errors exceed the tolerance of ", options.tolerance, ": ", sweep.why_stopped,
+                             ". Raise Sweep/Tolerance, or Sweep/Maximum basis if it limits the basis"));
   }
 } // namespace Squeal

@@ -19,7 +19,7 @@ namespace Squeal
       double                         friction_coefficient; ///< [-]
       double                         value;                ///< load [N], speed [rad/s] or second parameter
       std::size_t                    n_open;               ///< number of open contact nodes
-      std::optional<ModalQuantities> leading;              ///< fastest growing, or least damped, mode; empty if not computed
+      std::optional<ModalQuantities> leading;              ///< mode with the largest divergence rate; empty if not computed
       ModeLabel                      label;                ///< label of this mode
       int                            n_unstable  = 0;
       int                            n_undecided = 0;  ///< number of undecided modes
@@ -196,7 +196,7 @@ namespace Squeal
                              "set it to load per side or pressure, or Sweep/Map parameter = none");
     }
 
-    /// Reports requested friction coefficients at which the contact set is none of the contact sets of the sweep.
+    /// Reports requested friction coefficients whose contact set does not occur in the sweep.
     void note_unknown_contact(const SweepPlan &plan, Run &run)
     {
       const SweepParameters                                                  &sweep  = run.parameters.sweep;
@@ -209,7 +209,7 @@ namespace Squeal
           if (const auto closed = plan.closed_at(mu);
               std::none_of(plan.regimes.begin(), plan.regimes.end(), [&](const ContactRegime &regime) { return regime.closed == closed; }))
             run.progress.note(text("  note: at mu = ", mu, ", ", what_is_missing,
-                                   ", because the contact set is none of the contact sets of the sweep. Raise Sweep/Number of friction "
+                                   ", because the contact set at this value does not occur in the sweep. Raise Sweep/Number of friction "
                                    "coefficients, or extend the range of the sweep to this value"));
     }
 

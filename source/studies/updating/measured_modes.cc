@@ -105,7 +105,7 @@ namespace Squeal
       MeasuredMode result{enum_value<MeasuredState>(state), label, member, {*frequency, deviation ? *deviation : 0.}, {}, row.where};
       const auto   ratio = row.number("damping ratio [%]"), ratio_deviation = row.positive_number("damping deviation [%]");
       if (ratio.has_value() != ratio_deviation.has_value())
-        row.refuse("only one of damping ratio and damping deviation is given", "give both or neither");
+        row.refuse("only one of damping ratio and damping deviation is given", "give both values, or leave both cells empty");
       if (ratio && result.state != MeasuredState::complex)
         row.refuse(state + " modes are computed without damping and cannot have a damping ratio",
                    "set the state to complex, or leave damping ratio and damping deviation empty");

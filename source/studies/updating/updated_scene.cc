@@ -175,7 +175,7 @@ namespace Squeal
         return Action::mesh;
       }
 
-      /// Mesh motions due to a parameter, one for each joined name; empty if any name has no motion.
+      /// Mesh motions due to a parameter, one for each joined name; empty if a name has no motion.
       std::vector<MeshMotion> motions_of(const std::size_t p, const GeometryParameters &geometry) const
       {
         if (geometry.file != GeometryParameters().file)

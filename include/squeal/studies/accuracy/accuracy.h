@@ -75,7 +75,7 @@ namespace Squeal
   struct ConvergedMode
   {
     ModeLabel        label;      ///< label on the finest mesh
-    bool             in_cluster; ///< true if the mode mixes with other modes on any mesh, see pair_modes()
+    bool             in_cluster; ///< true if the mode mixes with other modes on at least one mesh, see pair_modes()
     std::vector<int> numbers;    ///< index of the mode on every mesh; -1: no counterpart
     Limit            frequency;  ///< [Hz]
     Limit            divergence; ///< [-]

@@ -88,16 +88,16 @@ namespace Squeal
     DesignOutcome            outcome = DesignOutcome::failed;
     std::string              reason; ///< reason for rejection or failure
 
-    int    n_dofs = 0, n_modes = 0, n_counted = 0; ///< number of modes at the smallest friction coefficient, and of real modes by inertia
+    int    n_dofs = 0, n_modes = 0, n_counted = 0; ///< modes at the smallest friction coefficient; real modes by inertia
     bool   is_complete = false;                    ///< the numbers of modes agree with all counts
     int    n_unstable = 0, n_undecided = 0;        ///< numbers of modes at the largest friction coefficient
-    int    n_growing     = 0;                      ///< number of modes that grow at any friction coefficient
+    int    n_growing     = 0;                      ///< number of modes that grow at one or more friction coefficients
     double largest_error = 0., largest_residual = 0.;
     int    n_doubtful = 0; ///< number of steps in which modes were distinguished only by frequency
 
     boost::optional<DesignGrowth> onset;      ///< smallest friction coefficient at which a mode grows
     boost::optional<DesignGrowth> weak_onset; ///< smallest friction coefficient with a divergence rate above weak_divergence
-    boost::optional<DesignGrowth> worst;      ///< unstable mode with the largest divergence rate at any friction coefficient
+    boost::optional<DesignGrowth> worst;      ///< unstable mode with the largest divergence rate over all friction coefficients
     std::vector<DesignThreshold>  thresholds;
     std::vector<DesignMode>       modes;
     double                        seconds = 0.; ///< wall time [s]
@@ -120,7 +120,7 @@ namespace Squeal
 
   Table design_mode_table(const std::vector<DesignResult> &designs);
 
-  /// The quietest solved designs: first those without weak_onset, then the others by descending weak_onset; limited to one screen.
+  /// The quietest solved designs: designs without weak_onset, then designs by descending weak_onset; limited to one screen.
   Table quietest_designs(const std::vector<std::string> &names, const std::vector<DesignResult> &designs);
 
   /// Lines with the quietest design, the loudest design and the numbers of solved, rejected, failed and incomplete designs.

@@ -141,7 +141,7 @@ namespace Squeal
   /// Effect of a variant on all modes.
   struct Effect
   {
-    std::vector<ModeChange> modes;    ///< modes in the order of the reference, then modes that only the variant has
+    std::vector<ModeChange> modes;    ///< modes in the order of the reference, then unpaired modes of the variant
     double                  band_end; ///< end of the band of the variant [rad/s]
     int                     n_growing_real_reference, n_growing_real_variant;
 

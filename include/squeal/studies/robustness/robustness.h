@@ -66,7 +66,7 @@ namespace Squeal
   {
     SweepPlan                      plan;      ///< one line for each sample that is followed over the sweep
     std::vector<FrictionlessModes> middles;   ///< modes at the mean sample of each contact set in the plan
-    std::vector<std::size_t>       n_samples; ///< number of samples in each contact set: its first points; others belong to lines
+    std::vector<std::size_t>       n_samples; ///< number of leading points of each contact set that are samples; others belong to lines
     std::vector<FamilyScales>      scales;    ///< scales of each contact set; empty for a system file
 
     /// Converts an additional sample to a point of the first contact set; `line` of the point is the index of the sample.
@@ -159,7 +159,7 @@ namespace Squeal
                             const SweepModel                         &model);
 
   /// Follows the modes of lines over the friction coefficient with the basis of the samples, which is extended if a point misses
-  /// Sweep/Tolerance, as a step of the run.
+  /// Sweep/Tolerance, or at full order without a basis. A step of the run.
   ///
   /// @param n_samples number of leading points of the contact set that do not belong to a line
   void follow_samples(SweepModel &model, std::size_t n_samples, std::vector<FollowedSample> &followed);

@@ -17,7 +17,7 @@ namespace Squeal
   /// A design in a search, in the unit cube: fractions of the ranges of its variables.
   using SearchPoint = std::vector<double>;
 
-  /// Variables of Designs/Variables. Throws ParameterError unless all have ranges.
+  /// Variables of Designs/Variables. Throws ParameterError unless every variable has a range.
   std::vector<DesignVariable> search_variables(const DesignParameters &designs);
 
   /// Divergence rate assumed for a design without a result, larger than usual divergence rates [-].
@@ -50,8 +50,8 @@ namespace Squeal
   bool is_robust(const SearchParameters &parameters);
 
   /// Minimises the probability of squeal, or a quantile of the largest divergence rate of the samples. Evaluates points of the Sobol
-  /// sequence in the ranges, then starts a derivative-free method from the two best points. One reduced model solves all samples of all
-  /// designs and is extended if necessary. All designs of the search share the same random numbers.
+  /// sequence in the ranges, then starts a derivative-free method from the two best points. All samples of all designs are solved with
+  /// one reduced model, which is extended if necessary, or at full order without a definite part. Designs share the same random numbers.
   void run_robust_search(Scene &scene, Run &run);
   void run_robust_search_of_system(Run &run);
 } // namespace Squeal

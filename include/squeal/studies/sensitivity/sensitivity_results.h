@@ -38,7 +38,7 @@ namespace Squeal
   std::vector<SensitivityParameter> sensitivity_parameters(const Scene &scene, const Parameters &parameters);
 
   /// Lengths and angles of the built-in geometry: differences of the terms of the bodies on meshes with nodes moved slightly to either side
-  /// (sensitivity/mesh_motions.h), as a step of the run. Empty for other geometries.
+  /// (sensitivity/mesh_motions.h), as a step of the run. Empty for other geometries, and for Sensitivity/Geometry = none.
   std::vector<SensitivityParameter> geometry_sensitivity_parameters(const Scene &scene, const BodyTerms &bodies, Run &run);
 
   /// Products for the derivatives of some modes at an operating point, k × k each.

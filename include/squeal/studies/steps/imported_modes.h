@@ -28,7 +28,7 @@ namespace Squeal
    *
    * @param system system that is factorised and solved: @p whole or a part of it, for example without damping
    *
-   * Throws SolverError if no shift makes its stiffness positive definite.
+   * Throws SolverError if @p system has no definite part, or if no shift makes its stiffness positive definite.
    */
   FrictionlessModes imported_modes(const CoupledSystem &system, const CoupledSystem &whole, Run &run, double margin = 0.);
 
@@ -55,8 +55,8 @@ namespace Squeal
   /// @param frictionless not used for a system without a definite part
   CountedModes counted_modes(const CoupledSystem &system, double value, const FrictionlessModes &frictionless, Run &run);
 
-  /// Counts modes by the argument principle in the rectangle of the band, as a step of the run. Throws SolverError if the count differs
-  /// from the modes found.
+  /// Counts modes by the argument principle in the rectangle of the band, as a step of the run; skipped if is_countable() is false. Throws
+  /// SolverError if the count differs from the modes found.
   void count_modes(const GivenSystem &given, const FrictionlessModes &frictionless, const FrictionModes &friction, Run &run);
 
   /// Columns of a table of modes: backward errors, condition numbers and relative errors of λ [-].

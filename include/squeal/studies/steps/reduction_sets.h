@@ -21,7 +21,7 @@ namespace Squeal
     bool rests_on(BasisSource source) const;
   };
 
-  /// Throws ParameterError if the parameters name an unknown basis, or one that does not fit the eigenproblem.
+  /// Throws ParameterError if the parameters name an unknown basis, or a basis that does not fit the eigenproblem.
   ReductionPlan reduction_plan(const Parameters &parameters);
 
   /// reduction_plan() for a system file, at a value of its varied parameter.

@@ -36,13 +36,14 @@ namespace Squeal
   ShapePoints displacements_of_nodes(const Model &model);
 
   /// Writes the coupled system of a mesh as a system file in a folder of the results, as a step of the run: its terms with
-  /// named_parameters(), the bodies as groups of dofs, and the nodes that are not clamped as points. Only for `Output/Write system = full`.
+  /// named_parameters(), the bodies as groups of dofs, and the nodes that are not clamped as points. Does nothing unless
+  /// `Output/Write system = full`.
   void write_scene_system(const Linearisation &linearisation, const FileParameter &friction, const std::string &folder, Run &run);
 
   /// Assembles the model at the given operation and writes its system like the function above, as steps of the run.
   void write_scene_system(Scene &scene, Run &run);
 
-  /// Writes a system file unchanged. Only for `Output/Write system = full`.
+  /// Writes a system file unchanged. Does nothing unless `Output/Write system = full`.
   void write_system_again(const SystemFile &file, const std::string &folder, Run &run);
 
   /// Data of a reduced model in a system file.

@@ -214,8 +214,8 @@ namespace Squeal
   /// First onsets of growth and of divergence rates above weak_divergence over all charts of a line.
   std::vector<SquealOnset> squeal_onsets(const std::vector<SweepChart> &charts);
 
-  /// Verdict of the main line: smallest friction coefficient with squeal, and the fastest growing mode; @p n_asked: number of requested
-  /// friction coefficients.
+  /// Verdict of the main line: smallest friction coefficient with squeal, and the mode with the largest divergence rate; @p n_asked: number
+  /// of requested friction coefficients.
   std::string verdict(const std::vector<SweepChart> &charts,
                       std::size_t                    n_asked,
                       double                         largest_circular_frequency,
