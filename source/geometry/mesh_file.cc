@@ -184,8 +184,8 @@ namespace Squeal
       }
     if (const std::size_t n = result.degree == 2 ? add_centres(result) : 0; n > 0)
       result.notes.push_back(
-        std::to_string(n) +
-        " nodes have been added at the centres of faces and cells: serendipity elements are treated as full quadratic elements");
+        "nodes added at the centres of faces and cells: " + std::to_string(n) +
+        "; serendipity elements are treated as full quadratic elements");
     find_bodies(result);
     return result;
   }
