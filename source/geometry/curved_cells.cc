@@ -35,10 +35,11 @@ namespace Squeal
             }
         }
       if (first)
-        throw MeshError(
-          text(off.size(), off.size() == 1 ? " second-order node is" : " second-order nodes are",
-               " farther from the middle of the edge than half the length of the edge; one such node is at (", mesh.points[*off.begin()], ") m"),
-          describe_cell(mesh, *first), "move second-order nodes to the middle of their edges, or use smaller elements on curved surfaces");
+        throw MeshError(text(off.size(), off.size() == 1 ? " second-order node is" : " second-order nodes are",
+                             " farther from the middle of the edge than half the length of the edge; one such node is at (",
+                             mesh.points[*off.begin()], ") m"),
+                        describe_cell(mesh, *first),
+                        "move second-order nodes to the middle of their edges, or use smaller elements on curved surfaces");
     }
 
     /// Rejects edges and quadrilaterals whose middle nodes differ between neighbouring cells or are corners of other cells: the cells would

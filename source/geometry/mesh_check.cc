@@ -344,10 +344,10 @@ namespace Squeal
             is_free = is_free || !std::includes(clamps[body].begin(), clamps[body].end(), nodes[body].begin(), nodes[body].end());
           }
         if (!is_free)
-          throw MeshError("All nodes of '" + surface + "' are clamped by '" + PhysicalNames::pin_clamp +
-                            "', so that mounts and loads on this surface have no effect",
-                          where,
-                          "remove its faces from 'pin_clamp', or remove its name from section Mounts and from Steady sliding/Pressed faces");
+          throw MeshError(
+            "All nodes of '" + surface + "' are clamped by '" + PhysicalNames::pin_clamp +
+              "', so that mounts and loads on this surface have no effect",
+            where, "remove its faces from 'pin_clamp', or remove its name from section Mounts and from Steady sliding/Pressed faces");
       }
     for (std::size_t pin = 1; pin < mesh.body_names.size(); ++pin)
       {
@@ -361,8 +361,7 @@ namespace Squeal
             "add its backplate face to the physical surface 'pin_clamp' or one of its surfaces to Mounts/Elastic mounts, or merge its "
             "nodes with the volume to which it is fixed");
         if (distance(mesh, clamps[pin], disc) < distance(mesh, contacts[pin], disc))
-          throw MeshError("The 'pin_clamp' face of '" + name +
-                            "' is closer to the contact face of the disc than its 'pin_contact' face",
+          throw MeshError("The 'pin_clamp' face of '" + name + "' is closer to the contact face of the disc than its 'pin_contact' face",
                           where, "exchange the names 'pin_clamp' and 'pin_contact' on this body");
       }
   }

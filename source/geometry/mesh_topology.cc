@@ -341,9 +341,8 @@ namespace Squeal
       const std::size_t n_inside    = std::distance(indices.begin(), indices.lower_bound(n_nodes));
       throw MeshError("Bodies '" + mesh.body_names[bodies.first] + "' and '" + mesh.body_names[bodies.second] +
                         "' overlap: " + counted(n_inside, "node", "nodes") + " and " +
-                        counted(indices.size() - n_inside, "element centre", "element centres") +
-                        " of '" + mesh.body_names[bodies.first] + "' are inside '" + mesh.body_names[bodies.second] + "', the first one at " +
-                        place_of(*indices.begin()),
+                        counted(indices.size() - n_inside, "element centre", "element centres") + " of '" + mesh.body_names[bodies.first] +
+                        "' are inside '" + mesh.body_names[bodies.second] + "', the first one at " + place_of(*indices.begin()),
                       where, "move one body, or remove duplicate bodies");
     }
   } // namespace
