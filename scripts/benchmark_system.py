@@ -93,7 +93,7 @@ def main():
             of_slepc = sum(solution.cpu for solution in found)
             rounds.add("squeal, the whole run, CPU [s]", seconds)
             rounds.add(f"{len(values)} solutions by SLEPc, CPU [s]", of_slepc)
-            rounds.add("  one of them, mean", of_slepc / len(values))
+            rounds.add("  mean of one solution", of_slepc / len(values))
             rounds.add(f"{len(values)} solutions by SLEPc / the run [-]", of_slepc / seconds)
             pairs = [(listed(solution.eigenvalues, band), one) for solution, one in zip(found, expected)]
             n_uncovered = sum(not solution.covers(band) for solution in found)

@@ -8,7 +8,7 @@ two.
 
 Each row except the last compares squeal with SLEPc in the same round:
 
-    chart    the whole run of prm/sweep.prm, 90 friction coefficients without dissipation; SLEPc: 90 times its mean time at five of them
+    chart    the whole run of prm/sweep.prm, 90 friction coefficients without dissipation; SLEPc: 90 times the mean time at five of these
     damped   the whole run of prm/sweep_damped.prm without mode count, 90 friction coefficients with dissipation and 90 without; SLEPc: 90
              times the sum of both means
     one      one friction coefficient from the assembled matrices, including real modes and mode count, without and with dissipation;

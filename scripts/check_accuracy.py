@@ -9,7 +9,7 @@ RUN and REFERENCE are result folders. Modes are paired by the smallest sum of di
 different kinds (the beginning of the label, such as A0), and not by shape as in the program. Prints the largest errors of frequencies
 and divergence rates of all modes and of converged modes, and the number of converged modes with an error larger than
 estimated. Lists converged modes with a frequency error above the accuracy, or a divergence rate error in percentage
-points above a tenth of it; the exit status is 1 if there are any.
+points above a tenth of the accuracy; the exit status is 1 if the list is not empty.
 """
 
 import pathlib
@@ -46,7 +46,7 @@ def main():
     run = squeal.Results(arguments.run)
     goal = run.parameters.get("Accuracy", "as given")
     if goal == "as given" or ESTIMATED[0] not in run.modes:
-        raise squeal.Error("the run has no required accuracy or no estimated errors", arguments.run, "repeat it with, e.g., `set Accuracy = 1 %`")
+        raise squeal.Error("the run has no required accuracy or no estimated errors", arguments.run, "repeat the run with, e.g., `set Accuracy = 1 %`")
     goal = float(goal.replace("%", ""))
     modes = compare(run, squeal.Results(arguments.reference))
     converged = modes[modes["converged"] == 1]

@@ -136,7 +136,7 @@ def main():
     results = Results(arguments.directory)
     if results.parameters.get("Damping/Modal damping ratio"):
         raise Error("the run has modal damping, which is not exported", results.folder,
-                    "repeat it without Damping/Modal damping ratio")
+                    "repeat the run without Damping/Modal damping ratio")
     table, band = results.table("complex_modes"), results.number("Band/Maximum frequency")
     labels, eigenvalues = np.array(table.texts("label")), np.array(table.eigenvalues(), dtype=complex)
     listed = exported_matrices.in_band(eigenvalues, band)

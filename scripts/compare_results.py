@@ -72,7 +72,7 @@ def main():
             agree = False
             continue
         largest, complaints = compare(arguments.old / file, arguments.new / file, arguments)
-        print(f"{str(file):<36} {largest:8.1e}" + (f"   {len(complaints)} differences" if complaints else ""))
+        print(f"{str(file):<36} {largest:8.1e}" + (f"   differences: {len(complaints)}" if complaints else ""))
         for complaint in complaints[:5]:
             print(f"    {complaint}")
         agree = agree and not complaints

@@ -200,15 +200,15 @@ def ruling(rule, holds, less=False):
 
 
 def at_most(value, bound, weaker):
-    return ruling(f"holds up to {bound:.4g}, less up to {weaker:g}", value <= bound, value <= weaker)
+    return ruling(f"holds up to {bound:.4g}, in part up to {weaker:g}", value <= bound, value <= weaker)
 
 
 def alike(value, paper):
-    return ruling("holds from half to twice the paper's, less with its sign", 0.5 <= value / paper <= 2, value / paper > 0)
+    return ruling("holds from half to twice the number in the paper, in part if the signs agree", 0.5 <= value / paper <= 2, value / paper > 0)
 
 
 def as_many(modes, paper):
-    return ruling("holds if equal, less if there are more", modes == paper, modes > paper)
+    return ruling("holds if equal, in part if there are more", modes == paper, modes > paper)
 
 
 def change(before, after):
@@ -274,7 +274,7 @@ def of_growth(undamped):
             if partner:
                 waves.append((partner, partner.wave[1 - direction], f"its partner {partner.label} rotates in the opposite sense: share"))
             for one, share, words in waves:
-                yield "4.3", words, None, share, "-", ruling("holds from 0.75, less from 0.6", share >= 0.75, share >= 0.6), one
+                yield "4.3", words, None, share, "-", ruling("holds from 0.75, in part from 0.6", share >= 0.75, share >= 0.6), one
 
 
 def of_dissipation(undamped, damped):
@@ -292,8 +292,8 @@ def of_dissipation(undamped, damped):
         gain = bending[-1] - former[-1]
         yield "4.3", "C_b reduces the divergence rate of the leading F1", -0.01, gain, "%", ruling("holds below zero", gain < 0)
     if len(bending) > 3 and len(former) == len(bending):
-        yield ("4.3", "C_b stabilises the second unstable pin mode: its divergence rate, or that of the mode in its place", 0, bending[-2], "%",
-               ruling("holds below 0.01 %, less if it falls", bending[-2] < NEGLIGIBLE, bending[-2] < former[-2]),
+        yield ("4.3", "C_b stabilises the second unstable pin mode: second largest divergence rate of the F1 modes", 0, bending[-2], "%",
+               ruling("holds below 0.01 %, in part if the rate decreases", bending[-2] < NEGLIGIBLE, bending[-2] < former[-2]),
                f"without C_b {former[-2]:.3g} %")
     for words, rates, place, paper in (
             ("F1, most damped", bending, 0, -1.76), ("F1, least damped of the lower half", bending, (len(bending) - 1) // 2, -1.07),

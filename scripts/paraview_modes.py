@@ -5,7 +5,7 @@
 
     scripts/paraview_modes.py RESULTS --state FILE.pvsm                   all modes; open with: paraview FILE.pvsm
     scripts/paraview_modes.py RESULTS --mode A0-4 --state FILE.pvsm       the motion of one mode
-    scripts/paraview_modes.py RESULTS [--mode MODE] --pictures FOLDER     a picture of each mode, or of the chosen ones
+    scripts/paraview_modes.py RESULTS [--mode MODE] --pictures FOLDER     a picture of each mode, or of the chosen modes
     scripts/paraview_modes.py RESULTS --mode MODE --film FILE.gif         the motion, including its growth
 
 With all modes, the time buttons step through the modes by frequency [Hz], each deformed by its real part. With one
@@ -15,7 +15,7 @@ growing mode. Colours show the amplitude; the title shows mode, frequency, effec
 are iso, top, side, below; faces, the upper pins seen from below without the disc, with the normal reactions on their
 contact faces; and energy, the same faces with their contribution to the divergence rate of a growing mode.
 
-Requires Debian's paraview, python3-paraview, xvfb and xauth (scripts/setup.sh paraview). Without a display it restarts under xvfb-run.
+Requires Debian's paraview, python3-paraview, xvfb and xauth (scripts/setup.sh paraview). Without a display, the script restarts under xvfb-run.
 """
 
 import pathlib

@@ -6,7 +6,7 @@
     scripts/render_mode.py MODE... [-o PICTURE] [--field FIELD] [--view VIEW] [--bodies all|moving]
 
 Each MODE is a file `modes/NAME.vtu` of a complex, real or component mode. Several modes are drawn side by side with one
-colour scale. The bodies are deformed by the real part of the mode. Without a display the script restarts under
+colour scale. The bodies are deformed by the real part of the mode. Without a display, the script restarts under
 xvfb-run. Requires Debian's python3-vtk9, xvfb and xauth (scripts/setup.sh pictures).
 """
 

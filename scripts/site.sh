@@ -4,7 +4,7 @@
 # Builds the documentation as a site in build/site and checks its links and anchors; warnings count as errors:
 #
 #   scripts/site.sh           builds and checks
-#   scripts/site.sh --serve   shows it at http://localhost:8000 until Ctrl-C; pages reload when they are edited
+#   scripts/site.sh --serve   shows the site at http://localhost:8000 until Ctrl-C; pages reload when they are edited
 #
 # Installs Debian's mkdocs-material and linkchecker if they are missing. Neither the build nor the site loads anything from the network.
 

@@ -5,7 +5,7 @@
 DIRECTORY/matrices contains, in Matrix Market format,
 
     M, K            n x n    mass and stiffness of disc and pins before coupling, without clamped dofs
-    C               n x n    material damping
+    C               n x n    damping of materials and dashpots
     G               n x n    gyroscopic matrix of the disc, skew-symmetric; no file if it is zero
     C_b             n x n    contact damping, radial and along the sliding direction
     P_n, P_t, P_b   n_c x n  relative displacement disc minus pin: normal, along the sliding direction times the friction factor f of the

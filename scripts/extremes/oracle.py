@@ -12,7 +12,7 @@ Three steps:
 
    Systems with more than LARGEST_DENSE dofs are solved by ARPACK on the shifted and inverted companion form.
 2. Two-sided block inverse iteration about the centre c of each cluster; the eigenvalues then follow from W^H Q(c + delta) V, whose entries
-   are computed with a 64-bit mantissa. The error of the eigenvalues is the product of the errors of V and W.
+   are computed with a 64-bit mantissa. The error of the eigenvalues is proportional to the product of the errors of V and W.
 3. Step 2 is repeated, up to three times in total, while it changes the eigenvalues by more than 1e-10. The last change is the error of the
    oracle.
 """

@@ -50,7 +50,7 @@ def main():
         else:
             n_differing += reproduce(Runs(arguments.results), page, chosen)
     if n_differing:
-        print(f"\n{n_differing} numbers differ from the pages", file=sys.stderr)
+        print(f"\nnumbers that differ from the pages: {n_differing}", file=sys.stderr)
     return 1 if n_differing else 0
 
 

@@ -14,7 +14,7 @@ class Results(squeal.results.Results):
         return [{column: value_of(cell) for column, cell in row.items()} for row in self.table(name).rows]
 
     def complex_modes(self, label=None):
-        """All complex modes, or those whose label begins with `label`."""
+        """All complex modes, or the modes whose label begins with `label`."""
         return [mode for mode in self.rows("complex_modes") if label is None or mode["label"].startswith(label)]
 
     def eigenvalues(self):

@@ -35,10 +35,11 @@ namespace Squeal
             }
         }
       if (first)
-        throw MeshError(
-          text(off.size(), off.size() == 1 ? " second-order node is" : " second-order nodes are",
-               " farther from the middle of the edge than half its length; one such node is at (", mesh.points[*off.begin()], ") m"),
-          describe_cell(mesh, *first), "move second-order nodes to the middle of their edges, or use smaller elements on curved surfaces");
+        throw MeshError(text(off.size(), off.size() == 1 ? " second-order node is" : " second-order nodes are",
+                             " farther from the middle of the edge than half the length of the edge; one such node is at (",
+                             mesh.points[*off.begin()], ") m"),
+                        describe_cell(mesh, *first),
+                        "move second-order nodes to the middle of their edges, or use smaller elements on curved surfaces");
     }
 
     /// Rejects edges and quadrilaterals whose middle nodes differ between neighbouring cells or are corners of other cells: the cells would
@@ -68,8 +69,9 @@ namespace Squeal
                     cell.nodes[numbers[8]]);
         }
       if (!unmatched.empty())
-        throw MeshError(text("Second-order nodes of ", unmatched.size(), " of ", mesh.cells.size(),
-                             " elements differ from those of a neighbour on the same edge or face, or are corners of another element"),
+        throw MeshError(text("In ", unmatched.size(), " of ", mesh.cells.size(),
+                             " elements, second-order nodes differ from the nodes of a neighbour on the same edge or face, or are corners "
+                             "of another element"),
                         describe_cell(mesh, *unmatched.begin()),
                         "merge second-order nodes as well as corners, and mesh neighbours with matching elements");
     }

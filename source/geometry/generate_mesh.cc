@@ -213,7 +213,7 @@ namespace Squeal
           require(pair.master, "Contact/Tied");
         }
       for (const std::string &name : mounted)
-        require(name, "Mounts/Elastic mounts, Mounts/Dashpots or Steady sliding/Pressed faces");
+        require(name, "Mounts/Elastic mounts, Mounts/Dashpots, Mounts/Added masses or Steady sliding/Pressed faces");
     }
 
     /// Adds the faces of contact surfaces to disc_contact and pin_contact.

@@ -79,7 +79,7 @@ namespace Squeal
       for (const auto &[node, other] : tied_links(mesh))
         sets.union_set(node, other);
       std::vector<std::map<std::size_t, std::size_t>> pieces(mesh.body_names.size());       // number of elements of each piece, by root
-      std::vector<std::set<std::size_t>>              of_volumes(mesh.volume_names.size()); // roots of its pieces
+      std::vector<std::set<std::size_t>>              of_volumes(mesh.volume_names.size()); // roots of the pieces of each volume
       std::set<std::size_t>                           held;                                 // roots of mounted pieces
       for (const Mesh::Cell &cell : mesh.cells)
         {
@@ -344,11 +344,10 @@ namespace Squeal
             is_free = is_free || !std::includes(clamps[body].begin(), clamps[body].end(), nodes[body].begin(), nodes[body].end());
           }
         if (!is_free)
-          throw MeshError("All nodes of '" + surface + "' are clamped by '" + PhysicalNames::pin_clamp +
-                            "', so that mounts and loads on this surface have no effect",
-                          where,
-                          "remove its faces from 'pin_clamp', or remove its name from Mounts/Elastic mounts, Mounts/Dashpots and Steady "
-                          "sliding/Pressed faces");
+          throw MeshError(
+            "All nodes of '" + surface + "' are clamped by '" + PhysicalNames::pin_clamp +
+              "', so that mounts and loads on this surface have no effect",
+            where, "remove its faces from 'pin_clamp', or remove its name from section Mounts and from Steady sliding/Pressed faces");
       }
     for (std::size_t pin = 1; pin < mesh.body_names.size(); ++pin)
       {
@@ -362,8 +361,7 @@ namespace Squeal
             "add its backplate face to the physical surface 'pin_clamp' or one of its surfaces to Mounts/Elastic mounts, or merge its "
             "nodes with the volume to which it is fixed");
         if (distance(mesh, clamps[pin], disc) < distance(mesh, contacts[pin], disc))
-          throw MeshError("'" + name +
-                            "' has its face on 'pin_clamp' closer to the contact face of the disc than its face on 'pin_contact'",
+          throw MeshError("The 'pin_clamp' face of '" + name + "' is closer to the contact face of the disc than its 'pin_contact' face",
                           where, "exchange the names 'pin_clamp' and 'pin_contact' on this body");
       }
   }

@@ -183,9 +183,8 @@ namespace Squeal
         result.faces.push_back({face.type->shape, face.nodes, face.group});
       }
     if (const std::size_t n = result.degree == 2 ? add_centres(result) : 0; n > 0)
-      result.notes.push_back(
-        std::to_string(n) +
-        " nodes have been added at the centres of faces and cells: serendipity elements are treated as full quadratic elements");
+      result.notes.push_back("nodes added at the centres of faces and cells: " + std::to_string(n) +
+                             "; serendipity elements are treated as full quadratic elements");
     find_bodies(result);
     return result;
   }

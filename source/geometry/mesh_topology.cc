@@ -140,7 +140,7 @@ namespace Squeal
                         "or widen the crack between them");
     }
 
-    /// Rejects quadrilaterals with triangles on the other side: they share nodes but are not conforming.
+    /// Rejects quadrilaterals with triangles on the other side: the faces share nodes but do not conform.
     void check_matching(const Mesh &mesh, const std::vector<CellFace> &outline, const std::string &where)
     {
       std::set<std::array<unsigned int, 4>> triangles;
@@ -341,8 +341,8 @@ namespace Squeal
       const std::size_t n_inside    = std::distance(indices.begin(), indices.lower_bound(n_nodes));
       throw MeshError("Bodies '" + mesh.body_names[bodies.first] + "' and '" + mesh.body_names[bodies.second] +
                         "' overlap: " + counted(n_inside, "node", "nodes") + " and " +
-                        counted(indices.size() - n_inside, "element centre", "element centres") +
-                        " of the former are inside the latter, the first one at " + place_of(*indices.begin()),
+                        counted(indices.size() - n_inside, "element centre", "element centres") + " of '" + mesh.body_names[bodies.first] +
+                        "' are inside '" + mesh.body_names[bodies.second] + "', the first one at " + place_of(*indices.begin()),
                       where, "move one body, or remove duplicate bodies");
     }
   } // namespace

@@ -171,7 +171,7 @@ namespace Squeal
         else if ((key == "end" || key == "END") && rest.empty())
           {
             if (sections.size() == outer_depth)
-              throw ParameterError("`end` closes no section of this file", where, "remove it, or add the matching `subsection`");
+              throw ParameterError("`end` closes no section of this file", where, "remove this line, or add the matching `subsection`");
             sections.pop_back();
           }
         else if (key == "set" || key == "SET")

@@ -336,10 +336,10 @@ namespace Squeal
   {
     if (output.write_system != SystemOutput::none && !study->has("Output/Write system"))
       throw ParameterError(text("Study = ", study->name, " does not write a system"), "parameter Output/Write system",
-                           "set it to none; to write the system of one model, run this model with Study = stability");
+                           "set Output/Write system = none; to write the system of one model, run this model with Study = stability");
     if (output.write_system == SystemOutput::reduced && !study->has_reduced_model)
       throw ParameterError(text("Study = ", study->name, " has no reduced model to write"), "parameter Output/Write system",
-                           "set it to full, or set Study = sweep, robustness or reduction");
+                           "set Output/Write system = full, or set Study = sweep, robustness or reduction");
     if (system)
       {
         if (study->run_of_system == nullptr)
@@ -348,7 +348,7 @@ namespace Squeal
             "set Study = stability, reduction, sweep, sensitivity, geometry, search, robustness or updating, or leave System empty");
         if (goal != AccuracyGoal::as_given)
           throw ParameterError("Accuracy selects a mesh, but the parameter System replaces the mesh", "parameter Accuracy",
-                               "set it to as given");
+                               "set Accuracy = as given, or leave System empty");
         discretization.check();
         reduction.check_of_system();
         sweep.check_of_system();

@@ -94,7 +94,7 @@ namespace Squeal
       truncation_list.refuse("no truncation of the component modes is given");
     for (const ModeTruncation &truncation : truncations)
       if (!(truncation.frequency > 0.) && (truncation.disc < 1 || (truncation.pins_free < 1 && truncation.pins_sliding < 1)))
-        throw ParameterError("the truncation `" + truncation.text() + "` leaves no modes of the disc, or no modes of the pins",
+        throw ParameterError("the truncation `" + truncation.text() + "` has no modes of the disc, or no modes of the pins",
                              "parameter Reduction/Component modes",
                              "give a positive frequency, or at least one mode of the disc and one mode of the pins");
     for (const double mu : snapshots)

@@ -126,11 +126,10 @@ namespace Squeal
                      "Band limits in ascending order: the probability of squeal is also reported for each band between two successive "
                      "limits.",
                      {0.});
-    declarations.add(
-      "Samples with onsets", n_onsets, "none",
-      "Number of samples, starting with the first, whose modes are tracked over the friction coefficients of the section Sweep to find "
-      "their onsets of growth. The tolerance is Sweep/Tolerance.",
-      {0., 1e5});
+    declarations.add("Samples with onsets", n_onsets, "none",
+                     "Number of samples, starting with the first, whose modes are tracked over the values of the section Sweep to find "
+                     "their onsets of growth. The tolerance is Sweep/Tolerance.",
+                     {0., 1e5});
     declarations.add("Worst samples", n_worst, "none",
                      "Number of samples with the largest divergence rates that are written as parameter files of full-order runs.",
                      {0., 1000.});

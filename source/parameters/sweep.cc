@@ -74,7 +74,7 @@ namespace Squeal
       "values that meet the tolerance are written.",
       {1});
     declarations.add("Threshold tolerance", threshold_tolerance, "none",
-                     "Maximum width of the interval of friction coefficients that encloses a threshold.", {1e-13, 1e-2});
+                     "Maximum width of the interval of the varied parameter that encloses a threshold.", {1e-13, 1e-2});
     declarations.add("Compare dissipation", compare_dissipation,
                      "If Operation/Radial dissipation is not none, repeats the sweep without it and shows both results.");
     declarations.add(
@@ -83,13 +83,13 @@ namespace Squeal
       coefficients, most_coefficients);
     declarations.add(
       "Complex plane at", planes, "none",
-      "Friction coefficients, separated by commas, at which all modes of the band are written to a table and drawn in the complex plane; "
+      "Values within the sweep, separated by commas, at which all modes of the band are written to a table and drawn in the complex plane; "
       "empty: the values of Mode shapes at.",
       {}, most_coefficients);
     declarations.add(
       "Count modes at", counts, "none",
-      "Friction coefficients, separated by commas, at which the modes of the band are counted by the argument principle, independently of "
-      "the solver for complex modes.",
+      "Values within the sweep, separated by commas, at which the modes of the band are counted by the argument principle, independently "
+      "of the solver for complex modes.",
       {}, most_coefficients);
     declarations.add(
       "Map parameter", map_parameter,

@@ -8,7 +8,7 @@
 For any input, the program must either succeed, or end with exit status 1 and one message that says what happened,
 where, and what to change. It must not crash or exceed its time limit, and it must write only complete results. KIND is
 parameters (files), settings (of the command line), meshes or scripts. Some small models that pass the dry run are also
-run. Case N of a seed is always the same. If a case fails, its files are kept in build/fuzz, and the exit status is 1.
+run. Seed and N determine case N. If a case fails, its files are kept in build/fuzz, and the exit status is 1.
 """
 
 import argparse

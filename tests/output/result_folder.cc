@@ -196,7 +196,7 @@ TEST_F(ResultFolders, SettleWhatAKilledRunHasLeft)
 {
   put(results + "/.unfinished/half", "half");
   make_results("one");
-  // A run killed while it moved files leaves no record, because the record would list files of two runs
+  // If a run is killed while it moves files, there is no record, because it would list files of two runs
   put(results + "/.unfinished/half", "half");
   fs::remove(results + "/run.json");
   make_results("two");

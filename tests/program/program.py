@@ -228,7 +228,7 @@ def real_frequencies(folder, table="real_modes.csv"):
 
 
 def distance(actual, expected):
-    """Largest relative difference of eigenvalues, each compared with the nearest unused one."""
+    """Largest relative difference of eigenvalues, each compared with the nearest unused value."""
     left, largest = list(expected), 0.0
     for value in actual:
         nearest = min(left, key=lambda other: abs(other - value))

@@ -128,7 +128,7 @@ class OwnGeometry(ProgramTest):
         self.geometry_refused(["'pin_2' is not held", "no face on 'pin_clamp'"],
                               BLOCKS + "Box(3) = {0.1, 0.2, 0, 0.1, 0.1, 0.02};\n" + HEXAHEDRA + VOLUMES + 'Physical Volume("pin_2") = {3};' +
                               SURFACES.replace("{11}", "{11, 17}"))
-        self.geometry_refused(["'pin_1' has its face on 'pin_clamp' closer to the contact face of the disc", "exchange"],
+        self.geometry_refused(["The 'pin_clamp' face of 'pin_1' is closer to the contact face of the disc", "exchange"],
                               SCRIPT.replace("{11}", "{0}").replace("{12}", "{11}").replace("{0}", "{12}"))
         swapped = VOLUMES.replace("{1}", "{0}").replace("{2}", "{1}").replace("{0}", "{2}")
         self.geometry_refused(["has a face on", "on the disc only"], BLOCKS + HEXAHEDRA + swapped + SURFACES)

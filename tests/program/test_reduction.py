@@ -130,7 +130,7 @@ class Refusals(ProgramTest):
     def test_parameters(self):
         for mentions, *overrides in (
                 (["no basis `reel`", "Reduction/Bases", "real + 1st-ord."], "Reduction/Bases=reel"),
-                (["leaves no modes", "Reduction/Component modes"], "Reduction/Component modes=0, 3, 3"),
+                (["has no modes", "Reduction/Component modes"], "Reduction/Component modes=0, 3, 3"),
                 (["is not between 1e-11 and 0.1"], "Reduction/Grown tolerances=1e-20"),
                 (["needs damping"], "Reduction/Bases=real + 1st-ord. two-sided + damping"),
                 (["requires friction"], "Reduction/Problem=frictionless", "Reduction/Bases=real + 1st-ord."),

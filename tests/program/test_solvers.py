@@ -103,7 +103,7 @@ class Mounts(ProgramTest):
     scene = COARSE
 
     def test_free_disc(self):
-        # The pins support the disc only axially, which leaves three rigid-body modes in its plane
+        # The pins support the disc only axially, so that three rigid-body modes in its plane remain
         for overrides in (["Mounts/Elastic mounts=", DISSIPATION], ["Mounts/Elastic mounts=disc_bore: 0, 0, 1.88e10"]):
             values = []
             for solver in ([], RESIDUAL_ITERATION):

@@ -208,7 +208,7 @@ class Sweep(SweepTest):
 
     def test_mode_shapes(self):
         modes = sorted(path.name for path in (self.results / "modes").iterdir())
-        # The label is that of the mode at this friction coefficient, not at the start of the branch
+        # The file has the label of the mode at this friction coefficient, not at the start of the branch
         leader = max(read_table(self.alone(0.4, CONSISTENT) / "complex_modes.csv"), key=lambda row: float(row["divergence rate [%]"]))
         name = f"mu_0.4_{leader['label'].replace(' ', '_')}"
         self.assertEqual(modes, [f"{name}.vtu", f"{name}_contact.vtu"])

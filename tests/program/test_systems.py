@@ -241,7 +241,7 @@ class Flutter(SystemTest):
                 self.assertLess(min(abs(value - other) for other in expected), 2e-8 * abs(value))
 
     def test_flutter_with_multiplier(self):
-        """A third dof fixed by a Lagrange multiplier does not change the flutter of the others: threshold, map and
+        """A third dof fixed by a Lagrange multiplier does not change the flutter of the other dofs: threshold, map and
         samples at full order."""
         padded = [(power, coefficient, [[*row, 0., 0.] for row in A] + [[0.] * 4] * 2, symmetry) for power, coefficient, A, symmetry in flutter_terms()]
         mass, stiffness, friction = ([list(row) for row in term[2]] for term in padded)

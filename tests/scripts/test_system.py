@@ -54,7 +54,7 @@ def chain(n):
 
 
 def distances(found, expected):
-    """Relative distance of each computed eigenvalue to the nearest expected one."""
+    """Relative distance of each computed eigenvalue from the nearest expected value."""
     return np.array([abs(expected - value).min() / abs(value) for value in found])
 
 

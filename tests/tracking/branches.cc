@@ -308,7 +308,7 @@ TEST(Branches, GrowthAtOnce)
   const auto pairs = [](const double mu) { return DenseMatrix{{5., mu, 0., 0.}, {-mu, 5., 0., 0.}, {0., 0., 7., mu}, {0., 0., -mu, 7.1}}; };
   const auto chart = expect_thresholds({pairs}, uniform_grid(0., 1., 10), coalescence, {0., 0.05});
   EXPECT_EQ(chart.thresholds.at(0).friction_coefficient, 0.);
-  // C = μ diag(0.2 − μ, −1, 1) / 100: one mode grows above 0.2, one from μ = 0, one never
+  // C = μ diag(0.2 − μ, −1, 1) / 100: one mode grows above 0.2, one from μ = 0, and one decays
   const auto K = [](double) { return diagonal({1., 2., 3.}); };
   const auto C = [](const double mu) { return diagonal({-0.01 * mu * (mu - 0.2), -0.01 * mu, 0.01 * mu}); };
   for (const int n_steps : {3, 10})

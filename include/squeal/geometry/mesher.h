@@ -35,7 +35,7 @@ namespace Squeal
   /**
    * Opens a geometry or mesh in a separate process, meshes it by mesh_geometry() (a solid if there are physical volumes, else a plan), and
    * returns the resulting mesh. A crash of Gmsh does not affect this process. A confined Gmsh cannot change the user's files. A confined
-   * process inherits no environment variable except LD_LIBRARY_PATH. The process ends with this process. No temporary file is created.
+   * process inherits no environment variable except LD_LIBRARY_PATH. Gmsh ends with this process. No temporary file is created.
    *
    * @param where name of the geometry, for error messages
    *

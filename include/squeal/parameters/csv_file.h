@@ -34,7 +34,7 @@ namespace Squeal
    * @param parameter "Section/Name" of the parameter that names the file, for messages
    * @param row       meaning of a row, for messages: "design"
    *
-   * Throws FileError if the file cannot be read, and a ParameterError that names the line if it is not comma-separated UTF-8 text.
+   * Throws FileError if the file cannot be read, and ParameterError if @p path is empty or the file is not comma-separated UTF-8 text.
    */
   CsvFile read_csv(const std::string &path, const std::string &parameter, const std::string &row);
 } // namespace Squeal

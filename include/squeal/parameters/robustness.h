@@ -57,7 +57,7 @@ namespace Squeal
     bool                has_indices = true; ///< compute Sobol' indices, which require additional samples
     std::vector<double> frequency_bands;    ///< limits of bands with separate probabilities [Hz]
     unsigned int        n_worst  = 5;       ///< number of worst samples written as parameter files
-    unsigned int        n_onsets = 0;       ///< number of samples whose modes are tracked over the friction coefficient
+    unsigned int        n_onsets = 0;       ///< number of samples whose modes are tracked over the sweep
 
     void declare(Declarations &declarations);
 

@@ -43,17 +43,17 @@ namespace Squeal
     ValueRange  values;
   };
 
-  /// Modes as functions of the friction coefficient (section `Sweep`).
+  /// Modes as functions of the friction coefficient or of a parameter of a system file (section `Sweep`).
   struct SweepParameters
   {
     ValueRange          friction_coefficients = {0., 0.45, 90};
     double              tolerance             = 1e-6; ///< limit of the estimated |δλ| / |λ| [-]
     unsigned int        maximum_basis         = 1500;
-    double              threshold_tolerance   = 1e-6; ///< tolerance of thresholds in the friction coefficient [-]
+    double              threshold_tolerance   = 1e-6; ///< width of the interval that encloses a threshold [unit of the varied parameter]
     bool                compare_dissipation   = true; ///< repeat the sweep without radial dissipation
     std::vector<double> mode_shapes;                  ///< friction coefficients for output of the leading mode, if it grows
-    std::vector<double> planes;                       ///< friction coefficients for output of all modes; empty: mode_shapes
-    std::vector<double> counts;                       ///< friction coefficients for mode counts by the argument principle
+    std::vector<double> planes;                       ///< values for output of all modes; empty: mode_shapes
+    std::vector<double> counts;                       ///< values for mode counts by the argument principle
 
     MapParameter map_parameter             = MapParameter::none;
     ValueRange   map_values                = {100., 10000., 11}; ///< values of the map parameter [N] or [rad/s]

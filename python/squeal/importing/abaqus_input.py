@@ -204,7 +204,7 @@ class AbaqusInput:
                 member = [label for label in known if label in member] if len(member) > len(known) else list(filter(known.__contains__, member))
             labels.update(dict.fromkeys(member if isinstance(member, list) else [member]))
         if unknown := [label for label in labels if label not in known]:
-            self.dropped += [] if above else [f"{len(unknown)} members of set {name}, such as {unknown[0]}, that are not in the file"]
+            self.dropped += [] if above else [f"members of set {name} that are not in the file: {len(unknown)}, such as {unknown[0]}"]
         return [label for label in labels if label in known]
 
     def _faces(self, surface, elements, side=""):

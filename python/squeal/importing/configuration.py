@@ -21,7 +21,7 @@ def read_json(path):
     except FileNotFoundError:
         raise Error("the file is missing", path, "add it, or correct its name") from None
     except (OSError, ValueError) as problem:
-        raise Error(f"the file cannot be read: {problem}", path, "correct it or its permissions") from problem
+        raise Error(f"the file cannot be read: {problem}", path, "correct the file or its permissions") from problem
 
 
 def read_yaml(path, what):

@@ -105,14 +105,14 @@ class Import:
         if nodes := set(self.mesh.node_sets.get(member, ())):
             found.append({key for key in self.outer if nodes.issuperset(key)})
             if len(found) == 1 and (alone := len(nodes & {node for key in self.outer for node in key} - {node for key in found[0] for node in key})):
-                self.left.append(f"{alone} boundary nodes of {member} that do not form a complete face")
+                self.left.append(f"boundary nodes of {member} that do not form a complete face: {alone}")
         outside = [sorted(keys & self.outer.keys()) for keys in found] or [[]]
         if any(other != outside[0] for other in outside):
             raise Error(f"several sets are called `{member}` and contain different faces", self.path, "rename one of them")
         if not outside[0]:
             raise Error(f"`{member}` has no face on the boundary of the volumes", self.path, f"choose boundary faces for {name}")
         if inside := len(found[0]) - len(outside[0]):
-            self.left.append(f"{inside} faces of {member} that are not on the boundary of a volume")
+            self.left.append(f"faces of {member} that are not on the boundary of a volume: {inside}")
         return outside[0]
 
     def write(self, path, scale):
@@ -148,7 +148,7 @@ class Import:
         left = collections.Counter(shape for number, (shape, _) in enumerate(self.mesh.elements)
                                    if number not in self.volume_of and (number not in faces or self.mesh.is_solid(number)))
         unused = sorted({*self.mesh.element_sets, *self.mesh.faces, *self.mesh.node_sets} - named)
-        self.left += [f"{n} elements of type {shape}" for shape, n in left.items()] + (["sets " + ", ".join(unused)] if unused else [])
+        self.left += [f"elements of type {shape}: {n}" for shape, n in left.items()] + (["sets " + ", ".join(unused)] if unused else [])
         return "\n".join(lines + [f"  left out: {what}" for what in self.left])
 
     def materials(self, unit):

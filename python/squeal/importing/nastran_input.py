@@ -63,7 +63,7 @@ class NastranInput:
                 self._take(*card)
             except (ValueError, IndexError) as error:
                 raise Error(f"{card[0]} cannot be read ({error})", f"{path}, line {line}", "correct this card") from error
-        self.dropped = [f"{n} elements {name}" for name, n in self._unread.items()]
+        self.dropped = [f"elements {name}: {n}" for name, n in self._unread.items()]
 
     def _take(self, name, *fields):
         if name.startswith("INCLUDE"):

@@ -90,7 +90,7 @@ def import_system(path):
     numbering = matrices.Numbering([(str(file), found) for file, found, *_ in loaded])
     remarks = []
     if numbering.held:
-        remarks.append(f"{len(numbering.held)} dofs are fixed ({matrices.HELD:g} or more on the diagonal) and omitted")
+        remarks.append(f"fixed dofs ({matrices.HELD:g} or more on the diagonal) are omitted: {len(numbering.held)}")
     for file, found, term, scale in loaded:
         term.matrix = scale * numbering.matrix(found, term.symmetry, file)
         if term.symmetry == "none" and term.matrix.nnz and term.matrix.shape[0] == term.matrix.shape[1]:

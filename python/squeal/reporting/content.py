@@ -31,7 +31,7 @@ def verdict(results, pages):
 
 
 def tables(results, pages):
-    """Tables, most important first, and the names of omitted tables: those of branches, and tables with too many rows."""
+    """Tables, most important first, and the names of omitted tables: tables of branches, and tables with too many rows."""
     titles = {name: title for page in pages for name, title in page.TITLES.items()}
     order = {name: place for place, name in enumerate(titles)}
     found, too_long = [], []

@@ -56,9 +56,9 @@ def verdict(results):
     best = max(rows, key=lambda row: (number(row[ONSET] or "inf"), -number(row[LARGEST] or "0")))
     name = design_text(best, variables_of(table))
     if quiet:
-        return "stable", f"{len(quiet)} of {len(rows)} designs stay below a divergence rate of {WEAK} % up to μ = {end:g}; the quietest is {name}."
+        return "stable", f"Designs below a divergence rate of {WEAK} % up to μ = {end:g}: {len(quiet)} of {len(rows)}; the quietest is {name}."
     onset, largest = digits(number(best[ONSET]), 3), digits(number(best[LARGEST] or "0"), 3)
-    return "unstable", (f"All {len(rows)} designs exceed a divergence rate of {WEAK} % up to μ = {end:g}; the quietest is {name}, "
+    return "unstable", (f"Designs below a divergence rate of {WEAK} % up to μ = {end:g}: none of {len(rows)}; the quietest is {name}, "
                         f"with onset μ = {onset} ({best['label at 0.01 %']}) and at most {largest} %." + (f" {outcome}." if left else ""))
 
 

@@ -24,8 +24,8 @@ def verdict(results):
     name = goal.removesuffix(" [%]")
     level = "unstable" if number(other["probability of squeal [%]"]) > 0. else "stable"
     return level, (f"Of {len(rows)} designs, number {best['design [-]']} is the best ({values}): {name} {digits(number(best[goal]), 3)} %, or "
-                   f"{digits(number(other[goal]), 3)} % with other samples, of which {digits(number(other['probability of squeal [%]']), 3)} % "
-                   f"squeal ({confidence(other)}).")
+                   f"{digits(number(other[goal]), 3)} % with other samples; {digits(number(other['probability of squeal [%]']), 3)} % of the other "
+                   f"samples squeal ({confidence(other)}).")
 
 
 def sections(results):

@@ -170,8 +170,8 @@ def notes_sections(results):
         thresholds = thresholds_of(results.table("sensitivities_thresholds"))
         pairs = sum(rows[0]["derivative of"] == "squared difference of the pair" for rows in thresholds)
         if pairs:
-            notes.append(f"{pairs} of {len(thresholds)} thresholds are exceptional points: two modes coalesce and λ has no derivative. "
-                         "The squared difference of the pair, (λ₁ − λ₂)², is smooth there and is differentiated instead.")
+            notes.append(f"Exceptional points: {pairs} of {len(thresholds)} thresholds. There, two modes coalesce and λ has no derivative. "
+                         "The squared difference of the pair, (λ₁ − λ₂)², is smooth and is differentiated instead.")
         for rows in thresholds:
             error = relative_error(rows, "mu per unit [-]", "estimated error per unit [-]")
             if rows[0]["derivative of"] == "none":

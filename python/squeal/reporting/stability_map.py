@@ -24,7 +24,7 @@ def verdict(results):
     if not growing:
         return "stable", f"None {where} is unstable."
     worst = max(growing, key=lambda row: number(row[RATE]))
-    return "unstable", (f"{len(growing)} {where} are unstable; the largest divergence rate is {digits(number(worst[RATE]), 3)} % "
+    return "unstable", (f"Unstable: {len(growing)} {where}; the largest divergence rate is {digits(number(worst[RATE]), 3)} % "
                         f"({worst['label'] or 'unnamed'}), at {symbol(stability.abscissa)} = {number(worst[stability.abscissa]):g} and {text_of(number(worst[stability.ordinate]), stability)}.")
 
 

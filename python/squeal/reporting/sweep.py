@@ -22,8 +22,8 @@ def verdict(results):
         weak = any(row["growing [-]"] not in ("", "0") for row in table.rows)
         return "stable", f"No mode grows {span}" + (f" by more than a divergence rate of {WEAK} %." if weak else ".")
     worst = max(strong, key=lambda row: number(row[RATE]))
-    return "unstable", (f"{len({row['branch [-]'] for row in strong})} modes exceed a divergence rate of {WEAK} % {span}: {first[0]['label']} at "
-                        f"{number(first[0][FREQUENCY]):.0f} Hz from {name} = {number(first[0][parameter]):.3g}; {worst['label']} at "
+    return "unstable", (f"Modes above a divergence rate of {WEAK} % {span}: {len({row['branch [-]'] for row in strong})}. The first is {first[0]['label']} at "
+                        f"{number(first[0][FREQUENCY]):.0f} Hz, from {name} = {number(first[0][parameter]):.3g}; {worst['label']} at "
                         f"{number(worst[FREQUENCY]):.0f} Hz "
                         f"grows fastest, with a divergence rate of {digits(number(worst[RATE]), 3)} % at {name} = {number(worst[parameter]):g}.")
 

@@ -66,7 +66,7 @@ def counterparts(runs):
     for dissipation, all_pairs, clustered in (("without", "147", "123"), ("with", "56", "48")):
         differing = [row for row in study(runs, dissipation, "modes") if row["reduced mode [-]"] != row["reduced mode by eq. 17 [-]"]]
         yield Number(f"{dissipation}: other counterparts", all_pairs, len(differing))
-        yield Number(f"{dissipation}: of these in clusters", clustered, sum(row["cluster [-]"] > 1 for row in differing))
+        yield Number(f"{dissipation}: other counterparts in clusters", clustered, sum(row["cluster [-]"] > 1 for row in differing))
 
 
 @entry("reduction", "Section 5: free, fixed and mixed bases by numbers and by frequencies of component modes")

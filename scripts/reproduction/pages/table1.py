@@ -56,7 +56,7 @@ def damped(runs):
             yield Number("  [Hz]", frequency, found[1])
     bending = rates("F1")
     for name, place, rate, frequency in (("growing", -1, "0.97", "3566"), ("next damped", 12, "-0.39", "3543"),
-                                         ("the one after", 13, "-0.31", "3521")):
+                                         ("second next damped", 13, "-0.31", "3521")):
         yield Number(f"F1, {name} [%]", rate, bending[place][0])
         yield Number("  [Hz]", frequency, bending[place][1])
     for name, places, least, most in (("neutral", slice(14, 23), "0.02", "0.09"), ("damped half", slice(0, 12), "-1.41", "-0.89")):
