@@ -67,7 +67,7 @@ namespace Squeal
               A.mass.apply(x, y);
               break;
             default:
-              throw_arpack("pdsaupd (unknown request)", ido, request.what);
+              throw_arpack("pdsaupd (unknown reverse communication flag ido)", ido, request.what);
           }
       }
     // Accept info = 1, which means that not all values converged within the allowed restarts: return the converged values

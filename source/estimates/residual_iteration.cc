@@ -212,7 +212,7 @@ namespace Squeal
     for (const double l : grown.modes.real_values)
       if (options.band.lists(l))
         modes.real_values.push_back(l);
-    modes.summary = text(grown.model.size(), " vectors, estimated error ", grown.worst_error, ", ", grown.n_growths, " extensions");
+    modes.summary = text(grown.model.size(), " vectors, estimated error ", grown.worst_error, ", extensions: ", grown.n_growths);
     return modes;
   }
 } // namespace Squeal

@@ -64,8 +64,9 @@ namespace Squeal
     {
       const std::vector<char> buffer = Utilities::pack(part, false);
       const unsigned long     size   = buffer.size();
-      AssertThrow(size <= static_cast<unsigned long>(std::numeric_limits<int>::max()), ExcMessage("a part of the model is too large for "
-                                                                                                  "one MPI message"));
+      if (size > static_cast<unsigned long>(std::numeric_limits<int>::max()))
+        throw MeshError("a part of the model exceeds 2 GB, the limit of an MPI message", "distribution of the mesh to the processes",
+                        "run with more processes, or use a coarser mesh");
       MPI_Send(&size, 1, MPI_UNSIGNED_LONG, process, 0, communicator);
       MPI_Send(buffer.data(), static_cast<int>(size), MPI_CHAR, process, 0, communicator);
     }

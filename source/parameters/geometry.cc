@@ -79,9 +79,8 @@ namespace Squeal
             const double distance = std::sqrt(std::pow(layout.radii[i] - layout.radii[j], 2) +
                                               4. * layout.radii[i] * layout.radii[j] * std::pow(std::sin(angle / 2.), 2));
             if (distance <= parameters.pin_diameter)
-              refuse(text("Geometry/", angles_name, ": pins ", i + 1, " and ", j + 1, " of this side overlap by ",
-                          parameters.pin_diameter - distance, " m: their axes are ", distance, " m apart, and their diameter is ",
-                          exact_text(parameters.pin_diameter), " m"),
+              refuse(text("Geometry/", angles_name, ": pins ", i + 1, " and ", j + 1, " of this side touch or overlap: their axes are ",
+                          distance, " m apart, and their diameter is ", exact_text(parameters.pin_diameter), " m"),
                      angles_name, text("move one of them in angle or radius (", radii_name, "), or make the pins smaller"));
           }
     }

@@ -138,7 +138,7 @@ class Import(ProgramTest):
 
     def test_abaqus(self):
         text = self.imported("brake.inp", "abaqus.msh", "--unit", "mm", *self.ABAQUS)
-        for line in ("volume disc: 72 hexahedron of ROTOR", "surface disc_contact: 6 faces of ROTOR_SURF", "left out: elements of type SPRINGA: 1"):
+        for line in ("volume disc: 72 hexahedron of ROTOR", "surface disc_contact: ROTOR_SURF (faces: 6)", "left out: elements of type SPRINGA: 1"):
             self.assertIn(line, text)
         self.assert_same_eigenvalues(eigenvalues(self.run_mesh("abaqus")), self.baseline)
         stub = (self.folder / "abaqus.prm").read_text(encoding="utf-8")

@@ -80,7 +80,7 @@ class Studies(ProgramTest):
             if name not in self.WITH_NAMES_ABOVE:
                 self.assertRegex(axes.get_ylabel(), r" \[(%|Hz|N|-)\]$", name)
             if name in self.WITH_NAMES_ABOVE or axes.get_xlabel() not in ("", "criterion"):
-                self.assertRegex(axes.get_xlabel(), r" \[(kHz|s of CPU|%|points|-)\]$", name)
+                self.assertRegex(axes.get_xlabel(), r" \[(kHz|s|%|points|-)\]$", name)
         key = {text.get_text() for legend in figure.legends for text in legend.get_texts()}
         self.assertEqual(key, {label for axes in figure.axes for label in axes.get_legend_handles_labels()[1]}, name)
 

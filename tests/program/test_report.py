@@ -181,7 +181,7 @@ class Reports(ProgramTest):
             self.assertAlmostEqual(x / float(row[ONSET]), 1, delta=1e-5)
             self.assertAlmostEqual(y / float(row[LARGEST]), 1, delta=1e-5)
         lines, = charts["variables_chart"]["data"]
-        self.assertEqual([axis["label"] for axis in lines["dimensions"]], ["Pin height", "Young modulus", "μ of 0.01 %", "largest rate [%]"])
+        self.assertEqual([axis["label"] for axis in lines["dimensions"]], ["Pin height", "Young modulus", "onset μ (0.01 %)", "largest rate [%]"])
         self.assertEqual(lines["dimensions"][0]["values"], [0.03, 0.034])
 
     def test_search(self):

@@ -20,8 +20,8 @@ namespace Squeal
   struct ChartOptions
   {
     double largest_circular_frequency = 0.;   ///< end of the band [rad/s]
-    double threshold_tolerance        = 1e-6; ///< largest interval of μ around a threshold or a crossing [-]
-    double smallest_step              = 1e-5; ///< steps of μ up to this length are not divided to distinguish modes [-]
+    double threshold_tolerance        = 1e-6; ///< largest interval of the varied parameter around a threshold or a crossing
+    double smallest_step              = 1e-5; ///< steps of the varied parameter up to this length are not divided to distinguish modes
     int    maximum_refinements        = 1000; ///< maximum number of refinement points in addition to the grid
   };
 

@@ -142,7 +142,7 @@ class Import:
         for name, members in self.volumes.items():
             shapes = collections.Counter(self.mesh.elements[n][0] for n, volume in self.volume_of.items() if volume == name)
             lines.append(f"  volume {name}: {', '.join(f'{n} {shape}' for shape, n in shapes.items())} of {', '.join(members)}")
-        lines += [f"  surface {name}: {len(faces)} faces of {', '.join(self.surfaces[name])}" for name, faces in self.faces.items()]
+        lines += [f"  surface {name}: {', '.join(self.surfaces[name])} (faces: {len(faces)})" for name, faces in self.faces.items()]
         named = {member for members in [*self.volumes.values(), *self.surfaces.values()] for member in members}
         faces = {number for members in self.surfaces.values() for member in members for number in self.mesh.element_sets.get(member, [])}
         left = collections.Counter(shape for number, (shape, _) in enumerate(self.mesh.elements)

@@ -17,7 +17,7 @@ def figures(results):
     if not variables or not any(solved):
         return {}
     end = results.number("Sweep/Last friction coefficient")
-    panels = ((ONSET, "label at 0.01 %", "\u03bc of 0.01 % [-]"), (LARGEST, "label of largest", "largest divergence rate [%]"))
+    panels = ((ONSET, "label at 0.01 %", "onset \u03bc (0.01 %) [-]"), (LARGEST, "label of largest", "largest divergence rate [%]"))
     labels = list(dict.fromkeys(label for _, column, _ in panels for label in table.texts(column) if label))
     marks = {label: style.mark_of(min(number, MOST_LABELS)) for number, label in enumerate(sorted(labels))}
     others = set(sorted(labels)[MOST_LABELS:])

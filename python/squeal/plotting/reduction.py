@@ -107,10 +107,10 @@ def cost_figure(candidates, with_friction):
     column = "div [-]" if with_friction else "frq [-]"
     label = f"largest {CRITERIA[column]} [-]"
     picture = style.Picture("Cost and accuracy of reduced bases", 2, 2, (5.4, 4.2))
-    times = ("time per friction coefficient" if with_friction else "solution time", "build time")
+    times = ("CPU time per friction coefficient" if with_friction else "CPU time of the solution", "CPU time of the basis")
     seconds = ([candidate.solve_seconds for candidate in candidates], [candidate.build_seconds for candidate in candidates])
     for panel, time, costs in zip(picture.panels, times, seconds):
-        style.prepare(panel, f"Error versus {time}", f"{time} [s of CPU]", label)
+        style.prepare(panel, f"Error versus {time}", f"{time} [s]", label)
         draw_costs(panel, candidates, column, costs)
     return picture.add_key()
 

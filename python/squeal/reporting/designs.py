@@ -94,7 +94,7 @@ def onset_section(results):
     return {"id": "designs_chart", "title": "Designs: onset of squeal and largest growth",
             "caption": "Each point is a design, with the label of its fastest growing mode. At the onset μ, a divergence rate exceeds "
                        f"0.01 %. Designs at the lower right are quiet. The study ends at μ = {end:g}.",
-            "data": traces, "layout": layout("μ of 0.01 %", "largest divergence rate [%]", showlegend=True)}
+            "data": traces, "layout": layout("onset μ (0.01 %)", "largest divergence rate [%]", showlegend=True)}
 
 
 def lines_section(results):
@@ -107,7 +107,7 @@ def lines_section(results):
         ticks = {"tickvals": list(range(len(names))), "ticktext": names} if names else {"tickformat": ".4~g"}
         dimensions.append({"label": name_of(name), "values": values, **ticks})
     onset, largest = [number(row[ONSET] or end) for row in rows], [number(row[LARGEST] or "0") for row in rows]
-    dimensions += [{"label": "μ of 0.01 %", "values": onset, "tickformat": ".4~g"},
+    dimensions += [{"label": "onset μ (0.01 %)", "values": onset, "tickformat": ".4~g"},
                    {"label": "largest rate [%]", "values": largest, "tickformat": ".4~g"}]
     by_rate = results.has("search") and results.parameter("Search/Goal") == "divergence rate"
     return {"id": "variables_chart", "title": "Which values make a design quiet",

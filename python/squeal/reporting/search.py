@@ -11,7 +11,7 @@ from squeal.reporting.designs import LARGEST, ONSET, about, design_text, end_of_
 
 TABLES = ("search", "designs")
 TITLES = {"search": "Designs in the order of evaluation", "full_order": "The best design at full order"}
-GOALS = {LARGEST: "largest divergence rate [%]", ONSET: "μ of 0.01 %"}
+GOALS = {LARGEST: "largest divergence rate [%]", ONSET: "onset μ (0.01 %)"}
 
 
 class Search:

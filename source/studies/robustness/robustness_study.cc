@@ -98,8 +98,9 @@ namespace Squeal
       const ErrorControlledSweep result = solve_points(model, points, n_training, tolerance, keep, "Samples");
       label();
       if (result.n_left > 0)
-        model.run.warn(text("samples without results within the tolerance of ", tolerance, ": ", result.n_left, ", because ",
-                            result.why_stopped, "; these samples count as undecided. Remove this cause, or raise the tolerance"));
+        model.run.warn(text("samples without results, or with an estimated error above the tolerance of ", tolerance, ": ", result.n_left,
+                            ", because ", result.why_stopped,
+                            "; these samples count as undecided. Remove this cause, or raise the tolerance"));
       return result.n_growths;
     }
 

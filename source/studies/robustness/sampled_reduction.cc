@@ -36,7 +36,7 @@ namespace Squeal
       {
         if (!systems.middles[i].linearisation.coupled.stiffness)
           throw ParameterError("samples of a system without a definite part are solved at full order, without a reduced model",
-                               where_requested, "set it to full or none, or set Study = sweep");
+                               where_requested, "set this parameter to full or none, or set Study = sweep");
         const std::vector<OperatingPoint> &points = systems.plan.regimes[i].points;
         for (std::size_t k = 1; systems.plan.scene != nullptr && k < systems.n_samples[i]; ++k)
           for (const auto &[name, value] : points[k].values)

@@ -55,7 +55,7 @@ namespace Squeal
                "the stiffness K - Omega^2 rho N has ", n + n_null, " non-positive eigenvalue", n + n_null == 1 ? "" : "s",
                ". The model does not contain centrifugal prestress, which is of the same order Omega^2 and stiffens the disc"),
           is_in_map ? "parameter Sweep/Last map value" : "parameter Operation/Rotation speed",
-          "lower it, or set Operation/Gyroscopic forces = false");
+          "reduce the speed, or set Operation/Gyroscopic forces = false");
     }
 
     /// Modes of the disc and of the pins alone, as a step of the run.
