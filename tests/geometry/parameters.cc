@@ -28,7 +28,7 @@ TEST(GeometryParameters, RefusalsNameParameterValueAndRemedy)
          {[](auto &p) { p.element_size = 0.1; }, {"Geometry/Element size is 0.1", "at most 0.0825"}},
          {[](auto &p) { p.bottom.radii[0] = 0.16; },
           {"Bottom pin radii: pin 1", "0.0165 m beyond the inner", "between 0.1765 m and 0.2895 m"}},
-         {[](auto &p) { p.bottom.angles[1] = -10.; }, {"Bottom pin angles: pins 1 and 2", "overlap by 0.0231", "0.052 m"}}})
+         {[](auto &p) { p.bottom.angles[1] = -10.; }, {"Bottom pin angles: pins 1 and 2", "axes are 0.028", "0.052 m"}}})
     expect_mentions(message<ParameterError>([&] { with(change).check(); }), mentions);
 
   // Pin positions are not checked for a user-defined plan
