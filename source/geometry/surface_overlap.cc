@@ -3,7 +3,6 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/geometry/surface_overlap.h>
 
-#include <boost/container/small_vector.hpp>
 #include <boost/iterator/function_output_iterator.hpp>
 #include <deal.II/base/bounding_box.h>
 #include <deal.II/numerics/rtree.h>
@@ -160,7 +159,7 @@ namespace Squeal
       return box;
     }
 
-    using Polygon = boost::container::small_vector<Vector2d, 12>;
+    using Polygon = std::vector<Vector2d>;
 
     double cross(const Vector2d &a, const Vector2d &b)
     {
