@@ -162,7 +162,7 @@ namespace Squeal
       return *std::move(known);
     run.progress.begin("Reference modes");
     Progress   silent;
-    Parameters parameters             = run.parameters;
+    Parameters parameters             = sweep_of(run.parameters);          // designs have no maps
     parameters.solvers.complex_solver = ComplexSolver::residual_iteration; // this solver needs no attachment modes in advance
     Run                     part(parameters, run, silent);
     const FrictionlessModes modes  = frictionless_modes(linearised_scene(scene, part), part, reference_margin);

@@ -40,8 +40,7 @@ namespace Squeal
       if (!parameters.operation.rotating_disc || !parameters.has_friction())
         return;
       const double speed = parameters.operation.rotation_speed, last = parameters.sweep.map_values.last;
-      const bool   is_in_map =
-        parameters.study->has("Sweep/Map parameter") && parameters.sweep.map_parameter == MapParameter::speed && last > speed;
+      const bool   is_in_map = parameters.maps_rotation() && last > speed;
       if (is_in_map)
         {
           coupled.values[BodyParameter::angular_velocity] = {last};

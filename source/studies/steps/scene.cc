@@ -131,7 +131,7 @@ namespace Squeal
     scene.elastic.values = bodies.values;
     // Maps over the speed vary the rotation terms, which therefore remain individual terms
     std::vector<Term> fixed = bodies.terms, varied;
-    if (parameters.study->has("Sweep/Map parameter") && parameters.sweep.map_parameter == MapParameter::speed)
+    if (parameters.maps_rotation())
       {
         const auto first =
           std::stable_partition(fixed.begin(), fixed.end(), [](const Term &term) { return term.kind != TermKind::rotation; });

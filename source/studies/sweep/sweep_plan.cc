@@ -25,7 +25,7 @@ namespace Squeal
             lines.push_back({Kind::map, operation, value, sweep.map_grid()});
             OperationParameters &varied                                                                = lines.back().operation;
             (sweep.map_parameter == MapParameter::load ? varied.load_per_side : varied.rotation_speed) = value;
-            if (sweep.map_parameter == MapParameter::speed && varied.rotating_disc)
+            if (parameters.maps_rotation())
               lines.back().values[BodyParameter::angular_velocity] = {value};
           }
       return lines;
