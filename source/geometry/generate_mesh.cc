@@ -255,6 +255,7 @@ namespace Squeal
     }
 
     Mesh mesh_once(const GeometryParameters       &parameters,
+                   const double                    unit,
                    const std::string              &where,
                    const std::vector<std::string> &additional_surfaces,
                    const ContactParameters        &contact,
@@ -287,7 +288,7 @@ namespace Squeal
             mesh.notes.push_back(text("left-handed cells: ", n, " of ", mesh.cells.size(), "; their nodes have been reordered"));
           return finished(std::move(mesh));
         }
-      Plan plan = make_plan(gmsh, {parameters.pin_rings, parameters.pin_grading}, where);
+      Plan plan = make_plan(gmsh, {parameters.pin_rings, parameters.pin_grading}, unit, where);
       check_least_memory(expected_size(plan, parameters), where, communicator);
       if (parameters.outlines == Outlines::true_area)
         enlarge_to_true_area(plan);
@@ -309,10 +310,11 @@ namespace Squeal
     const std::string  where       = given.path();
     const bool         is_built_in = is_supplied(where) && fs::path(where).filename() == built_in_geometry;
     const int          exponent    = is_built_in ? decimal_exponent(given.disc_outer_radius) : 0;
+    const double       unit        = std::pow(10., exponent); // [m]
     GeometryParameters parameters  = in_unit(given, exponent);
     if (is_built_in)
       check_least_memory(expected_size(parameters), where, communicator);
-    Mesh                     mesh   = mesh_once(parameters, where, additional_surfaces, contact, communicator);
+    Mesh                     mesh   = mesh_once(parameters, unit, where, additional_surfaces, contact, communicator);
     std::vector<std::string> needed = additional_surfaces;
     for (const TiedPair &pair : contact.tied)
       needed.insert(needed.end(), {pair.slave, pair.master});
@@ -322,11 +324,10 @@ namespace Squeal
          ++attempt)
       {
         parameters.element_size *= smaller_next_time;
-        mesh = mesh_once(parameters, where, additional_surfaces, contact, communicator);
+        mesh = mesh_once(parameters, unit, where, additional_surfaces, contact, communicator);
       }
-    if (exponent != 0)
-      for (Mesh::Point &point : mesh.points)
-        point *= std::pow(10., exponent);
+    for (Mesh::Point &point : mesh.points)
+      point *= unit;
     check_mesh(mesh);
     if (!is_built_in) // the supplied plan is conforming by construction
       {

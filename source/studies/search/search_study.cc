@@ -203,13 +203,14 @@ namespace Squeal
       starts.push_back(points[i]);
     const std::vector<std::string> ends = search(starts, evaluations);
 
-    const DesignResult &winner =
-      *std::min_element(evaluations.results.begin(), evaluations.results.end(),
-                        [&](const DesignResult &a, const DesignResult &b) { return objective(a, parameters) < objective(b, parameters); });
-    const auto design = parameters_of(run, evaluations.plan, winner.number);
-    if (!design || winner.outcome != DesignOutcome::solved)
+    // Designs without a result come last, even if a solved design has a worse objective
+    const auto rank = [&](const DesignResult &row) { return std::pair(row.outcome != DesignOutcome::solved, objective(row, parameters)); };
+    const DesignResult &winner = *std::min_element(evaluations.results.begin(), evaluations.results.end(),
+                                                   [&](const DesignResult &a, const DesignResult &b) { return rank(a) < rank(b); });
+    if (winner.outcome != DesignOutcome::solved)
       throw SolverError("no design of the search could be solved; one reason: " + winner.reason, "search",
                         "remove the cause, or choose other ranges in Designs/Variables");
+    const auto             design  = parameters_of(run, evaluations.plan, winner.number);
     std::vector<FullOrder> checked = {at_full_order(*design, parameters.sweep.friction_coefficients.last, run)};
     if (winner.worst && winner.worst->friction_coefficient != parameters.sweep.friction_coefficients.last)
       checked.push_back(at_full_order(*design, winner.worst->friction_coefficient, run));
