@@ -143,7 +143,7 @@ namespace Squeal
   {
     try
       {
-        Parameters result = with_design(run.parameters, plan.names, plan.designs[design - 1]);
+        Parameters result = with_design(run.parameters, plan.names, plan.designs[design - 1], plan.where_is(design - 1));
         result.study      = &sweep_study;
         result.check();
         return result;

@@ -42,8 +42,8 @@ namespace Squeal
     std::vector<DesignVariable> result = design_variables(designs);
     for (const DesignVariable &variable : result)
       if (!variable.is_range)
-        throw ParameterError("a search requires ranges, but " + in_quotes(variable.name) + " has a list of values",
-                             "parameter Designs/Variables", "write Section/Name = a to b");
+        throw ParameterError("a search requires ranges, but " + in_quotes(variable.name) + " has a list of values", where_variables,
+                             "write Section/Name = a to b");
     return result;
   }
 

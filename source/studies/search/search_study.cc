@@ -35,6 +35,7 @@ namespace Squeal
         , variables(design_variables(run.parameters.designs))
         , store(checkpoint_folder(run.folder().name()), design_key(run, scene, {}), run.communicator)
       {
+        plan.where_names = where_variables;
         for (const DesignVariable &variable : variables)
           plan.names.push_back(variable.name);
         // Count the results of all designs now, because the search requests its designs step by step

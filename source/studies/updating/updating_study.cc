@@ -18,8 +18,6 @@ namespace Squeal
 {
   namespace
   {
-    constexpr const char *where_variables_are = "parameter Designs/Variables";
-
     /// A measured number and its computed values before and after the fit.
     struct FittedNumber
     {
@@ -368,7 +366,7 @@ namespace Squeal
     std::vector<FittedParameter> parameters_of_scene(const Parameters &parameters)
     {
       return fitted_parameters(parameters.designs,
-                               [&](const std::string &name) { return nominal_value(parameters, name, where_variables_are); });
+                               [&](const std::string &name) { return nominal_value(parameters, name, where_variables); });
     }
 
     /// Parameters of a stability run.
@@ -387,12 +385,12 @@ namespace Squeal
       {
         if (!variable.is_range || variable.by_ratio || !variable.levels.empty())
           throw ParameterError("a fit requires a range of the form a to b, but " + in_quotes(variable.name) + " has another form",
-                               where_variables_are, "write Section/Name = a to b");
+                               where_variables, "write Section/Name = a to b");
         const double start = current(variable.name);
         if (start < variable.first || start > variable.last)
           throw ParameterError("the start value " + variable.name + " = " + exact_text(start) + " is outside the range " +
                                  exact_text(variable.first) + " to " + exact_text(variable.last),
-                               where_variables_are, "set the parameter to a value in the range, or widen the range");
+                               where_variables, "set the parameter to a value in the range, or widen the range");
         result.push_back({variable.name, start, variable.first, variable.last});
       }
     return result;
