@@ -3,6 +3,7 @@
 #include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/base/groups.h>
+#include <squeal/base/text.h>
 #include <squeal/estimates/reduction_errors.h>
 #include <squeal/estimates/mode_groups.h>
 #include <squeal/linear_algebra/communication.h>

@@ -186,7 +186,7 @@ namespace Squeal
         State        state = worst_state(system, inverse, model, friction_coefficients, options.band);
         const double worst = worst_error(state);
 
-        progress.update(text(model.size(), " vectors, estimated error ", worst));
+        progress.update(text(counted(model.size(), "vector"), ", estimated error ", worst));
         if (worst <= options.tolerance)
           return {std::move(model), std::move(state.front().modes), std::move(state.front().estimates), worst, step};
 

@@ -17,9 +17,9 @@ namespace Squeal
     /// Rejects mid-edge nodes so far from the middle of their edge that the edge folds back or bulges beyond a half circle.
     void check_middles(const Mesh &mesh)
     {
-      constexpr double           farthest = 0.5; // relative to the length of the edge
-      std::set<unsigned int>     off;
-      std::optional<std::size_t> first;
+      constexpr double                                    farthest = 0.5; // relative to the length of the edge
+      std::set<unsigned int>                              off;
+      std::optional<std::pair<std::size_t, unsigned int>> first; // element and node
       for (std::size_t element = 0; element < mesh.cells.size(); ++element)
         {
           const Mesh::Cell &cell    = mesh.cells[element];
@@ -31,14 +31,14 @@ namespace Squeal
               if (mesh.points[node].distance(p + (q - p) / 2.) <= farthest * p.distance(q))
                 continue;
               off.insert(node);
-              first = first.value_or(element);
+              first = first.value_or(std::pair(element, node));
             }
         }
       if (first)
-        throw MeshError(text(off.size(), off.size() == 1 ? " second-order node is" : " second-order nodes are",
-                             " farther from the middle of the edge than half the length of the edge; one such node is at (",
-                             mesh.points[*off.begin()], ") m"),
-                        describe_cell(mesh, *first),
+        throw MeshError(text(counted(off.size(), "second-order node is", "second-order nodes are"),
+                             " farther from the middle of the edge than half its length; one such node is at (", mesh.points[first->second],
+                             ") m"),
+                        describe_cell(mesh, first->first),
                         "move second-order nodes to the middle of their edges, or use smaller elements on curved surfaces");
     }
 

@@ -174,10 +174,11 @@ namespace Squeal
       const std::string other_formats = "; for formats from which Gmsh reads no names (.unv, .inp, .bdf, ...), name the parts in a .geo "
                                         "after Merge, or convert the file to a .msh with physical names";
       if (mesh.dimension() < 2)
-        throw MeshError(mesh.n_unnamed_volume_elements == 0 ?
-                          "The geometry has neither physical volumes nor physical surfaces" :
-                          text("The mesh has ", mesh.n_unnamed_volume_elements, " volume elements, but no physical volumes or surfaces"),
-                        where, "name the volumes of a solid 'disc', 'pin_1', ..., or the surface of a plan 'disc'" + other_formats);
+        throw MeshError(
+          mesh.n_unnamed_volume_elements == 0 ?
+            "The geometry has neither physical volumes nor physical surfaces" :
+            text("The mesh has ", counted(mesh.n_unnamed_volume_elements, "volume element"), ", but no physical volumes or surfaces"),
+          where, "name the volumes of a solid 'disc', 'pin_1', ..., or the surface of a plan 'disc'" + other_formats);
       constexpr const char *kinds[] = {"point", "curve", "surface", "volume"};
       for (const GmshMesh::Group &group : mesh.groups)
         if (group.name.empty() && (mesh.dimension() == 2 || group.dimension >= 2))
@@ -255,6 +256,7 @@ namespace Squeal
     }
 
     Mesh mesh_once(const GeometryParameters       &parameters,
+                   const double                    unit,
                    const std::string              &where,
                    const std::vector<std::string> &additional_surfaces,
                    const ContactParameters        &contact,
@@ -287,7 +289,7 @@ namespace Squeal
             mesh.notes.push_back(text("left-handed cells: ", n, " of ", mesh.cells.size(), "; their nodes have been reordered"));
           return finished(std::move(mesh));
         }
-      Plan plan = make_plan(gmsh, {parameters.pin_rings, parameters.pin_grading}, where);
+      Plan plan = make_plan(gmsh, {parameters.pin_rings, parameters.pin_grading}, unit, where);
       check_least_memory(expected_size(plan, parameters), where, communicator);
       if (parameters.outlines == Outlines::true_area)
         enlarge_to_true_area(plan);
@@ -309,10 +311,11 @@ namespace Squeal
     const std::string  where       = given.path();
     const bool         is_built_in = is_supplied(where) && fs::path(where).filename() == built_in_geometry;
     const int          exponent    = is_built_in ? decimal_exponent(given.disc_outer_radius) : 0;
+    const double       unit        = std::pow(10., exponent); // [m]
     GeometryParameters parameters  = in_unit(given, exponent);
     if (is_built_in)
       check_least_memory(expected_size(parameters), where, communicator);
-    Mesh                     mesh   = mesh_once(parameters, where, additional_surfaces, contact, communicator);
+    Mesh                     mesh   = mesh_once(parameters, unit, where, additional_surfaces, contact, communicator);
     std::vector<std::string> needed = additional_surfaces;
     for (const TiedPair &pair : contact.tied)
       needed.insert(needed.end(), {pair.slave, pair.master});
@@ -322,11 +325,10 @@ namespace Squeal
          ++attempt)
       {
         parameters.element_size *= smaller_next_time;
-        mesh = mesh_once(parameters, where, additional_surfaces, contact, communicator);
+        mesh = mesh_once(parameters, unit, where, additional_surfaces, contact, communicator);
       }
-    if (exponent != 0)
-      for (Mesh::Point &point : mesh.points)
-        point *= std::pow(10., exponent);
+    for (Mesh::Point &point : mesh.points)
+      point *= unit;
     check_mesh(mesh);
     if (!is_built_in) // the supplied plan is conforming by construction
       {

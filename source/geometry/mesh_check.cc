@@ -221,33 +221,28 @@ namespace Squeal
 
   unsigned int make_right_handed(Mesh &mesh)
   {
-    std::vector<std::size_t> reordered;
-    for (std::size_t element = 0; element < mesh.cells.size(); ++element)
+    unsigned int n_reordered = 0;
+    for (Mesh::Cell &cell : mesh.cells)
       {
-        Mesh::Cell &cell    = mesh.cells[element];
-        const auto  corners = scaled_jacobians(mesh, cell);
+        const auto corners = scaled_jacobians(mesh, cell);
         if (std::any_of(corners.begin(), corners.end(), [](const double corner) { return !(corner < 0.); }))
           continue;
         const Mesh::Nodes given = cell.nodes;
         const auto        from  = mirrored_nodes(cell.shape, mesh.degree);
         for (unsigned int i = 0; i < from.size(); ++i)
           cell.nodes[i] = given[from[i]];
-        reordered.push_back(element);
+        ++n_reordered;
       }
-    if (reordered.empty())
+    if (n_reordered == 0)
       return 0;
 
     const std::vector<CellFace> faces = all_faces(mesh);
     for (std::size_t i = 0; i + 1 < faces.size(); ++i)
       if (faces[i].key == faces[i + 1].key && turn_alike(faces[i], faces[i + 1]))
-        {
-          const auto element = std::find_if(reordered.begin(), reordered.end(),
-                                            [&](const std::size_t e) { return e == faces[i].cell || e == faces[i + 1].cell; });
-          throw MeshError("Two elements lie on the same side of their common face: one of them is inverted, or they overlap",
-                          describe_cell(mesh, element == reordered.end() ? reordered[0] : *element),
-                          "correct the order of the nodes of these elements, or remove overlapping elements");
-        }
-    return reordered.size();
+        throw MeshError("Two elements lie on the same side of their common face: one of them is inverted, or they overlap",
+                        describe_cell(mesh, faces[i].cell) + " and " + describe_cell(mesh, faces[i + 1].cell),
+                        "correct the order of the nodes of these elements, or remove overlapping elements");
+    return n_reordered;
   }
 
   namespace

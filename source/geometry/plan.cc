@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 #include <squeal/base/exceptions.h>
+#include <squeal/base/text.h>
 #include <squeal/geometry/mesh.h>
 #include <squeal/geometry/pin_grid.h>
 #include <squeal/geometry/plan.h>
@@ -75,7 +76,7 @@ namespace Squeal
 
     // ------------------------------------------------------------------- checks
 
-    void check_joined(const Plan &plan, const std::string &where)
+    void check_joined(const Plan &plan, const double unit, const std::string &where)
     {
       double smallest_edge = 1e300;
       for (const Plan::Face &face : plan.faces)
@@ -89,8 +90,8 @@ namespace Squeal
       for (auto a = points.begin(); a != points.end(); ++a)
         for (auto b = a + 1; b != points.end() && (*b)[0] - (*a)[0] <= tolerance; ++b)
           if (std::abs((*b)[1] - (*a)[1]) <= tolerance)
-            throw MeshError("Two nodes of the plan coincide at (" + std::to_string((*a)[0]) + ", " + std::to_string((*a)[1]) +
-                              ") m: neighbouring surfaces are not joined",
+            throw MeshError(text("Two nodes of the plan coincide at (", unit * (*a)[0], ", ", unit * (*a)[1],
+                                 ") m: neighbouring surfaces are not joined"),
                             where, "use the same curves for neighbouring surfaces, or join them with Coherence");
     }
 
@@ -244,7 +245,7 @@ namespace Squeal
           {
             const auto &[x, y, z] = mesh.points[node];
             if (std::abs(z) > 1e-9 * (std::abs(x) + std::abs(y)))
-              throw MeshError("The plan has a node at z = " + std::to_string(z) + " m", where,
+              throw MeshError(text("The plan has a node at z = ", z, " m"), where,
                               "draw the plan in the plane z = 0, or define physical volumes for a solid");
             plan_node[node] = plan.points.size();
             plan.points.emplace_back(x, y);
@@ -307,7 +308,7 @@ namespace Squeal
     , cross(a[0] * b[1] - a[1] * b[0])
   {}
 
-  Plan make_plan(const GmshMesh &mesh, const PinRings &rings, const std::string &where)
+  Plan make_plan(const GmshMesh &mesh, const PinRings &rings, const double unit, const std::string &where)
   {
     PlanReader reader(mesh, rings, where);
     const auto for_groups = [&](const int dimension, void (PlanReader::*add)(const GmshMesh::Group &)) {
@@ -328,7 +329,7 @@ namespace Squeal
       return std::make_tuple(a.side, a.name.size(), a.name) < std::make_tuple(b.side, b.name.size(), b.name);
     });
 
-    check_joined(plan, where);
+    check_joined(plan, unit, where);
     check_pins(plan, where);
     const std::set<Plan::Edge> outline = sorted_edges(boundary_edges(plan.faces));
     for (const Plan::Curve &curve : plan.curves)

@@ -100,7 +100,7 @@ namespace Squeal
               else
                 length *= std::clamp(0.8 / step.size, 0.1, 0.5);
             }
-          progress.update(std::to_string(determinant.n_points) + " points of the contour");
+          progress.update(counted(determinant.n_points, "point") + " of the contour");
         }
       count.n_points += determinant.n_points;
 

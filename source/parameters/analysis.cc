@@ -89,9 +89,10 @@ namespace Squeal
                      "Sparse direct solver for positive definite matrices. `automatic`: CHOLMOD on one process, MUMPS on several.");
     declarations.add(
       "Threads", n_threads, "none",
-      "Number of threads per process, used for concurrent friction coefficients, matrix products, solves and large factorisations. 0: "
-      "OMP_NUM_THREADS, or the number of cores that the process may use. The number of threads affects results only through rounding "
-      "errors.",
+      "Number of threads per process, used for concurrent friction coefficients, matrix products, solves and large factorisations. 0: the "
+      "(first) number in OMP_NUM_THREADS; if it is not set, the number of cores of the machine divided by the number of MPI processes on "
+      "it, or the number of cores to which the process is bound, whichever is smaller. The number of threads affects results only through "
+      "rounding errors.",
       {0, 1024});
     declarations.add("BLAS threads", blas_threads, "none",
                      "Number of threads of dense kernels per process; more than one thread is useful only on idle cores.", {1, 256});

@@ -31,8 +31,7 @@ namespace Squeal
     /// Maximum number of designs: a larger number is probably a typo, because full grids grow quickly.
     constexpr std::size_t most_designs = 100000;
 
-    constexpr const char *where_variables = "parameter Designs/Variables";
-    const std::string     how_to_write    = "write Section/Name = a, b, c or Section/Name = a to b in n";
+    const std::string how_to_write = "write Section/Name = a, b, c or Section/Name = a to b in n";
 
     /// Value of a range, rounded to six digits, or to more digits if the range is narrow, so that designs differ.
     std::string rounded(const double value, const double first, const double last)
@@ -89,7 +88,7 @@ namespace Squeal
     }
 
     /// Path and index of "Section/Name[3]"; the index is zero if the name has no index.
-    std::pair<std::string, unsigned int> split_index(const std::string &name, const std::string &where = where_variables)
+    std::pair<std::string, unsigned int> split_index(const std::string &name, const std::string &where)
     {
       const auto bracket = name.find('[');
       if (bracket == std::string::npos)
@@ -247,7 +246,7 @@ namespace Squeal
     }
 
     /// Position and length of the k-th number in a string.
-    std::pair<std::size_t, std::size_t> place_of_number(const std::string &text, const unsigned int k)
+    std::pair<std::size_t, std::size_t> place_of_number(const std::string &text, const unsigned int k, const std::string &where)
     {
       const auto   is_of_name = [](const char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '.'; };
       unsigned int n          = 0;
@@ -267,21 +266,20 @@ namespace Squeal
             return {i, end - start};
           i += end - start;
         }
-      throw ParameterError(
-        Squeal::text("the value ", in_quotes(text), " has ", n, n == 1 ? " number" : " numbers", ", but number ", k, " is varied"),
-        where_variables, "lower the index, or remove it to vary the whole value");
+      throw ParameterError(Squeal::text("the value ", in_quotes(text), " has ", counted(n, "number"), ", but number ", k, " is varied"),
+                           where, "lower the index, or remove it to vary the whole value");
     }
   } // namespace
 
-  std::string number_of(const std::string &text, const unsigned int k)
+  std::string number_of(const std::string &text, const unsigned int k, const std::string &where)
   {
-    const auto [place, length] = place_of_number(text, k);
+    const auto [place, length] = place_of_number(text, k, where);
     return text.substr(place, length);
   }
 
-  std::string with_number(const std::string &text, const unsigned int k, const std::string &value)
+  std::string with_number(const std::string &text, const unsigned int k, const std::string &value, const std::string &where)
   {
-    const auto [place, length] = place_of_number(text, k);
+    const auto [place, length] = place_of_number(text, k, where);
     return text.substr(0, place) + value + text.substr(place + length);
   }
 
@@ -358,28 +356,31 @@ namespace Squeal
     return plan;
   }
 
-  Parameters with_design(const Parameters &parameters, const std::vector<std::string> &names, const std::vector<std::string> &values)
+  Parameters with_design(const Parameters               &parameters,
+                         const std::vector<std::string> &names,
+                         const std::vector<std::string> &values,
+                         const std::string              &where)
   {
     Parameters result = parameters;
     for (std::size_t v = 0; v < names.size(); ++v)
       if (!values[v].empty())
         for (const std::string &name : split_string_list(names[v], '+'))
           {
-            const auto [path, k] = split_index(name);
-            result.set(path, where_variables,
-                       [&, k = k](const std::string &current) { return k == 0 ? values[v] : with_number(current, k, values[v]); });
+            const auto [path, k] = split_index(name, where);
+            result.set(path, where,
+                       [&, k = k](const std::string &current) { return k == 0 ? values[v] : with_number(current, k, values[v], where); });
           }
     if (result.goal != AccuracyGoal::as_given)
       result = with_goal(result);
     return result;
   }
 
-  std::string current_value(const Parameters &parameters, const std::string &name)
+  std::string current_value(const Parameters &parameters, const std::string &name, const std::string &where)
   {
-    const auto [path, k] = split_index(split_string_list(name, '+').front());
+    const auto [path, k] = split_index(split_string_list(name, '+').front(), where);
     Parameters  copy     = parameters;
     std::string result;
-    copy.set(path, where_variables, [&result](const std::string &current) { return result = current; });
-    return k == 0 ? result : number_of(result, k);
+    copy.set(path, where, [&result](const std::string &current) { return result = current; });
+    return k == 0 ? result : number_of(result, k, where);
   }
 } // namespace Squeal

@@ -41,10 +41,11 @@ namespace Squeal
       "coefficient of the section Sweep. `probability`: minimise the probability of squeal with the uncertain parameters of "
       "Robustness/Distributions. `quantile`: minimise a quantile of the largest divergence rate of the samples.");
     declarations.add("Quantile", quantile, "none", "Probability level of the quantile if Goal = quantile.", {0.01, 0.999});
-    declarations.add("Method", method, "Derivative-free method of NLopt.");
-    declarations.add("Samples", n_samples, "none",
-                     "Number of points of a Sobol sequence that are evaluated first; the method starts from the best of these points.",
-                     {1., 1e5});
+    declarations.add("Method", method, "Derivative-free method of NLopt, started from each of the best two points of Samples.");
+    declarations.add(
+      "Samples", n_samples, "none",
+      "Number of points of a Sobol sequence that are evaluated first; the method starts from each of the best two of these points.",
+      {1., 1e5});
     declarations.add("Evaluations", n_evaluations, "none", "Maximum number of solved designs, including the samples.", {1., 1e5});
     declarations.add("First step", first_step, "none", "First step of the method, as a fraction of each range.", {1e-6, 0.5});
     declarations.add("Smallest step", smallest_step, "none", "The method ends when its steps are smaller than this fraction of each range.",

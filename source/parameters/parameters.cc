@@ -281,6 +281,11 @@ namespace Squeal
     return reduction.problem == ReductionProblem::friction || system || !study->has("Reduction/Problem");
   }
 
+  bool Parameters::maps_rotation() const
+  {
+    return operation.rotating_disc && sweep.map_parameter == MapParameter::speed && study->has("Sweep/Map parameter");
+  }
+
   bool Parameters::solves_by(const ComplexSolver solver) const
   {
     return has_friction() && solvers.complex_solver == solver;

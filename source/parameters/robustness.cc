@@ -109,13 +109,17 @@ namespace Squeal
     declarations.add(
       "Distributions", distributions,
       "Uncertain parameters, as `Section/Name = distribution; ...`: uniform A to B; normal MEAN, DEVIATION, truncated at three standard "
-      "deviations or, with `in A to B`, at A and B; lognormal MEAN, DEVIATION (of the parameter, not of its logarithm); table A, B, C with "
-      "equally probable values. % means percent of the nominal value. If an entry ends with `for each pin`, an independent value is drawn "
-      "for each pin. Names are written as in Designs/Variables; with a system file, they are names of its parameters.");
+      "deviations from the mean or, with `in A to B`, at A and B (mean and deviation before truncation); lognormal MEAN, "
+      "DEVIATION (of the parameter, not of its logarithm); table A, B, C with equally probable values. If all numbers of an entry end with "
+      "%, they are percentages of the nominal value, which must be positive. If an entry ends with `for each pin`, each volume of a pin "
+      "with the constants of Pin material has an independent value; this is available for Young modulus, Density, Rayleigh alpha and "
+      "Rayleigh beta of Pin material. Names are written as in Designs/Variables; with a system file, they are names of its parameters.");
     declarations.add("Correlations", correlations,
                      "Correlation coefficients of the normal scores of two parameters (normal copula), as `name, name = value; ...`.");
-    declarations.add("Number of samples", n_samples, "none", "Number of independent samples from which the probabilities are computed.",
-                     {10., 1e6});
+    declarations.add(
+      "Number of samples", n_samples, "none",
+      "Number of independent samples from which the probabilities are computed; rounded up to an even number for Sobol indices.",
+      {10., 1e6});
     declarations.add("Seed", seed, "none", "Seed of the random number generator; the same seed generates the same samples.",
                      {0., 2147483647.});
     declarations.add("Tolerance", tolerance, "none", "Maximum estimated relative error of lambda at every sample.", {1e-12, 0.1});

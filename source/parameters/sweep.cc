@@ -70,8 +70,9 @@ namespace Squeal
                      "Maximum estimated relative error of lambda, for every mode at every value of the sweep.", {1e-10, 1e-2});
     declarations.add(
       "Maximum basis", maximum_basis, "vectors",
-      "Maximum size of the reduced basis, which must be at least the number of real modes. If a sweep requires a larger basis, only the "
-      "values that meet the tolerance are written.",
+      "Size beyond which the reduced basis is not enriched; it contains all real modes even if there are more. If a sweep requires a "
+      "larger basis, only the values that meet the tolerance are written, and a design fails. The limit is 900 for a common basis of "
+      "several designs, and 1500 for samples of uncertain parameters.",
       {1});
     declarations.add("Threshold tolerance", threshold_tolerance, "none",
                      "Maximum width of the interval of the varied parameter that encloses a threshold.", {1e-13, 1e-2});

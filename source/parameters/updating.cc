@@ -10,9 +10,11 @@ namespace Squeal
     declarations.add(
       "Measured modes", measured_modes,
       "CSV file of measured modes, to which the parameters in Designs/Variables are fitted within their ranges. Columns: `state` "
-      "(component: free disc, or pins with sliding contact; coupled: without friction; complex: at Operation/Friction coefficient), "
-      "`label` and `frequency [Hz]`; optional: `member`, `deviation [Hz]`, `damping ratio [%]`, `damping deviation [%]`. The file is "
-      "searched for in the folder of the parameter file, then in the current directory. Empty: the measured modes of the system file.");
+      "(component: free disc, or pins with sliding contact, not with a system file; coupled: without friction; complex: at "
+      "Operation/Friction coefficient or at the values of the system file), `label` and `frequency [Hz]`; optional: `member` (lowest, "
+      "highest or k for one of several modes with the label; empty: their mean), `deviation [Hz]` (for all modes or for none), and "
+      "`damping ratio [%]` with `damping deviation [%]` (for complex modes). The file is searched for in the folder of the parameter "
+      "file, then in the current directory. Empty: the file that the system file names; without a system file, a name is required.");
     declarations.add(
       "Sensors", sensors,
       "CSV file of sensors and measured shapes; modes are then paired by shapes instead of labels. Columns: `x [m]`, `y [m]`, `z [m]`, "

@@ -69,9 +69,10 @@ namespace Squeal
    * - other curves: parts of the boundary of the annulus.
    *
    * Throws a MeshError that names @p where for other names and for inconsistent plans: elements other than four-node quadrilaterals,
-   * disconnected surfaces, open curves, touching pins on one side, a named curve inside the annulus, no pin.
+   * disconnected surfaces, open curves, touching pins on one side, a named curve inside the annulus, no pin. @p unit: unit of the nodal
+   * coordinates [m], for positions in these messages.
    */
-  Plan make_plan(const GmshMesh &mesh, const PinRings &rings, const std::string &where);
+  Plan make_plan(const GmshMesh &mesh, const PinRings &rings, double unit, const std::string &where);
 
   /**
    * Moves the nodes of round outlines outwards until the polygon has the area of the circle: by the factor √(π r² / A), where A is the area

@@ -17,7 +17,14 @@ namespace Squeal
 
     std::string              where_names; ///< source of the names for messages: parameter, or file and line
     std::vector<std::string> where;       ///< file and line of each design; empty: as where_names
+
+    const std::string &where_is(const std::size_t design) const
+    {
+      return where.empty() ? where_names : where[design];
+    }
   };
+
+  inline constexpr const char *where_variables = "parameter Designs/Variables"; ///< source of variables, for messages
 
   /// A varied parameter with a list of values or a range.
   struct DesignVariable
@@ -51,18 +58,21 @@ namespace Squeal
   /// The plan as a CSV file for Designs/Plan = file.
   std::string as_csv(const DesignPlan &plan);
 
-  /// @p parameters with the values of a design, without a check of combinations. Throws ParameterError for an invalid value, and for an
-  /// unknown parameter with the nearest known name.
-  Parameters with_design(const Parameters &parameters, const std::vector<std::string> &names, const std::vector<std::string> &values);
+  /// @p parameters with the values of a design, without a check of combinations. Throws a ParameterError that names @p where for an invalid
+  /// value, and for an unknown parameter with the nearest known name.
+  Parameters with_design(const Parameters               &parameters,
+                         const std::vector<std::string> &names,
+                         const std::vector<std::string> &values,
+                         const std::string              &where = where_variables);
 
   /// Current value of the first parameter of a variable. Throws ParameterError as with_design() does.
-  std::string current_value(const Parameters &parameters, const std::string &name);
+  std::string current_value(const Parameters &parameters, const std::string &name, const std::string &where = where_variables);
 
   /// The k-th number in @p text, counted from one; digits in names do not count. Throws ParameterError if there are fewer numbers.
-  std::string number_of(const std::string &text, unsigned int k);
+  std::string number_of(const std::string &text, unsigned int k, const std::string &where = where_variables);
 
   /// @p text with the number from number_of() replaced. Throws ParameterError if there are fewer numbers.
-  std::string with_number(const std::string &text, unsigned int k, const std::string &value);
+  std::string with_number(const std::string &text, unsigned int k, const std::string &value, const std::string &where = where_variables);
 
   /// Path of the file of designs: in the folder of the parameter file or in the current directory; empty unless Designs/Plan = file.
   std::string designs_file(const Parameters &parameters);

@@ -75,7 +75,7 @@ namespace Squeal
   {
     SearchGoal   goal          = SearchGoal::divergence_rate;
     SearchMethod method        = SearchMethod::subplex;
-    unsigned int n_samples     = 10;    ///< samples of the Sobol sequence; the method starts from the best of them
+    unsigned int n_samples     = 10;    ///< samples of the Sobol sequence; the method starts from the best two of them
     unsigned int n_evaluations = 40;    ///< maximum number of evaluations, including these samples
     double       quantile      = 0.95;  ///< level of the quantile for the goal quantile [-]
     double       first_step    = 0.15;  ///< initial step of the method, as a fraction of each range [-]

@@ -74,6 +74,9 @@ namespace Squeal
     /// True if the study computes modes with friction; otherwise the friction coefficient affects only the steady sliding state.
     bool has_friction() const;
 
+    /// True if the rotation terms of the equations of motion vary along the second axis of a map.
+    bool maps_rotation() const;
+
     /// True if this solver computes the complex modes at Operation/Friction coefficient.
     bool solves_by(ComplexSolver solver) const;
 

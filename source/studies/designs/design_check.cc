@@ -65,14 +65,7 @@ namespace Squeal
     {
       for (const std::string &variable : names)
         for (const std::string &name : split_string_list(variable, '+'))
-          try
-            {
-              current_value(parameters, name);
-            }
-          catch (const ParameterError &error)
-            {
-              throw ParameterError(error.reason, where, error.change);
-            }
+          current_value(parameters, name, where);
     }
 
     [[noreturn]] void refuse_unused(const UnusedParameter &variable, const std::string &where)
@@ -136,8 +129,7 @@ namespace Squeal
               if (of_scene && of_scene->reason == alone->reason)
                 throw ParameterError(*of_scene);
               throw ParameterError(alone->reason,
-                                   (plan.where.empty() ? plan.where_names : plan.where[i]) + ", design " + std::to_string(i + 1) + ", " +
-                                     plan.names[v] + " = " + legible(value),
+                                   plan.where_is(i) + ", design " + std::to_string(i + 1) + ", " + plan.names[v] + " = " + legible(value),
                                    alone->change);
             }
         }
@@ -182,7 +174,7 @@ namespace Squeal
   void check_ranges(const Parameters &parameters, const std::vector<DesignVariable> &variables)
   {
     DesignPlan plan;
-    plan.where_names = "parameter Designs/Variables";
+    plan.where_names = where_variables;
     plan.designs.resize(2);
     for (const DesignVariable &variable : variables)
       {

@@ -175,7 +175,7 @@ namespace Squeal
     /// Marks the next design of a process that ended early as failed.
     const auto blame_next = [&](Worker &worker, const std::string &end) {
       DesignResult result = unfinished(worker.left.front());
-      result.reason       = "its process ended early: " + end;
+      result.reason       = end.empty() ? "its process ended without a result" : "its process ended early: " + end;
       result.seconds      = worker.stopwatch.cost().seconds;
       store.keep(result);
       report(result);

@@ -242,8 +242,8 @@ namespace Squeal
         first += size;
         size = growth_of_sets * first;
       }
-    run.progress.finish(text(points.size() - result.n_left, " of ", points.size(), " samples, ", model.reduced->size(),
-                             " vectors, estimated error ", result.worst_error));
+    run.progress.finish(text(points.size() - result.n_left, " of ", points.size(), " samples, ", counted(model.reduced->size(), "vector"),
+                             ", estimated error ", result.worst_error));
     return result;
   }
 

@@ -47,8 +47,8 @@ namespace Squeal
       for (Eigen::Index j = 0; j < samples.values.cols(); ++j)
         {
           const UncertainNumber &number = samples.numbers[static_cast<std::size_t>(j)];
-          if (number.pin.empty() &&
-              text_without_coefficients(with_design(parameters, {number.parameter}, {exact_text(samples.values(0, j))})) != scene)
+          if (number.pin.empty() && text_without_coefficients(with_design(parameters, {number.parameter},
+                                                                          {exact_text(samples.values(0, j))}, number.where)) != scene)
             throw ParameterError(
               in_quotes(number.parameter) +
                 " cannot vary between samples, because it is not a coefficient of a term, or its term is zero in the model",
@@ -112,9 +112,9 @@ namespace Squeal
     result.n_independent = result.has_indices ? 2 * half : n;
     result.n_followed    = static_cast<int>(parameters.n_onsets);
     if (result.n_followed > result.n_independent)
-      throw ParameterError(
-        text("onsets are requested for ", result.n_followed, " samples, but there are only ", result.n_independent, " independent samples"),
-        "parameter Robustness/Samples with onsets", "lower it, or raise Robustness/Number of samples");
+      throw ParameterError(text("onsets are requested for ", counted(result.n_followed, "sample"), ", but there are only ",
+                                counted(result.n_independent, "independent sample")),
+                           "parameter Robustness/Samples with onsets", "lower it, or raise Robustness/Number of samples");
     return result;
   }
 
@@ -133,8 +133,8 @@ namespace Squeal
             const std::string &given = plan.designs[i][j];
             const auto         value = given.empty() ? std::optional(current(name)) : parse_number(given);
             if (!value)
-              throw ParameterError(in_quotes(given) + " for " + in_quotes(name) + " is not a finite number",
-                                   plan.where.empty() ? plan.where_names : plan.where[i], "give a number");
+              throw ParameterError(in_quotes(given) + " for " + in_quotes(name) + " is not a finite number", plan.where_is(i),
+                                   "give a number");
             result.values(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = *value;
           }
       }
@@ -143,7 +143,7 @@ namespace Squeal
 
   double nominal_value(const Parameters &parameters, const std::string &name, const char *where)
   {
-    const std::string value = current_value(parameters, name);
+    const std::string value = current_value(parameters, name, where);
     if (const auto number = parse_number(value))
       return *number;
     throw ParameterError("the value of " + in_quotes(name) + " is " + in_quotes(value) + ", not a number", where,
@@ -169,14 +169,11 @@ namespace Squeal
 
   Parameters with_sample(const Parameters &parameters, const SamplePlan &samples, const int sample)
   {
-    std::vector<std::string> names, values;
+    Parameters result = parameters;
     for (std::size_t j = 0; j < samples.numbers.size(); ++j)
-      if (samples.numbers[j].pin.empty())
-        {
-          names.push_back(samples.numbers[j].parameter);
-          values.push_back(exact_text(samples.values(sample, static_cast<Eigen::Index>(j))));
-        }
-    Parameters result = with_single_pins(with_design(parameters, names, values), samples.numbers);
+      if (const UncertainNumber &number = samples.numbers[j]; number.pin.empty())
+        result = with_design(result, {number.parameter}, {exact_text(samples.values(sample, static_cast<Eigen::Index>(j)))}, number.where);
+    result = with_single_pins(result, samples.numbers);
     for (std::size_t j = 0; j < samples.numbers.size(); ++j)
       for (VolumeMaterial &own : result.materials.volumes)
         if (own.volume == samples.numbers[j].pin)
@@ -232,8 +229,8 @@ namespace Squeal
           add_point(operations[s], mu, s);
       }
     result.n_samples.resize(regimes.size(), 0);
-    run.progress.finish(text(samples.n(), " samples of ", samples.numbers.size(), " uncertain numbers, ", regimes.size(),
-                             regimes.size() == 1 ? " contact set" : " contact sets"));
+    run.progress.finish(text(counted(samples.n(), "sample"), " of ", counted(samples.numbers.size(), "uncertain number"), ", ",
+                             counted(regimes.size(), "contact set")));
 
     for (ContactRegime &regime : regimes)
       {

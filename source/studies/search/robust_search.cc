@@ -157,7 +157,7 @@ namespace Squeal
         const auto n_numbers = samples.values.cols();
         result.n_independent = samples.n() * static_cast<int>(n_designs);
         for (const DesignVariable &variable : variables)
-          result.numbers.push_back({variable.name, variable.name, "", {}, false, "parameter Designs/Variables"});
+          result.numbers.push_back({variable.name, variable.name, "", {}, false, where_variables});
         result.numbers.insert(result.numbers.end(), samples.numbers.begin(), samples.numbers.end());
         result.values.resize(result.n_independent, n_variables + n_numbers);
         for (Eigen::Index d = 0; d < n_designs; ++d)

@@ -42,8 +42,8 @@ namespace Squeal
     std::vector<DesignVariable> result = design_variables(designs);
     for (const DesignVariable &variable : result)
       if (!variable.is_range)
-        throw ParameterError("a search requires ranges, but " + in_quotes(variable.name) + " has a list of values",
-                             "parameter Designs/Variables", "write Section/Name = a to b");
+        throw ParameterError("a search requires ranges, but " + in_quotes(variable.name) + " has a list of values", where_variables,
+                             "write Section/Name = a to b");
     return result;
   }
 
@@ -128,7 +128,7 @@ namespace Squeal
                            to_string(friction.labels[leading - lambda.begin()]),
                            *std::max_element(residuals.begin(), residuals.end())};
 
-    run.progress.finish(text(result.n_modes, " modes, ", result.n_unstable, " unstable, largest divergence rate ",
+    run.progress.finish(text(counted(result.n_modes, "mode"), ", ", result.n_unstable, " unstable, largest divergence rate ",
                              decimal_text(100. * result.leading.divergence_rate), " % (", result.label, ")"));
     return result;
   }

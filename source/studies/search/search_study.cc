@@ -35,13 +35,14 @@ namespace Squeal
         , variables(design_variables(run.parameters.designs))
         , store(checkpoint_folder(run.folder().name()), design_key(run, scene, {}), run.communicator)
       {
+        plan.where_names = where_variables;
         for (const DesignVariable &variable : variables)
           plan.names.push_back(variable.name);
         // Count the results of all designs now, because the search requests its designs step by step
         std::vector<int> designs(run.parameters.search.n_evaluations);
         std::iota(designs.begin(), designs.end(), 1);
         if (const std::size_t n_known = store.n_known(designs); n_known > 0)
-          run.progress.note(text("  continuing an interrupted search: ", n_known, " designs are finished"));
+          run.progress.note(text("  continuing an interrupted search: ", counted(n_known, "design is", "designs are"), " finished"));
       }
 
       /// Objective at an evaluated point; empty for other points.
@@ -203,13 +204,14 @@ namespace Squeal
       starts.push_back(points[i]);
     const std::vector<std::string> ends = search(starts, evaluations);
 
-    const DesignResult &winner =
-      *std::min_element(evaluations.results.begin(), evaluations.results.end(),
-                        [&](const DesignResult &a, const DesignResult &b) { return objective(a, parameters) < objective(b, parameters); });
-    const auto design = parameters_of(run, evaluations.plan, winner.number);
-    if (!design || winner.outcome != DesignOutcome::solved)
+    // Designs without a result come last, even if a solved design has a worse objective
+    const auto rank = [&](const DesignResult &row) { return std::pair(row.outcome != DesignOutcome::solved, objective(row, parameters)); };
+    const DesignResult &winner = *std::min_element(evaluations.results.begin(), evaluations.results.end(),
+                                                   [&](const DesignResult &a, const DesignResult &b) { return rank(a) < rank(b); });
+    if (winner.outcome != DesignOutcome::solved)
       throw SolverError("no design of the search could be solved; one reason: " + winner.reason, "search",
                         "remove the cause, or choose other ranges in Designs/Variables");
+    const auto             design  = parameters_of(run, evaluations.plan, winner.number);
     std::vector<FullOrder> checked = {at_full_order(*design, parameters.sweep.friction_coefficients.last, run)};
     if (winner.worst && winner.worst->friction_coefficient != parameters.sweep.friction_coefficients.last)
       checked.push_back(at_full_order(*design, winner.worst->friction_coefficient, run));

@@ -25,7 +25,7 @@ namespace Squeal
             lines.push_back({Kind::map, operation, value, sweep.map_grid()});
             OperationParameters &varied                                                                = lines.back().operation;
             (sweep.map_parameter == MapParameter::load ? varied.load_per_side : varied.rotation_speed) = value;
-            if (sweep.map_parameter == MapParameter::speed && varied.rotating_disc)
+            if (parameters.maps_rotation())
               lines.back().values[BodyParameter::angular_velocity] = {value};
           }
       return lines;
@@ -112,7 +112,7 @@ namespace Squeal
           point.values.merge(selected(state.damping, state.closed).values());
           regime_of(state.closed, regimes).points.push_back(std::move(point));
         }
-    run.progress.finish(text(n_points, " operating points, ", regimes.size(), regimes.size() == 1 ? " contact set" : " contact sets"));
+    run.progress.finish(text(counted(n_points, "operating point"), ", ", counted(regimes.size(), "contact set")));
     return plan;
   }
 
