@@ -55,7 +55,7 @@ def main():
     for what, chosen in (("all", modes), ("converged", converged), ("converged, outside of clusters", outside)):
         if len(chosen):
             print(f"  {what:<44} {len(chosen):>4}   " + "   ".join(f"{chosen[column].max():>9.4f}" for column in FOUND))
-    n_over = sum((converged[list(FOUND)].values > converged[list(ESTIMATED)].values).any(axis=1))
+    n_over = sum((~(converged[list(FOUND)].values <= converged[list(ESTIMATED)].values)).any(axis=1))
     print(f"  converged modes with errors larger than estimated: {n_over} of {len(converged)}")
     wrong = converged[(converged[FOUND[0]] > goal) | (converged[FOUND[1]] > goal / 10)]
     print(f"  reported as converged with errors above {goal:g} % or {goal / 10:g} points: {len(wrong)}")

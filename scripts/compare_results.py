@@ -12,7 +12,6 @@ table or column is missing, if the number of rows or a text differs, or if a num
 Additional columns in NEW are ignored.
 """
 
-import io
 import pathlib
 import re
 import sys
@@ -23,14 +22,15 @@ import pandas
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "python"))
 from squeal.command_line import Parser, exit_on_error
 from squeal.errors import Error
+from squeal.results import Table
 
 VARYING = re.compile(r"time|CPU|wall|memory|residual|eps_res|speed-up|orthonormality", re.IGNORECASE)
 
 
 def read_texts(path):
-    """Cells of a table as texts, with numbers appended to repeated column names."""
-    lines = [line for line in path.read_text(encoding="utf-8").splitlines(keepends=True) if line.strip() and not line.startswith("#")]
-    return pandas.read_csv(io.StringIO("".join(lines)), dtype=str, keep_default_na=False) if lines else pandas.DataFrame()
+    """Cells of a table as texts."""
+    table = Table(path)
+    return pandas.DataFrame(table.rows, columns=table.columns, dtype=str)
 
 
 def compare(old_file, new_file, arguments):
@@ -64,7 +64,7 @@ def main():
 
     files = sorted(path.relative_to(arguments.old) for path in arguments.old.rglob("*.csv"))
     if not files:
-        raise Error("the folder contains no tables", arguments.old, "name a results folder")
+        raise Error("the folder is missing or contains no tables", arguments.old, "name a results folder")
     agree = True
     for file in files:
         if not (arguments.new / file).is_file():

@@ -34,7 +34,8 @@ def exit_on_error():
     except Error as error:
         sys.exit(f"error: {error}")
     except OSError as error:
-        sys.exit(f"error: {error.strerror}\n  where:  {error.filename}\n  change: check the path, its permissions and the free space")
+        where = error.filename or sys.argv[0]
+        sys.exit(f"error: {error.strerror or error}\n  where:  {where}\n  change: check the path, its permissions and the free space")
     except ModuleNotFoundError as missing:
         package = PACKAGES.get(missing.name, f"python3-{missing.name}")
         sys.exit(f"error: the Python module {missing.name} is missing\n  where:  {sys.argv[0]}\n  change: apt-get install {package}")
@@ -55,6 +56,9 @@ def make_of_results(what, parser, make):
     except ModuleNotFoundError as missing:
         sys.exit(f"No {what}: install python3-{missing.name} (or run scripts/setup.sh), then: "
                  f"scripts/{os.path.basename(sys.argv[0])} {arguments.results}")
+    except (ArithmeticError, LookupError, TypeError, ValueError) as problem:  # tables are not checked for all the plots and pages
+        raise Error(f"no {what}: a table or run.json is empty or has an invalid entry ({problem!r})", f"folder {arguments.results}",
+                    "run squeal again") from problem
     print(*remarks, f"  {what}: {', '.join(map(str, found if isinstance(found, list) else [found]))}", sep="\n")
 
 

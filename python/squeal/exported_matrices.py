@@ -29,12 +29,12 @@ import math
 import pathlib
 
 import numpy as np
-import scipy.io
 import scipy.sparse as sparse
 import scipy.sparse.linalg
 
 from squeal import quadratic
 from squeal.errors import Error
+from squeal.system import read_matrix
 
 
 @dataclasses.dataclass
@@ -65,7 +65,7 @@ def read_matrices(directory):
             continue
         if not path.is_file():
             raise Error(f"{path} is missing", directory, 'run squeal with --set Study=stability --set "Output/Write matrices=true"')
-        matrices[name] = sparse.csr_matrix(scipy.io.mmread(path))
+        matrices[name] = read_matrix(path.parent, path.name, directory)
     return matrices
 
 

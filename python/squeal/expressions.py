@@ -64,7 +64,7 @@ class Expression:
                 continue
             if (zero := find_zero(node.left if is_power else node.right, ranges)) is not None:
                 place = ", ".join(f"{name} = {value:.6g}" for name, value in zero.items())
-                raise Error(f"`{self.text}` divides by zero" + (f" at {place} or nearby" if place else ""), self.where,
+                raise Error(f"`{self.text}` divides by zero" + (f" near {place}, within the ranges of its parameters" if place else ""), self.where,
                             "change the expression, or the values or ranges of its parameters")
 
 

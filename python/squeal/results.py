@@ -27,6 +27,17 @@ def symbol(column):
     return "μ" if column == MU else column.split(" [")[0]
 
 
+class Row(dict):
+    """Cells of a row by column name. Raises Error if there is no such column."""
+
+    def __init__(self, table, cells):
+        super().__init__(zip(table.columns, cells))
+        self.table = table
+
+    def __missing__(self, column):
+        raise self.table.missing(column)
+
+
 class Table:
     """The rows of a CSV table by column name. Lines that begin with # are comments."""
 
@@ -35,14 +46,13 @@ class Table:
         self.path = path
         try:
             with open(path, newline="", encoding="utf-8") as file:
-                reader = csv.DictReader(line for line in file if not line.startswith("#"))
-                self.columns = list(reader.fieldnames or [])
-                self.rows = list(reader)
+                reader = csv.reader("\n" if line.startswith("#") else line for line in file)
+                (_, self.columns), *rows = [(reader.line_num, cells) for cells in reader if cells] or [(1, [])]
         except (OSError, UnicodeDecodeError, csv.Error) as problem:
             raise Error(f"the table cannot be read: {problem}", f"file {path}", "check its name and permissions, or run squeal again") from problem
-        for number, row in enumerate(self.rows, start=2):
-            if None in row or None in row.values():
-                raise Error("a row does not have one cell for each column", f"file {path}, line {number}", "correct it, or run squeal again")
+        if bad := [line for line, cells in rows if len(cells) != len(self.columns)]:
+            raise Error("a row does not have one cell for each column", f"file {path}, line {bad[0]}", "correct it, or run squeal again")
+        self.rows, self.lines = [Row(self, cells) for _, cells in rows], [line for line, _ in rows]
 
     def __len__(self):
         return len(self.rows)
@@ -55,14 +65,17 @@ class Table:
     def texts(self, column):
         """Cells of a column. Raises Error if there is no such column."""
         if column not in self.columns:
-            raise Error(f"there is no column `{column}`", f"file {self.path}",
-                        "check the name; if an older version wrote the table, run squeal again")
+            raise self.missing(column)
         return [row[column] for row in self.rows]
+
+    def missing(self, column):
+        """The Error for a column that does not exist."""
+        return Error(f"there is no column `{column}`", f"file {self.path}", "check the name; if an older version wrote the table, run squeal again")
 
     def numbers(self, column):
         """Numbers in a column, NaN for empty cells. Raises Error if a cell is not a number."""
         result = []
-        for line, text in enumerate(self.texts(column), start=2):
+        for line, text in zip(self.lines, self.texts(column)):
             try:
                 result.append(float(text) if text else math.nan)
             except ValueError:
@@ -71,8 +84,8 @@ class Table:
         return result
 
     def flags(self, column):
-        """For each number in a column, True if it is not zero."""
-        return [number != 0 for number in self.numbers(column)]
+        """For each number in a column, True if it is not zero; False for empty cells."""
+        return [abs(number) > 0 for number in self.numbers(column)]
 
     def groups(self, *columns):
         """Groups of rows with the same values in the given columns, in the order of the table."""
@@ -125,7 +138,7 @@ class Results:
         try:
             self.record = dict(json.loads(self.record_file.read_text(encoding="utf-8")))
             self.parameters = read_parameters(self.folder / "parameters.prm")
-        except (OSError, TypeError, ValueError) as problem:
+        except (OSError, LookupError, TypeError, ValueError) as problem:
             what = f"the record of the run or its parameters cannot be read: {problem}"
             raise Error(what, f"folder {folder}", "check the permissions, or run squeal again") from problem
 
@@ -137,7 +150,11 @@ class Results:
         return (self.folder / f"{name}.csv").is_file()
 
     def table(self, name):
-        return Table(self.folder / f"{name}.csv")
+        """A table of the run. Raises Error if it is truncated."""
+        table, size = Table(self.folder / f"{name}.csv"), self.record.get(FILES, {}).get(f"{name}.csv", 0)
+        if table.path.stat().st_size < size:
+            raise Error(f"the table is truncated: the run wrote {size} bytes", f"file {table.path}", "copy it again, or run squeal again")
+        return table
 
     def names(self):
         return sorted(path.stem for path in self.folder.glob("*.csv"))
@@ -221,7 +238,7 @@ class Results:
 
     def enlist(self, files):
         """Lists files (name -> bytes) in run.json; returns notes on renamed files."""
-        known = self.record[FILES]
+        known = self.record.get(FILES, {})
         remarks = [make_way(self.folder / name) for name in files if name not in known and (self.folder / name).exists()]
         self.record[FILES] = dict(sorted({**known, **{name: len(content) for name, content in files.items()}}.items()))
         replace(self.record_file, (json.dumps(self.record, indent=2, ensure_ascii=False) + "\n").encode())

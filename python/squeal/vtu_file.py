@@ -17,13 +17,19 @@ TYPES = {"Float32": ("<f4", float), "Int32": ("<i4", int), "UInt8": ("u1", int)}
 
 class VtuFile:
     """Content of a .vtu file: points (n x 3) and point fields (n x 3 or n) as arrays; cells as a list of arrays of
-    point indices, with fields and VTK types (see SHAPES); the title, or None. Points shared by pieces are repeated."""
+    point indices, with fields and VTK types (see SHAPES); the title, or None. Points shared by pieces are repeated.
+    Raises Error if the file is damaged or was not written by squeal."""
 
     def __init__(self, path):
         self.path = path
-        head, _, self.data = path.read_bytes().partition(b'<AppendedData encoding="raw">\n_')
+        try:
+            self._read(path.read_bytes())
+        except (ArithmeticError, AttributeError, LookupError, SyntaxError, TypeError, ValueError, struct.error, zlib.error) as problem:
+            raise Error(f"the field file cannot be read ({problem!r})", f"file {path}", "name a .vtu file of squeal, or run squeal again") from problem
+
+    def _read(self, content):
+        head, _, self.data = content.partition(b'<AppendedData encoding="raw">\n_')
         root = xml.etree.ElementTree.fromstring(head + b"</VTKFile>")
-        assert root.get("compressor") == "vtkZLibDataCompressor" and root.get("header_type") == "UInt64", path
         title = root.find(".//FieldData/DataArray[@Name='mode']")
         self.title = None if title is None else bytes(map(int, title.text.split()[:-1])).decode()
         pieces = [{(part.tag, data.get("Name")): self.values(data) for part in piece for data in part}
@@ -40,16 +46,18 @@ class VtuFile:
             starts = [0, *piece["Cells", "offsets"]]
             self.cells += [first + piece["Cells", "connectivity"][a:b] for a, b in zip(starts, starts[1:])]
             first += sum(len(values) for (tag, _), values in piece.items() if tag == "Points")
-        assert all(len(values) == len(self.points) for values in self.fields.values()), path
-        assert all(len(values) == len(self.cells) for values in (self.cell_types, *self.cell_fields.values())), path
-        assert all((0 <= cell).all() and (cell < len(self.points)).all() for cell in self.cells), path
+        if not (all(len(values) == len(self.points) for values in self.fields.values())
+                and all(len(values) == len(self.cells) for values in (self.cell_types, *self.cell_fields.values()))
+                and all((0 <= cell).all() and (cell < len(self.points)).all() for cell in self.cells)):
+            raise ValueError("the arrays do not match")
 
     def values(self, data):
         """Values of an array that is stored as sizes followed by one zlib block."""
         offset, (in_file, in_memory) = int(data.get("offset")), TYPES[data.get("type")]
         n_blocks, size, _, length = struct.unpack_from("<4Q", self.data, offset)
         plain = zlib.decompress(self.data[offset + 32:offset + 32 + length])
-        assert n_blocks == 1 and len(plain) == size, data.get("Name")
+        if n_blocks != 1 or len(plain) != size:
+            raise ValueError(f"the array {data.get('Name')} is incomplete")
         values = np.frombuffer(plain, in_file).astype(in_memory)
         return values.reshape(-1, 3) if data.get("NumberOfComponents") == "3" else values
 

@@ -17,8 +17,10 @@ from unittest import mock
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "python"))
 import squeal
 from squeal import program
+from squeal.vtu_file import VtuFile
 
-MODES = """label,share [-],frequency [Hz],growth rate [1/s],unstable [-],rate [%],rate [-],verdict
+MODES = """# first line
+label,share [-],frequency [Hz],growth rate [1/s],unstable [-],rate [%],rate [-],verdict
 # a comment
 F1,0.5,100.25,2.5,1,1,0.01,unstable
 A0-2 +,1,250,-1,0,,,stable
@@ -78,6 +80,23 @@ class ModuleResults(unittest.TestCase):
         self.assert_rejected(results.system, "system.json", "Write system")
         self.assert_rejected(lambda: squeal.Results(self.folder / "none"), "no folder")
         self.assert_rejected(lambda: squeal.Results(self.folder), "run.json is missing")
+
+    def test_damaged_files(self):
+        path = self.folder / "results" / "complex_modes.csv"
+        path.write_text(MODES + "F2,x,,1,,1,0.01,stable\n", encoding="utf-8")
+        table = squeal.Results(self.folder / "results").table("complex_modes")
+        self.assert_rejected(lambda: table.numbers("share [-]"), "`x` is not a number", "line 6, column `share [-]`")
+        self.assert_rejected(lambda: table.rows[0]["none"], "no column `none`", "complex_modes.csv")
+        self.assertEqual(table.flags("unstable [-]"), [True, False, False])
+        path.write_text(MODES[:-3], encoding="utf-8")
+        record = {"files [byte]": {path.name: len(MODES)}}
+        (self.folder / "results" / "run.json").write_text(json.dumps(record), encoding="utf-8")
+        self.assert_rejected(lambda: squeal.Results(self.folder / "results").table("complex_modes"), "truncated", "complex_modes.csv")
+        path.write_text(MODES + "F2\n", encoding="utf-8")
+        self.assert_rejected(lambda: squeal.Results(self.folder / "results").table("complex_modes"), "one cell for each column", "line 6")
+        for content in ("", "<VTKFile>", '<VTKFile><AppendedData encoding="raw">\n_'):
+            path.with_suffix(".vtu").write_text(content, encoding="utf-8")
+            self.assert_rejected(lambda: VtuFile(path.with_suffix(".vtu")), "field file cannot be read", "complex_modes.vtu", "run squeal again")
 
     def test_system(self):
         squeal.System({}, [squeal.Term("M", 2, matrix=[[1.0]]), squeal.Term("K", 0, matrix=[[4.0]])]).write(self.folder / "results" / "system")

@@ -159,7 +159,7 @@ class Files(InFolder):
         self.assert_rejected(damaged(lambda data: data["terms"][0].update(symmetry="even")), "`even`", "symmetric, skew")
         self.assert_rejected(damaged(lambda data: data["terms"][2].update(coefficient="mu*(k")), "`mu*(k` is not an expression", "term `friction`, coefficient")
         self.assert_rejected(damaged(lambda data: data["terms"][2].update(coefficient="nu*k")), "`nu`, which is unknown", "system.json, term `friction`")
-        self.assert_rejected(damaged(lambda data: data["terms"][2].update(coefficient="k/mu")), "divides by zero at mu = 0", "term `friction`")
+        self.assert_rejected(damaged(lambda data: data["terms"][2].update(coefficient="k/mu")), "divides by zero near mu = 0, within", "term `friction`")
         self.assert_rejected(damaged(lambda data: data["terms"][2].update(power=3)), "power 3 is invalid", "term `friction`")
         self.assert_rejected(damaged(lambda data: data["terms"][2].pop("right")), "both factors", "term `friction`")
         self.assert_rejected(damaged(lambda data: data["terms"][2].update(colour="red")), "`colour` is unknown", "term `friction`")

@@ -41,9 +41,11 @@ def choose(found, variable, path):
     """The matrix called `variable`, or the only matrix if `variable` is None."""
     if variable is None and len(found) == 1:
         return next(iter(found.values()))
+    if not found:
+        raise Error("the file contains no matrix", path, "export it again with the matrix, or name another file")
     if variable not in found:
-        what = "the file has no matrix or several matrices" if variable is None else f"there is no matrix `{variable}`"
-        raise Error(what, path, f"write `variable`, one of: {', '.join(sorted(found)) or '(none)'}")
+        what = "the file contains several matrices" if variable is None else f"there is no matrix `{variable}`"
+        raise Error(what, path, f"write `variable`, one of: {', '.join(sorted(found))}")
     return found[variable]
 
 
@@ -164,11 +166,11 @@ def read(path, variable=None, form=None):
         raise Error(f"the format of `{path.name}` is unknown", path, f"write `format`, one of: {', '.join(READERS)}")
     try:
         return READERS[form](path, variable)
-    except (Error, OSError):
+    except Error:
         raise
     except Exception as problem:  # readers raise various exceptions for invalid files
         raise Error(f"the file cannot be read: {' '.join(str(problem).split()) or type(problem).__name__}", path,
-                    f"export it again, or give its `format`, one of: {', '.join(READERS)}") from problem
+                    f"check its permissions, export it again, or give its `format`, one of: {', '.join(READERS)}") from problem
 
 
 class Numbering:
