@@ -77,7 +77,10 @@ def solve_by_scipy(problem, band, n_modes, shift=0.0):
 def problem_of_system(arguments):
     """The quadratic problem of a system of matrices, and True, because System.read() checks its structure."""
     system = System.read(arguments.system)
-    p = {name: float(value) for name, _, value in (word.partition("=") for word in arguments.parameter)}
+    try:
+        p = {name: float(value) for name, value in (word.split("=") for word in arguments.parameter)}
+    except ValueError:
+        raise Error("a parameter is not given as NAME=NUMBER", f"--parameter {', '.join(arguments.parameter)}", "write, e.g., --parameter mu=0.4") from None
     print(f"{system.size} dofs, {len(system.terms)} terms, " + "".join(f"{name} = {value:g}, " for name, value in system.values(p).items()), end="")
     return exported_matrices.QuadraticProblem(*system.matrices(p)), True
 

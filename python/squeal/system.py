@@ -121,7 +121,7 @@ class System:
     def _check_parameters(self):
         for name, parameter in self.parameters.items():
             where = f"{self.where}, parameter `{name}`"
-            if not NAME.fullmatch(name) or name == "_pi":
+            if not NAME.fullmatch(as_kind(name, str, where)) or name == "_pi":
                 raise Error(f"`{name}` is not a valid parameter name", where, "use letters, digits and _, beginning with a letter")
             for key in ("value", "lower", "upper"):
                 value = getattr(parameter, key)
@@ -140,7 +140,8 @@ class System:
         """Checks a term and returns its coefficient as an Expression."""
         if not isinstance(term.power, int) or isinstance(term.power, bool) or not 0 <= term.power <= 2:
             raise Error(f"the power {term.power!r} is invalid", where, "write 0, 1 or 2")
-        if term.symmetry not in SYMMETRIES:
+        as_kind(term.name, str, f"{where}, name")
+        if term.symmetry not in tuple(SYMMETRIES):
             raise Error(f"the symmetry `{term.symmetry}` is unknown", where, f"write one of: {', '.join(SYMMETRIES)}")
         if term.kind and term.kind not in KINDS:
             raise Error(f"the kind `{term.kind}` is unknown", where, f"write one of: {', '.join(KINDS)}")
@@ -362,7 +363,7 @@ def symmetry_defect(matrix, sign):
 
 def as_kind(value, kind, where):
     if not isinstance(value, kind):
-        raise Error(f"the entry is {value!r}", where, f"write {'an object' if kind is dict else 'a list'}")
+        raise Error(f"the entry is {value!r}", where, f"write {({dict: 'an object', list: 'a list', str: 'a text'})[kind]}")
     return value
 
 

@@ -3,6 +3,7 @@
 """Builds a system from matrices of other programs as described by a configuration file."""
 
 import csv
+import math
 import pathlib
 
 import numpy as np
@@ -12,7 +13,7 @@ from squeal.errors import Error
 from squeal.expressions import Expression
 from squeal.importing import foreign_mesh, matrices
 from squeal.importing.configuration import read_yaml
-from squeal.system import SYMMETRY_TOLERANCE, Parameter, System, Term, as_kind, check_keys, read_entry, symmetry_defect, unique
+from squeal.system import SYMMETRY_TOLERANCE, Parameter, System, Term, as_kind, check_keys, is_range, read_entry, symmetry_defect, unique
 
 OF_FILE = ("file", "variable", "format", "scale")
 KNOWN = ("description", "parameters", "terms", "groups", "nodes", "unit")
@@ -32,12 +33,15 @@ def ranges_of(numbers):
 def groups_of(entries, numbering, where):
     """Ranges of dofs of each group, from ranges of dofs or of `nodes`."""
     groups = {}
-    for name, entry in entries.items():
+    for name, entry in as_kind(entries, dict, f"{where}, groups").items():
         if isinstance(entry, dict):
             check_keys(entry, ("nodes",), f"{where}, group `{name}`")
             if numbering.labels is None:
                 raise Error("the matrices are numbered by rows, not by nodes", f"{where}, group `{name}`", "write ranges of dofs")
-            entry = ranges_of([row for row, (node, _) in enumerate(numbering.labels, start=1) if any(a <= node <= b for a, b in entry["nodes"])])
+            ranges = as_kind(entry.get("nodes"), list, f"{where}, group `{name}`, nodes")
+            if not all(is_range(ends, math.inf) for ends in ranges):
+                raise Error("`nodes` contains an invalid range", f"{where}, group `{name}`", "write nodes: [[first, last], ...]")
+            entry = ranges_of([row for row, (node, _) in enumerate(numbering.labels, start=1) if any(a <= node <= b for a, b in ranges)])
         groups[name] = entry
     return groups
 
@@ -49,7 +53,7 @@ def points_of(config, folder, numbering, where):
     if numbering.labels is None or config.get("unit") not in foreign_mesh.UNITS:
         raise Error("`nodes` requires matrices numbered by nodes and dofs, and a unit of length", where,
                     f"export such matrices and write `unit`, one of: {', '.join(foreign_mesh.UNITS)}")
-    path = folder / config["nodes"]
+    path = folder / as_kind(config["nodes"], str, f"{where}, nodes")
     reader = foreign_mesh.READERS.get(path.suffix.lower())
     if reader is None or not path.is_file():
         raise Error(f"`{path}` is missing or has an unsupported suffix", where, f"name a file that ends in one of: {', '.join(foreign_mesh.READERS)}")
@@ -77,6 +81,8 @@ def import_system(path):
     for number, entry in enumerate(as_kind(config.get("terms"), list, f"{path}, terms"), start=1):
         where = f"{path}, term {number}"
         entry = dict(as_kind(entry, dict, where))
+        for key in ("file", "variable", "format"):
+            as_kind(entry.get(key, ""), str, f"{where}, {key}")
         source = {key: entry.pop(key) for key in OF_FILE if key in entry}
         if "file" not in source:
             raise Error("the entry `file` is missing", where, "name the file of the matrix")
