@@ -45,6 +45,11 @@ namespace Squeal
     return text.str();
   }
 
+  std::string counted(const std::size_t n, const std::string &singular, const std::string &plural)
+  {
+    return text(n, ' ', n == 1 ? singular : plural.empty() ? singular + 's' : plural);
+  }
+
   std::optional<double> parse_number(const std::string &text)
   {
     std::istringstream stream(text);

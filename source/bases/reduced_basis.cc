@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 #include <squeal/base/exceptions.h>
+#include <squeal/base/text.h>
 #include <squeal/bases/reduced_basis.h>
 #include <squeal/linear_algebra/communication.h>
 #include <squeal/linear_algebra/mass_orthonormal.h>
@@ -152,7 +153,7 @@ namespace Squeal
     basis.n_dropped      = T.n_columns() - basis.size();
     basis.orthonormality = orthonormality_defect(M, *basis.vectors);
     if (!(basis.orthonormality <= largest_orthonormality_defect))
-      throw SolverError("the vectors are not orthonormal: max |TᵀMT − I| = " + std::to_string(basis.orthonormality), where(recipe),
+      throw SolverError(text("the vectors are not orthonormal: max |TᵀMT − I| = ", basis.orthonormality), where(recipe),
                         "raise the rank tolerance");
     return basis;
   }

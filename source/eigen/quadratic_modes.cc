@@ -4,6 +4,7 @@
 
 #include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
+#include <squeal/base/text.h>
 #include <squeal/eigen/compact_krylov.h>
 #include <squeal/eigen/quadratic_modes.h>
 
@@ -232,8 +233,8 @@ namespace Squeal
         state    = convergence(transformation, ritz, tolerance, exhausted);
         n_wanted = std::max(n_wanted, state.n_inside);
         if (options.report)
-          options.report(std::to_string(state.n_converged) + " of " + std::to_string(state.n_inside) + " eigenvalues, " +
-                         std::to_string(krylov.dimension) + " vectors, " + std::to_string(transformation.n_solves) + " solves");
+          options.report(text(state.n_converged, " of ", counted(state.n_inside, "eigenvalue"), ", ", counted(krylov.dimension, "vector"),
+                              ", ", counted(transformation.n_solves, "solve")));
       }
 
       /// Size of the space at the next check; restarts if this size exceeds the largest basis.
@@ -245,7 +246,7 @@ namespace Squeal
             // Use a third of the space beyond the requested vectors to keep values that are still converging
             const int n_kept = std::min(krylov.dimension, state.n_inside + (largest_basis() - state.n_inside) / 3);
             if (++n_restarts > options.max_restarts)
-              throw_unconverged(state, state.worst, "no convergence after " + std::to_string(options.max_restarts) + " restarts", options);
+              throw_unconverged(state, state.worst, "no convergence after " + counted(options.max_restarts, "restart"), options);
             krylov.restart(ritz, n_kept);
             n_more = std::max(n_more, (largest_basis() - krylov.dimension) / 2);
           }
@@ -287,7 +288,7 @@ namespace Squeal
         if (count <= state.n_inside)
           return true;
         if (options.report)
-          options.report("random directions reveal at least " + std::to_string(count - state.n_inside) + " missing eigenvalues");
+          options.report("random directions reveal at least " + counted(count - state.n_inside, "missing eigenvalue"));
         n_wanted += static_cast<int>(count) - state.n_inside;
         inject(n_fresh);
         return false;

@@ -5,6 +5,7 @@
 #include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/base/tasks.h>
+#include <squeal/base/text.h>
 #include <squeal/linear_algebra/communication.h>
 
 #include <boost/pending/disjoint_sets.hpp>
@@ -135,7 +136,7 @@ namespace Squeal
                                  const SymmetricModesOptions &options)
   {
     if (!(largest_eigenvalue > 0.))
-      throw SolverError("the end of the band is " + std::to_string(largest_eigenvalue) + " rad²/s², but must be positive", options.what,
+      throw SolverError(text("the end of the band is ", largest_eigenvalue, " rad²/s², but must be positive"), options.what,
                         "give a positive end of the band");
     if (!options.by_parts)
       return SymmetricSolver(K, M, largest_eigenvalue, options).modes();
@@ -170,7 +171,7 @@ namespace Squeal
           return {n_modes, limit};
         limit *= 1. + 1e-8;
       }
-    throw SolverError("the modes below " + std::to_string(limit) + " rad²/s² cannot be counted: K - limit M remains singular", what,
+    throw SolverError(text("the modes below ", limit, " rad²/s² cannot be counted: K - limit M remains singular"), what,
                       "check that M is positive definite and that every dof has stiffness or mass");
   }
 
@@ -186,8 +187,8 @@ namespace Squeal
     while (upper.n_modes < n_modes)
       {
         if (!(upper.limit < highest))
-          throw SolverError(what + ": fewer than " + std::to_string(n_modes) + " modes lie below " +
-                              std::to_string(std::lround(hertz(std::sqrt(highest)))) + " Hz",
+          throw SolverError(text(what, ": fewer than ", n_modes, n_modes == 1 ? " mode lies" : " modes lie", " below ",
+                                 decimal_text(hertz(std::sqrt(highest))), " Hz"),
                             what, "lower the number of modes");
         lower = upper;
         upper = count_below(K, M, std::min(2. * upper.limit, highest), what);

@@ -5,6 +5,7 @@
 
 #include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
+#include <squeal/base/text.h>
 #include <squeal/linear_algebra/mass_orthonormal.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
 
@@ -274,7 +275,7 @@ namespace Squeal
     if (static_cast<int>(pairs.values.size()) != count.n_modes || !(pairs.values.back() <= count.limit * (1. + 1e-8)))
       fail_incomplete(std::upper_bound(pairs.values.begin(), pairs.values.end(), count.limit) - pairs.values.begin());
     if (pairs.values.front() < -hidden_square)
-      fail("the stiffness is not positive semidefinite: its lowest eigenvalue is " + std::to_string(pairs.values.front()) + " rad²/s²",
+      fail(text("the stiffness is not positive semidefinite: its lowest eigenvalue is ", pairs.values.front(), " rad²/s²"),
            "check the materials and mounts or the matrices; with gyroscopic forces, lower the rotation speed");
     if (!(result.excess <= 1.))
       {
@@ -299,8 +300,8 @@ namespace Squeal
 
   void SymmetricSolver::fail_incomplete(const int n_found) const
   {
-    throw SolverError(std::to_string(n_found) + " modes were found but " + std::to_string(count.n_modes) + " exist below " +
-                        std::to_string(std::sqrt(count.limit) / (2. * M_PI)) + " Hz",
+    throw SolverError(text(counted(n_found, "mode was", "modes were"), " found, but ", count.n_modes,
+                           count.n_modes == 1 ? " exists" : " exist", " below ", decimal_text(hertz(std::sqrt(count.limit))), " Hz"),
                       options.what, "choose another Real modes/Solver, or move the end of the band away from a cluster of modes");
   }
 

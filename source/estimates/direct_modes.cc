@@ -178,7 +178,7 @@ namespace Squeal
     modes.left_real_part      = left.real_part;
     modes.left_imaginary_part = left.imaginary_part;
     modes.residuals           = right.residuals;
-    modes.summary             = text("LU factors of Q at ", exact_text(options.shift), " 1/s, ", right.n_solves, " solves");
+    modes.summary             = text("LU factors of Q at ", exact_text(options.shift), " 1/s, ", counted(right.n_solves, "solve"));
 
     make_dual(modes, products_by_lambda(matrices, modes));
 

@@ -3,6 +3,7 @@
 #include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/base/groups.h>
+#include <squeal/base/text.h>
 #include <squeal/estimates/reduction_errors.h>
 #include <squeal/estimates/mode_groups.h>
 #include <squeal/linear_algebra/communication.h>
@@ -118,7 +119,7 @@ namespace Squeal
     if (k == 0)
       return {};
     if (n_reduced < k)
-      throw SolverError("the reduced model has " + std::to_string(n_reduced) + " oscillating modes, fewer than the " + std::to_string(k) +
+      throw SolverError("the reduced model has " + counted(n_reduced, "oscillating mode") + ", fewer than the " + std::to_string(k) +
                           " modes of the reference",
                         "errors of a reduced model", "use a larger basis and all of its modes");
 

@@ -186,16 +186,16 @@ namespace Squeal
         State        state = worst_state(system, inverse, model, friction_coefficients, options.band);
         const double worst = worst_error(state);
 
-        progress.update(text(model.size(), " vectors, estimated error ", worst));
+        progress.update(text(counted(model.size(), "vector"), ", estimated error ", worst));
         if (worst <= options.tolerance)
           return {std::move(model), std::move(state.front().modes), std::move(state.front().estimates), worst, step};
 
         const auto fresh = new_vectors(system, model, inaccurate_directions(state, options.tolerance));
         if (!fresh || step == options.maximum_steps || model.size() + fresh->n_columns() > options.maximum_basis)
-          throw SolverError(text("the residual iteration ended with an estimated relative error of lambda of ", worst,
-                                 ", above the tolerance of ", options.tolerance, " (", model.size(), " vectors, ", step, " extensions)"),
-                            "complex modes",
-                            "raise Complex modes/Maximum basis or Complex modes/Iteration tolerance, or choose the Krylov solver");
+          throw SolverError(
+            text("the residual iteration ended with an estimated relative error of lambda of ", worst, ", above the tolerance of ",
+                 options.tolerance, " (", counted(model.size(), "vector"), ", ", counted(step, "extension"), ")"),
+            "complex modes", "raise Complex modes/Maximum basis or Complex modes/Iteration tolerance, or choose the Krylov solver");
         model.extend(*fresh);
       }
   }
@@ -212,7 +212,8 @@ namespace Squeal
     for (const double l : grown.modes.real_values)
       if (options.band.lists(l))
         modes.real_values.push_back(l);
-    modes.summary = text(grown.model.size(), " vectors, estimated error ", grown.worst_error, ", ", grown.n_growths, " extensions");
+    modes.summary =
+      text(counted(grown.model.size(), "vector"), ", estimated error ", grown.worst_error, ", ", counted(grown.n_growths, "extension"));
     return modes;
   }
 } // namespace Squeal

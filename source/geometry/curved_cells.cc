@@ -35,7 +35,7 @@ namespace Squeal
             }
         }
       if (first)
-        throw MeshError(text(off.size(), off.size() == 1 ? " second-order node is" : " second-order nodes are",
+        throw MeshError(text(counted(off.size(), "second-order node is", "second-order nodes are"),
                              " farther from the middle of the edge than half its length; one such node is at (", mesh.points[first->second],
                              ") m"),
                         describe_cell(mesh, first->first),

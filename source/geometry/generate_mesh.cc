@@ -174,10 +174,11 @@ namespace Squeal
       const std::string other_formats = "; for formats from which Gmsh reads no names (.unv, .inp, .bdf, ...), name the parts in a .geo "
                                         "after Merge, or convert the file to a .msh with physical names";
       if (mesh.dimension() < 2)
-        throw MeshError(mesh.n_unnamed_volume_elements == 0 ?
-                          "The geometry has neither physical volumes nor physical surfaces" :
-                          text("The mesh has ", mesh.n_unnamed_volume_elements, " volume elements, but no physical volumes or surfaces"),
-                        where, "name the volumes of a solid 'disc', 'pin_1', ..., or the surface of a plan 'disc'" + other_formats);
+        throw MeshError(
+          mesh.n_unnamed_volume_elements == 0 ?
+            "The geometry has neither physical volumes nor physical surfaces" :
+            text("The mesh has ", counted(mesh.n_unnamed_volume_elements, "volume element"), ", but no physical volumes or surfaces"),
+          where, "name the volumes of a solid 'disc', 'pin_1', ..., or the surface of a plan 'disc'" + other_formats);
       constexpr const char *kinds[] = {"point", "curve", "surface", "volume"};
       for (const GmshMesh::Group &group : mesh.groups)
         if (group.name.empty() && (mesh.dimension() == 2 || group.dimension >= 2))

@@ -43,11 +43,6 @@ namespace Squeal
       return text("(", coordinate(0), ", ", coordinate(1), ", ", coordinate(2), ") m");
     }
 
-    std::string counted(const std::size_t n, const std::string &singular, const std::string &plural)
-    {
-      return std::to_string(n) + ' ' + (n == 1 ? singular : plural);
-    }
-
     template <typename Visit>
     void visit_box(const Tree &tree, const Box &box, const Visit &visit)
     {
@@ -132,7 +127,7 @@ namespace Squeal
           twins[bodies[node]].insert(other);
       });
       for (const auto &[body, of_body] : twins)
-        throw MeshError(counted(of_body.size(), "node", "nodes") + " of body '" + mesh.body_names[body] + "' " +
+        throw MeshError(counted(of_body.size(), "node") + " of body '" + mesh.body_names[body] + "' " +
                           (of_body.size() == 1 ? "coincides" : "coincide") + " with other nodes of the same body; the first one is at " +
                           place(mesh.points[*of_body.begin()]),
                         where,
@@ -155,9 +150,9 @@ namespace Squeal
                                                                           2)
           unmatched.push_back(&face);
       if (!unmatched.empty())
-        throw MeshError(counted(unmatched.size(), "quadrilateral face", "quadrilateral faces") +
-                          (unmatched.size() == 1 ? " has" : " have") + " two triangles on the other side; the first one is in body '" +
-                          mesh.body_names[unmatched[0]->body] + "' at " + place(face_geometry(mesh, *unmatched[0]).centre),
+        throw MeshError(counted(unmatched.size(), "quadrilateral face") + (unmatched.size() == 1 ? " has" : " have") +
+                          " two triangles on the other side; the first one is in body '" + mesh.body_names[unmatched[0]->body] + "' at " +
+                          place(face_geometry(mesh, *unmatched[0]).centre),
                         where, "insert pyramids between quadrilateral and triangular faces");
     }
 
@@ -199,9 +194,8 @@ namespace Squeal
             wrong[face.body].push_back(face);
         }
       for (const auto &[pin, faces] : wrong)
-        throw MeshError("'" + mesh.body_names[pin] + "' and the disc lie on the same side of " +
-                          counted(faces.size(), "contact face", "contact faces") + ", the first one at " +
-                          place(face_geometry(mesh, faces.front()).centre) + ": one body is inside the other",
+        throw MeshError("'" + mesh.body_names[pin] + "' and the disc lie on the same side of " + counted(faces.size(), "contact face") +
+                          ", the first one at " + place(face_geometry(mesh, faces.front()).centre) + ": one body is inside the other",
                         where, "move the pin to the other side of its contact face, for example by reversing its extrusion");
     }
 
@@ -329,10 +323,10 @@ namespace Squeal
         return place(index < n_nodes ? mesh.points[index] : centre(mesh, mesh.cells[index - n_nodes]));
       };
       for (const auto &[body, nodes] : points.hanging)
-        throw MeshError(
-          counted(nodes.size(), "node", "nodes") + " of body '" + mesh.body_names[body] + "' " + (nodes.size() == 1 ? "is" : "are") +
-            " on or inside elements of this body without being nodes of these elements; the first one is at " + place_of(*nodes.begin()),
-          where, "mesh neighbouring parts of a body with the same nodes on their common faces (no hanging nodes)");
+        throw MeshError(counted(nodes.size(), "node") + " of body '" + mesh.body_names[body] + "' " + (nodes.size() == 1 ? "is" : "are") +
+                          " on or inside elements of this body without being nodes of these elements; the first one is at " +
+                          place_of(*nodes.begin()),
+                        where, "mesh neighbouring parts of a body with the same nodes on their common faces (no hanging nodes)");
       const auto most = std::max_element(points.overlaps.begin(), points.overlaps.end(),
                                          [](const auto &a, const auto &b) { return a.second.size() < b.second.size(); });
       if (most == points.overlaps.end())
@@ -340,8 +334,7 @@ namespace Squeal
       const auto &[bodies, indices] = *most;
       const std::size_t n_inside    = std::distance(indices.begin(), indices.lower_bound(n_nodes));
       throw MeshError("Bodies '" + mesh.body_names[bodies.first] + "' and '" + mesh.body_names[bodies.second] +
-                        "' overlap: " + counted(n_inside, "node", "nodes") + " and " +
-                        counted(indices.size() - n_inside, "element centre", "element centres") +
+                        "' overlap: " + counted(n_inside, "node") + " and " + counted(indices.size() - n_inside, "element centre") +
                         " of the former are inside the latter, the first one at " + place_of(*indices.begin()),
                       where, "move one body, or remove duplicate bodies");
     }

@@ -148,13 +148,13 @@ namespace Squeal
           {
             const std::vector<std::string> &words = reader.next();
             if (words.empty())
-              reader.refuse(text("the file contains ", k, " entries, not ", n));
+              reader.refuse(text("the file contains ", counted(k, "entry", "entries"), ", not ", n));
             if (words.size() != 3)
               reader.refuse("an entry does not consist of a row, a column and a value");
             add(reader.number<int>(words[0]), reader.number<int>(words[1]), words[2]);
           }
         if (!reader.next().empty())
-          reader.refuse(text("there are more than ", n, " entries"));
+          reader.refuse(text("there are more than ", counted(n, "entry", "entries")));
       }
     SparseRows result(n_rows, n_columns);
     result.setFromTriplets(entries.begin(), entries.end());

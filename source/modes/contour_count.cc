@@ -100,7 +100,7 @@ namespace Squeal
               else
                 length *= std::clamp(0.8 / step.size, 0.1, 0.5);
             }
-          progress.update(std::to_string(determinant.n_points) + " points of the contour");
+          progress.update(counted(determinant.n_points, "point") + " of the contour");
         }
       count.n_points += determinant.n_points;
 
@@ -133,8 +133,9 @@ namespace Squeal
               contour.refuse("a real mode lies on the contour", {0., end});
         }
       if (n_inside != n_frictionless)
-        throw SolverError(text(n_inside, " real modes were found in the band, but ", n_frictionless, " are counted by inertia"), place,
-                          "change Band/Maximum frequency");
+        throw SolverError(
+          text(counted(n_inside, "real mode was", "real modes were"), " found in the band, but the count by inertia is ", n_frictionless),
+          place, "change Band/Maximum frequency");
     }
 
     std::vector<ContourCount> count_condensed(const CoupledSystem       &system,
@@ -252,8 +253,8 @@ namespace Squeal
   {
     if (const int n_found = n_in_rectangle(lambda, contour); n_found != n_counted)
       throw SolverError(
-        text(n_found, " complex modes were found in the band up to |Re lambda| = ", contour.largest_growth, " 1/s, but ", n_counted,
-             " were counted"),
+        text(counted(n_found, "complex mode was", "complex modes were"), " found in the band up to |Re lambda| = ", contour.largest_growth,
+             " 1/s, but the count is ", n_counted),
         place,
         "lower Complex modes/Tolerance (or Complex modes/Iteration tolerance for residual iteration), or change Band/Maximum frequency or "
         "Band/Maximum rate");

@@ -69,7 +69,7 @@ namespace Squeal
       modes.imaginary_part = found.imaginary_part;
       modes.real_values    = found.real_values;
       modes.n_rigid_body   = found.n_zero_values / 2;
-      modes.summary        = text(found.n_solves, " solves, ", found.n_restarts, " restarts");
+      modes.summary        = text(counted(found.n_solves, "solve"), ", ", counted(found.n_restarts, "restart"));
       return modes;
     }
   } // namespace

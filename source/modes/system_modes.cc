@@ -36,10 +36,11 @@ namespace Squeal
     const unsigned int allowed   = solvers.maximum_modes;
     const double       frequency = hertz(largest_circular_frequency);
     if (count.n_modes > static_cast<int>(allowed))
-      throw ParameterError(text(count.n_modes, " modes lie below ", frequency, " Hz, more than the maximum of ", allowed),
-                           "parameter Real modes/Maximum number of modes",
-                           "lower Band/Maximum frequency, or raise Real modes/Maximum number of modes; the computing time increases with "
-                           "up to the cube of the number of modes");
+      throw ParameterError(
+        text(counted(count.n_modes, "mode lies", "modes lie"), " below ", frequency, " Hz, more than the maximum of ", allowed),
+        "parameter Real modes/Maximum number of modes",
+        "lower Band/Maximum frequency, or raise Real modes/Maximum number of modes; the computing time increases with "
+        "up to the cube of the number of modes");
     progress.finish(text(count.n_modes, " below ", frequency, " Hz by inertia"));
     return count;
   }

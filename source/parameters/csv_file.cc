@@ -101,8 +101,8 @@ namespace Squeal
                                         line.find('\t') != std::string::npos ? "; the line contains tabs" :
                                                                                "";
       throw ParameterError(
-        text("the line has ", values.size(), values.size() == 1 ? " value" : " values", ", but the table has ", n_names,
-             n_names == 1 ? " column" : " columns", is_comma_more ? "; the line ends with a comma" : separator),
+        text("the line has ", counted(values.size(), "value"), ", but the table has ", counted(n_names, "column"),
+             is_comma_more ? "; the line ends with a comma" : separator),
         where,
         "give one value for each column, with decimal points and without a comma at the end; quote values that contain commas" +
           decimal_point_hint(line));

@@ -266,9 +266,8 @@ namespace Squeal
             return {i, end - start};
           i += end - start;
         }
-      throw ParameterError(
-        Squeal::text("the value ", in_quotes(text), " has ", n, n == 1 ? " number" : " numbers", ", but number ", k, " is varied"), where,
-        "lower the index, or remove it to vary the whole value");
+      throw ParameterError(Squeal::text("the value ", in_quotes(text), " has ", counted(n, "number"), ", but number ", k, " is varied"),
+                           where, "lower the index, or remove it to vary the whole value");
     }
   } // namespace
 

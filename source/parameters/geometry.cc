@@ -264,8 +264,8 @@ namespace Squeal
 
     const auto check_lengths = [](const PinLayout &layout, const char *side) {
       if (layout.radii.size() != layout.angles.size())
-        refuse(text("Geometry/", side, " pin radii has ", layout.radii.size(), " values, but Geometry/", side, " pin angles has ",
-                    layout.angles.size()),
+        refuse(text("Geometry/", side, " pin radii has ", counted(layout.radii.size(), "value"), ", but Geometry/", side,
+                    " pin angles has ", layout.angles.size()),
                text(side, " pin angles"), "give every pin one radius and one angle");
     };
     check_lengths(top, "Top");

@@ -212,8 +212,9 @@ namespace Squeal
           entry.refuse(text("the matrix of positions is ", n_points, " x ", positions.cols(), ", not n x 3 with n > 0"),
                        "give a row with x, y and z for each point");
         if (!root.has("displacements") && 3 * n_points != n)
-          entry.refuse(text(n_points, " points have ", 3 * n_points, " displacements, but the system has ", n, " dofs"),
-                       "give `displacements`, the matrix from dofs to displacements of the points");
+          entry.refuse(
+            text(counted(n_points, "point has ", "points have "), 3 * n_points, " displacements, but the system has ", counted(n, "dof")),
+            "give `displacements`, the matrix from dofs to displacements of the points");
         ShapePoints  result{positions, nullptr};
         const RowMap rows = ShapePoints::rows_of(n_points, communicator);
         if (root.has("displacements"))
@@ -349,8 +350,9 @@ namespace Squeal
         term.left  = factor(left);
         term.right = factor(right);
         if (term.left->rank() != term.right->rank())
-          right.refuse(text("the right factor has ", term.right->rank(), " columns, but the left factor has ", term.left->rank()),
-                       "give both factors the same number of columns");
+          right.refuse(
+            text("the right factor has ", counted(term.right->rank(), "column"), ", but the left factor has ", term.left->rank()),
+            "give both factors the same number of columns");
         if (entry.has("weights"))
           {
             const JsonEntry   file = entry["weights"];

@@ -5,6 +5,7 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/base/groups.h>
 #include <squeal/base/tasks.h>
+#include <squeal/base/text.h>
 #include <squeal/linear_algebra/orthonormal_basis.h>
 
 #include <algorithm>
@@ -242,15 +243,13 @@ namespace Squeal
   {
     for (std::size_t i = 1; i < grid.size(); ++i)
       if (!(grid[i] > grid[i - 1]))
-        throw Error("friction coefficient " + std::to_string(grid[i]) + " is not larger than the previous one, " +
-                      std::to_string(grid[i - 1]),
+        throw Error("friction coefficient " + exact_text(grid[i]) + " is not larger than the previous one, " + exact_text(grid[i - 1]),
                     "tracking of modes", "give friction coefficients in ascending order, each only once");
     for (const auto &[quantity, name] : {std::make_pair(options.largest_circular_frequency, "end of the band"),
                                          {options.threshold_tolerance, "tolerance of thresholds"},
                                          {options.smallest_step, "smallest step"}})
       if (!(quantity > 0.))
-        throw Error("the " + std::string(name) + " is " + std::to_string(quantity) + ", but must be positive", "tracking of modes",
-                    "give a positive value");
+        throw Error(text("the ", name, " is ", quantity, ", but must be positive"), "tracking of modes", "give a positive value");
 
     TrackedModes tracked{options, {}, {}, {}, {}, {}, {}};
     insert(tracked, evaluate, grid, false);

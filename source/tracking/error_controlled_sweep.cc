@@ -139,8 +139,8 @@ namespace Squeal
       throw SolverError("there is no operating point to evaluate", "sweep", "give at least one");
     ErrorControlledSweep result{points.size(), 0., 0, ""};
     const auto           report = [&](const double error) {
-      progress.update(text(points.size() - result.n_left, " of ", points.size(), " operating points, ", model.size(),
-                                     " vectors, estimated error ", error));
+      progress.update(text(points.size() - result.n_left, " of ", points.size(), " operating points, ", counted(model.size(), "vector"),
+                                     ", estimated error ", error));
     };
 
     if (!training.empty())

@@ -24,6 +24,13 @@ TEST(Text, DecimalNumbersKeepTheirDigits)
   EXPECT_EQ(decimal_text(-0., 1), "0");
 }
 
+TEST(Text, CountsAgreeWithTheirNouns)
+{
+  EXPECT_EQ(counted(1, "node"), "1 node");
+  EXPECT_EQ(counted(0, "node"), "0 nodes");
+  EXPECT_EQ(counted(2, "branch", "branches"), "2 branches");
+}
+
 TEST(Text, NumbersAreParsedAsAWhole)
 {
   EXPECT_EQ(parse_number(" 1.5e3 "), 1500.);

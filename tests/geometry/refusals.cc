@@ -79,7 +79,7 @@ TEST(Refusals, PlansThatDoNotFit)
      {plate + disc + "c() = Boundary{ Surface{2}; }; Physical Curve(\"pin_top_1\") = {c(0)};", {"'pin_top_1' is not one closed curve"}},
      {plate + disc + "c() = Abs(Boundary{ Surface{2}; }); Transfinite Curve{c()} = 2; Physical Curve(\"pin_top_1\") = {c()};",
       {"'pin_top_1' has 8 nodes", "multiple of 6"}},
-     {apart + disc + pad, {"coincide", "are not joined"}}});
+     {apart + disc + pad, {"coincide at (1, ", "are not joined"}}});
 
   // Two pins on one radius fill the width of the ring, and the lower pin overlaps both
   GeometryParameters parameters;
@@ -115,7 +115,7 @@ TEST(Refusals, BadElementsAreFound)
   Mesh folded = mesh;
   folded.points.insert(folded.points.end(), {{0, 0, 0.5}, {1, 0, 0.5}, {1, 1, 0.5}, {0, 1, 0.5}});
   folded.cells.push_back({Shape::hexahedron, {4, 5, 6, 7, 8, 9, 10, 11}, 0});
-  expect_mentions(message<MeshError>([&] { make_right_handed(folded); }), {"inverted", "element 1", "'disc'"});
+  expect_mentions(message<MeshError>([&] { make_right_handed(folded); }), {"inverted", "element 0", "element 1", "'disc'"});
 
   // Add a duplicate element, and a third element on one face
   Mesh twice = mesh;

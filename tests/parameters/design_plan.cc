@@ -227,7 +227,8 @@ TEST(WithDesign, RefusesUnknownNamesAndValues)
                                     {"Geometry/Pin height", "-1"},
                                     {"Mounts/Elastic mounts[4]", "1"},
                                     {"Mounts/Elastic mounts[0]", "1"}})
-    EXPECT_THROW(with_design({}, {name}, {value}), ParameterError) << name;
+    expect_mentions(message<ParameterError>([&, &name = name, &value = value] { with_design({}, {name}, {value}, "designs.csv, line 2"); }),
+                    {"where:  designs.csv, line 2"});
 }
 
 TEST(WithNumber, LeavesDigitsOfNamesAlone)

@@ -29,6 +29,9 @@ namespace Squeal
   /// A number without an exponent: all digits before the point, and at least @p n_digits significant digits.
   std::string decimal_text(double value, int n_digits = 4);
 
+  /// A number of things: "1 node", "2 nodes". The plural is formed with s unless it is given.
+  std::string counted(std::size_t n, const std::string &singular, const std::string &plural = "");
+
   /// A finite number with optional surrounding blanks; no value for any other string. Zero has no sign.
   std::optional<double> parse_number(const std::string &text);
 

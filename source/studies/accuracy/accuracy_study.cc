@@ -226,8 +226,8 @@ namespace Squeal
       run.progress.note(text("  reference: ", reference.name, ", extrapolated from ", reference.members.size(), " meshes with up to ",
                              reference.members.back()->n_dofs, " dofs; error of its finest mesh about ",
                              decimal_text(100. * reference.error), " % (rms)"));
-      run.progress.note(text("  ", n, " modes: ", n_orders, " with an observed order of convergence of the frequency, ", n_in_cluster,
-                             " in clusters whose modes mix differently on each mesh"));
+      run.progress.note(text("  ", counted(n, "mode"), ": ", n_orders, " with an observed order of convergence of the frequency, ",
+                             n_in_cluster, " in clusters whose modes mix differently on each mesh"));
     }
     Reason no_grown_basis(const Parameters &p)
     {

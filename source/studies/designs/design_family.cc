@@ -75,8 +75,8 @@ namespace Squeal
     if (found.n_left > 0)
       throw SolverError(text("the common basis is not accurate enough: ", found.why_stopped), "designs on one mesh",
                         "raise Sweep/Tolerance");
-    run.progress.finish(
-      text(points.size(), " operating points, ", model->reduced->size(), " vectors, estimated error ", found.worst_error));
+    run.progress.finish(text(counted(points.size(), "operating point"), ", ", counted(model->reduced->size(), "vector"),
+                             ", estimated error ", found.worst_error));
   }
 
   DesignFamily::Member DesignFamily::solve(const std::size_t design)

@@ -207,8 +207,8 @@ namespace Squeal
     const auto n = [&](const DesignOutcome outcome) {
       return std::count_if(designs.begin(), designs.end(), [outcome](const DesignResult &row) { return row.outcome == outcome; });
     };
-    lines.push_back(text("  ", designs.size(), " designs: ", n(DesignOutcome::solved), " solved, ", n(DesignOutcome::refused), " refused, ",
-                         n(DesignOutcome::failed), " failed"));
+    lines.push_back(text("  ", counted(designs.size(), "design"), ": ", n(DesignOutcome::solved), " solved, ", n(DesignOutcome::refused),
+                         " refused, ", n(DesignOutcome::failed), " failed"));
     const auto n_incomplete = std::count_if(
       designs.begin(), designs.end(), [](const DesignResult &row) { return row.outcome == DesignOutcome::solved && !row.is_complete; });
     if (n_incomplete > 0)

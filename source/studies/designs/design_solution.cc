@@ -253,7 +253,7 @@ namespace Squeal
         evaluate_points(model);
         if (model.known.size() < regime.points.size())
           throw SolverError(text("estimated errors exceed Sweep/Tolerance at ", regime.points.size() - model.known.size(), " of ",
-                                 regime.points.size(), " friction coefficients"),
+                                 counted(regime.points.size(), "friction coefficient")),
                             "sweep of the design", "raise Sweep/Tolerance, or Sweep/Maximum basis if it limits the basis");
         const std::size_t before = charts[0].size();
         follow_branches(model, charts);

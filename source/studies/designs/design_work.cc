@@ -167,7 +167,7 @@ namespace Squeal
     Run                     part(parameters, run, silent);
     const FrictionlessModes modes  = frictionless_modes(linearised_scene(scene, part), part, reference_margin);
     ReferenceModes          result = reference_modes(modes, run.parameters.materials);
-    run.progress.finish(text(result.names.size(), " modes of the given model, to label the modes of designs"));
+    run.progress.finish(text(counted(result.names.size(), "mode"), " of the given model, to label the modes of designs"));
     return result;
   }
 
@@ -233,7 +233,7 @@ namespace Squeal
     for (const int design : work.designs)
       if (auto result = store.find(design))
         results.push_back(*std::move(result));
-    run.progress.finish(text(results.size(), " designs, ", n_here * n_ranks, " concurrently"));
+    run.progress.finish(text(counted(results.size(), "design"), ", ", n_here * n_ranks, " concurrently"));
     return results;
   }
 

@@ -53,7 +53,7 @@ namespace Squeal
       const double omega_max = circular_frequency(parameters.discretization.maximum_frequency);
       ComplexModes modes     = full_order_modes(coupled, *frictionless.inverse, model, reduced_modes(model, mu, omega_max), nullptr);
       modes.real_values      = real_eigenvalue_modes(model, mu, omega_max).real_values;
-      modes.summary          = text(model.size(), " vectors");
+      modes.summary          = counted(model.size(), "vector");
       return modes;
     }
 

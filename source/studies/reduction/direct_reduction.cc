@@ -112,8 +112,8 @@ namespace Squeal
     const auto   factor      = factorize_general(*pencil_at(sparse_matrices(system.terms, modes.values), shift), "Q(s) at a real shift");
     result.errors            = reduction_errors(*system.mass, model, modes, reference,
                                                 [&](const ReducedModes &chosen) { return estimate(system, model, *factor, chosen); });
-    run.progress.finish(text(result.basis.n_r0, " vectors from ", reduction.snapshots.size(), " values of ", system.varied, ", ",
-                             result.n_r, " after truncation, largest error of lambda ", largest_error(result)));
+    run.progress.finish(text(counted(result.basis.n_r0, "vector"), " from ", counted(reduction.snapshots.size(), "value"), " of ",
+                             system.varied, ", ", result.n_r, " after truncation, largest error of lambda ", largest_error(result)));
     write_reduced_system(model, plan, result, 1, run);
     return result;
   }

@@ -102,7 +102,7 @@ namespace Squeal
       candidate.build_seconds  = sets.cost(recipe) + watch.cost().cpu_seconds;
       const ReducedModes modes = timed_modes(sets.plan, model, candidate.solve_seconds);
       candidate.errors         = reduction_errors(sets.system, *sets.frictionless.inverse, model, modes, reference.modes);
-      progress.finish(text(candidate.basis.n_r0, " vectors, ", candidate.basis.size(),
+      progress.finish(text(counted(candidate.basis.n_r0, "vector"), ", ", candidate.basis.size(),
                            " after coupling and rank reduction, largest error of lambda ", largest_error(candidate)));
       write_reduced_system(model, sets.plan, candidate, number, sets.run);
       // Free the vectors, which are no longer needed
@@ -163,7 +163,7 @@ namespace Squeal
       run.write_table("reduction_estimates", reduction_estimate_table(candidates, reference));
       run.store_table("reduction_modes", reduction_mode_table(candidates, reference));
       run.screen << '\n';
-      run.progress.note(text("  full order: ", reference.seconds, " s of CPU time for ", reference.labels.size(), " modes"));
+      run.progress.note(text("  full order: ", reference.seconds, " s of CPU time for ", counted(reference.labels.size(), "mode")));
       run.finish();
     }
 

@@ -98,8 +98,8 @@ namespace Squeal
       const ErrorControlledSweep result = solve_points(model, points, n_training, tolerance, keep, "Samples");
       label();
       if (result.n_left > 0)
-        model.run.warn(text(result.n_left, " samples have no results within the tolerance of ", tolerance, ": ", result.why_stopped,
-                            "; they count as undecided. Remove this cause, or raise the tolerance"));
+        model.run.warn(text(counted(result.n_left, "sample has", "samples have"), " no results within the tolerance of ", tolerance, ": ",
+                            result.why_stopped, "; such samples count as undecided. Remove this cause, or raise the tolerance"));
       return result.n_growths;
     }
 
@@ -241,8 +241,8 @@ namespace Squeal
         first += size;
         size = growth_of_sets * first;
       }
-    run.progress.finish(text(points.size() - result.n_left, " of ", points.size(), " samples, ", model.reduced->size(),
-                             " vectors, estimated error ", result.worst_error));
+    run.progress.finish(text(points.size() - result.n_left, " of ", points.size(), " samples, ", counted(model.reduced->size(), "vector"),
+                             ", estimated error ", result.worst_error));
     return result;
   }
 

@@ -187,12 +187,11 @@ namespace Squeal
         n_onsets += onsets.size();
         model.known.clear(); // the vectors of all samples may exceed the memory
       }
-    const std::string how = model.reduced ? text(model.reduced->size(), " vectors") : "full order";
-    run.progress.finish(text(followed.size(), " samples, ", how, ", ", n_onsets, " onsets"));
+    const std::string how = model.reduced ? counted(model.reduced->size(), "vector") : "full order";
+    run.progress.finish(text(counted(followed.size(), "sample"), ", ", how, ", ", counted(n_onsets, "onset")));
     if (n_missed > 0)
-      run.warn(text(n_missed, n_missed == 1 ? " operating point" : " operating points",
-                    " of the followed samples did not meet the tolerance of ", options.tolerance, ": ", why_stopped,
-                    "; samples with such points are excluded from the distributions of onsets. Raise ",
+      run.warn(text(counted(n_missed, "operating point"), " of the followed samples did not meet the tolerance of ", options.tolerance,
+                    ": ", why_stopped, "; samples with such points are excluded from the distributions of onsets. Raise ",
                     "Sweep/Tolerance, or raise Sweep/Maximum basis if the basis has reached this limit"));
   }
 

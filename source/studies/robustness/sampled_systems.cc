@@ -112,9 +112,9 @@ namespace Squeal
     result.n_independent = result.has_indices ? 2 * half : n;
     result.n_followed    = static_cast<int>(parameters.n_onsets);
     if (result.n_followed > result.n_independent)
-      throw ParameterError(
-        text("onsets are requested for ", result.n_followed, " samples, but there are only ", result.n_independent, " independent samples"),
-        "parameter Robustness/Samples with onsets", "lower it, or raise Robustness/Number of samples");
+      throw ParameterError(text("onsets are requested for ", counted(result.n_followed, "sample"), ", but there are only ",
+                                counted(result.n_independent, "independent sample")),
+                           "parameter Robustness/Samples with onsets", "lower it, or raise Robustness/Number of samples");
     return result;
   }
 
@@ -229,8 +229,8 @@ namespace Squeal
           add_point(operations[s], mu, s);
       }
     result.n_samples.resize(regimes.size(), 0);
-    run.progress.finish(text(samples.n(), " samples of ", samples.numbers.size(), " uncertain numbers, ", regimes.size(),
-                             regimes.size() == 1 ? " contact set" : " contact sets"));
+    run.progress.finish(text(counted(samples.n(), "sample"), " of ", counted(samples.numbers.size(), "uncertain number"), ", ",
+                             counted(regimes.size(), "contact set")));
 
     for (ContactRegime &regime : regimes)
       {

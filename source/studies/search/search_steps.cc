@@ -128,7 +128,7 @@ namespace Squeal
                            to_string(friction.labels[leading - lambda.begin()]),
                            *std::max_element(residuals.begin(), residuals.end())};
 
-    run.progress.finish(text(result.n_modes, " modes, ", result.n_unstable, " unstable, largest divergence rate ",
+    run.progress.finish(text(counted(result.n_modes, "mode"), ", ", result.n_unstable, " unstable, largest divergence rate ",
                              decimal_text(100. * result.leading.divergence_rate), " % (", result.label, ")"));
     return result;
   }

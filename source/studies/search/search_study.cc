@@ -42,7 +42,7 @@ namespace Squeal
         std::vector<int> designs(run.parameters.search.n_evaluations);
         std::iota(designs.begin(), designs.end(), 1);
         if (const std::size_t n_known = store.n_known(designs); n_known > 0)
-          run.progress.note(text("  continuing an interrupted search: ", n_known, " designs are finished"));
+          run.progress.note(text("  continuing an interrupted search: ", counted(n_known, "design is", "designs are"), " finished"));
       }
 
       /// Objective at an evaluated point; empty for other points.

@@ -163,8 +163,8 @@ namespace Squeal
           break;
         ++n_growths;
       }
-    run.progress.finish(text(result.size(), " modes, ", model.parameters.size(), " parameters; ", sweep.reduced->size(), " vectors after ",
-                             n_growths, n_growths == 1 ? " extension" : " extensions"));
+    run.progress.finish(text(counted(result.size(), "mode"), ", ", counted(model.parameters.size(), "parameter"), "; ",
+                             counted(sweep.reduced->size(), "vector"), " after ", counted(n_growths, "extension")));
     if (!why_stopped.empty())
       run.warn("derivatives of modes do not meet Sensitivity/Tolerance: " + why_stopped +
                "; raise Sensitivity/Tolerance, or Sweep/Maximum basis if it limits the basis");

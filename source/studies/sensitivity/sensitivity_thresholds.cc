@@ -233,7 +233,7 @@ namespace Squeal
           }
       }
     const auto n = std::count_if(result.begin(), result.end(), [](const ThresholdSensitivity &t) { return t.obstacle.empty(); });
-    run.progress.finish(text(n, " of ", result.size(), " thresholds, ", sweep.reduced->size(), " vectors"));
+    run.progress.finish(text(n, " of ", result.size(), " thresholds, ", counted(sweep.reduced->size(), "vector")));
     return result;
   }
 } // namespace Squeal

@@ -26,7 +26,7 @@ namespace Squeal
     solvers.iteration_tolerance = tolerance_of_vectors;
     FrictionModes result        = named_modes(
              frictionless, modes_with_friction(coupled, frictionless, value, run.parameters.discretization.band(), solvers, run.progress));
-    run.progress.finish(text(result.modes.lambda.size(), " modes"));
+    run.progress.finish(counted(result.modes.lambda.size(), "mode"));
     return result;
   }
 

@@ -32,7 +32,7 @@ namespace Squeal
               }
           }
       const std::size_t n      = friction.n_unstable();
-      std::string       result = text("  squeal: ", n, n == 1 ? " unstable mode" : " unstable modes", friction.at);
+      std::string       result = text("  squeal: ", counted(n, "unstable mode"), friction.at);
       if (leading < lambda.size())
         result += text(", led by ", to_string(friction.labels[leading]), " at ", decimal_text(modal_quantities(lambda[leading]).frequency),
                        " Hz with a divergence rate of ", decimal_text(100. * highest), " %");
@@ -65,10 +65,10 @@ namespace Squeal
     const ComplexModes &found = result.modes;
     if (const std::string &varied = frictionless.linearisation.coupled.varied; !varied.empty())
       result.at = text(" at ", varied, " = ", exact_text(mu));
-    result.cost = run.progress.finish(text(found.lambda.size(), " found, ", result.n_unstable(), " unstable", result.at,
-                                           found.n_rigid_body > 0 ? text(", rigid-body modes: ", found.n_rigid_body) : "",
-                                           found.real_values.empty() ? "" : text(", ", found.real_values.size(), " real eigenvalues"), "; ",
-                                           found.summary));
+    result.cost = run.progress.finish(
+      text(found.lambda.size(), " found, ", result.n_unstable(), " unstable", result.at,
+           found.n_rigid_body > 0 ? text(", rigid-body modes: ", found.n_rigid_body) : "",
+           found.real_values.empty() ? "" : text(", ", counted(found.real_values.size(), "real eigenvalue")), "; ", found.summary));
     return result;
   }
 
@@ -76,12 +76,12 @@ namespace Squeal
   {
     std::vector<std::string> lines;
     if (const std::size_t n = friction.n_growing_real(); n > 0)
-      lines.push_back(text("  static divergence: ", n, n == 1 ? " real eigenvalue" : " real eigenvalues", " above zero", friction.at,
-                           ", largest growth rate ", decimal_text(friction.modes.real_values.back()), " 1/s"));
+      lines.push_back(text("  static divergence: ", counted(n, "real eigenvalue"), " above zero", friction.at, ", largest growth rate ",
+                           decimal_text(friction.modes.real_values.back()), " 1/s"));
     if (friction.n_unstable() > 0)
       lines.push_back(squeal(friction));
     if (const std::size_t n = friction.n_of(Verdict::undecided); n > 0)
-      lines.push_back(text("  undecided: ", n, n == 1 ? " mode grows or decays" : " modes grow or decay", friction.at,
+      lines.push_back(text("  undecided: ", counted(n, "mode grows or decays", "modes grow or decay"), friction.at,
                            " by less than the estimated error of the eigenvalue"));
     if (lines.empty())
       lines.push_back(text("  stable: no unstable mode below ", exact_text(maximum_frequency), " Hz", friction.at));
@@ -94,16 +94,20 @@ namespace Squeal
     const std::size_t   n_complex = modes.lambda.size() + modes.n_rigid_body, n_values = modes.real_values.size();
     if (n_complex == n_real_modes)
       return "";
-    const std::string counts = text("  note: ", n_real_modes, " real modes, but ", n_complex, " complex modes in the band: ");
-    std::string       rest;
+    const std::string counts =
+      text("  note: ", counted(n_real_modes, "real mode"), ", but ", counted(n_complex, "complex mode"), " in the band: ");
+    std::string rest;
     if (n_values > 0)
-      rest = text(n_values, " real eigenvalues replace modes that no longer oscillate");
+      rest = counted(n_values, "real eigenvalue replaces", "real eigenvalues replace") + " modes that no longer oscillate";
     if (friction.n_slow > 0)
       rest +=
         text(rest.empty() ? "" : ", and ", "eigenvalues with |lambda| below ", zero_frequency, " of the end of the band are not listed");
+    if (2 * n_complex + n_values == 2 * n_real_modes)
+      return counts + rest;
     if (maximum_rate > 0.)
-      rest += text(rest.empty() ? "" : ", and ", "modes that decay faster than ", exact_text(maximum_rate), " 1/s are not listed");
-    else if (friction.n_slow == 0 && 2 * n_complex + n_values != 2 * n_real_modes)
+      rest += text(rest.empty() ? "" : ", and ", "modes may have crossed the end of the band or decay faster than ",
+                   exact_text(maximum_rate), " 1/s");
+    else if (friction.n_slow == 0)
       rest += text(rest.empty() ? "" : ", and ", "modes have crossed the end of the band");
     return counts + rest;
   }
@@ -135,15 +139,15 @@ namespace Squeal
     const auto slowest =
       std::count_if(modes.lambda.begin(), modes.lambda.end(), [&](const auto &lambda) { return is_slow(system, lambda); });
     if (conditioning.largest_error() > tolerance)
-      run.warn(text("the eigenvalues are accurate to about ", std::floor(conditioning.digits()), " of 16 digits: growth rates below ",
-                    100. * largest_error(system, modes, conditioning), " % of omega cannot be distinguished from zero",
-                    slowest > 0 ? text("; for ", slowest, slowest == 1 ? " mode" : " modes", " below ",
-                                       decimal_text(hertz(std::sqrt(slow_square * system.hidden_square))), " Hz, the limit is ",
-                                       100. * conditioning.largest_error(), " %") :
-                                  "",
-                    " (condition numbers: stiffness ", conditioning.stiffness, ", eigenvalues up to ", kappa,
-                    "; cancellation in the stiffness ", conditioning.largest_cancellation, "; energy of the residuals up to ",
-                    conditioning.largest_residual, ")"));
+      run.warn(
+        text("the eigenvalues are accurate to about ", std::floor(conditioning.digits()), " of 16 digits: growth rates below ",
+             100. * largest_error(system, modes, conditioning), " % of omega cannot be distinguished from zero",
+             slowest > 0 ?
+               text("; for ", counted(slowest, "mode"), " below ", decimal_text(hertz(std::sqrt(slow_square * system.hidden_square))),
+                    " Hz, the limit is ", 100. * conditioning.largest_error(), " %") :
+               "",
+             " (condition numbers: stiffness ", conditioning.stiffness, ", eigenvalues up to ", kappa, "; cancellation in the stiffness ",
+             conditioning.largest_cancellation, "; energy of the residuals up to ", conditioning.largest_residual, ")"));
   }
 
   std::vector<std::optional<WaveShares>> waves_with_rotation(const FrictionlessModes &frictionless,

@@ -50,8 +50,8 @@ namespace Squeal
       const int n      = count_negative_eigenvalues(*coupled.stiffness, "stiffness of the rotating disc", &n_null);
       if (n + n_null > 0)
         throw ParameterError(
-          text("the rotation speed of ", exact_text(is_in_map ? last : speed), " rad/s exceeds a critical speed: ",
-               "the stiffness K - Omega^2 rho N has ", n + n_null, " non-positive eigenvalue", n + n_null == 1 ? "" : "s",
+          text("the rotation speed of ", exact_text(is_in_map ? last : speed),
+               " rad/s exceeds a critical speed: ", "the stiffness K - Omega^2 rho N has ", counted(n + n_null, "non-positive eigenvalue"),
                ". The model does not contain centrifugal prestress, which is of the same order Omega^2 and stiffens the disc"),
           is_in_map ? "parameter Sweep/Last map value" : "parameter Operation/Rotation speed",
           "lower it, or set Operation/Gyroscopic forces = false");

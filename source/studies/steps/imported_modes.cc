@@ -33,8 +33,8 @@ namespace Squeal
     std::string names;
     for (const FileParameter &parameter : result.parameters)
       names += (names.empty() ? "" : ", ") + parameter.name;
-    run.progress.finish(
-      text(result.map.n(), " dofs, ", result.terms.size(), " terms, ", names.empty() ? "no parameters" : "parameters " + names));
+    run.progress.finish(text(counted(result.map.n(), "dof"), ", ", counted(result.terms.size(), "term"), ", ",
+                             names.empty() ? "no parameters" : "parameters " + names));
     run.count("dofs", result.map.n());
     return result;
   }
@@ -123,8 +123,8 @@ namespace Squeal
     const auto [contour, count] = counted_modes(given.coupled, given.value, frictionless, run);
     check_count(count.n_modes, friction.modes.lambda, contour);
     run.count("complex modes counted by the argument principle", count.n_modes);
-    run.progress.finish(
-      text(count.n_modes, " modes counted and found up to |Re lambda| = ", contour.largest_growth, " 1/s, ", count.n_points, " points"));
+    run.progress.finish(text(counted(count.n_modes, "mode"), " counted and found up to |Re lambda| = ", contour.largest_growth, " 1/s, ",
+                             counted(count.n_points, "point")));
   }
 
   Columns<int> accuracy_columns(const GivenSystem &given, const JudgedModes &modes)

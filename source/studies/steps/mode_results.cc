@@ -27,7 +27,7 @@ namespace Squeal
                           "no counterpart",
                         ")");
       if (n > 0)
-        run.warn(text(n, n == 1 ? " unstable mode has" : " unstable modes have", " not converged on this mesh to within ",
+        run.warn(text(counted(n, "unstable mode has", "unstable modes have"), " not converged on this mesh to within ",
                       100. * limits.frequency, " % in frequency and ", 100. * limits.divergence, " percentage points in divergence rate: ",
                       names, n > n_named ? ", ..." : "", "; refine the mesh to confirm the instability"));
     }
@@ -97,7 +97,7 @@ namespace Squeal
       if (const double exponent = 2. * M_PI * highest; output.animation_growth && highest > 0.)
         growth = text("; during the animation, the fastest mode grows by a factor of ", std::exp(exponent * output.animation_periods),
                       ", or by a factor of e in ", 1. / exponent, " periods");
-      run.progress.finish(text(list.size(), " modes, ", animated.size(), " animated", growth));
+      run.progress.finish(text(counted(list.size(), "mode"), ", ", animated.size(), " animated", growth));
     }
 
     /// @param shapes matrix from coupled dofs to displacements
@@ -115,7 +115,7 @@ namespace Squeal
           list.push_back({name, frequency});
         }
       writer.write_list("real_modes", list);
-      run.progress.finish(text(list.size(), " modes"));
+      run.progress.finish(counted(list.size(), "mode"));
     }
 
     /// Points of this process. The component of a point is the group of the dof with the largest weight in its displacement; for points
@@ -173,7 +173,7 @@ namespace Squeal
         }
       for (const auto &[name, list] : lists)
         writer.write_list(name, list);
-      run.progress.finish(text(listed.size(), " modes"));
+      run.progress.finish(counted(listed.size(), "mode"));
     }
   } // namespace
 
@@ -197,7 +197,7 @@ namespace Squeal
     const CommonPoints      points       = common_points(*scene.model, parameters.materials);
     CoarserSolution         result{points, modes_at(points, frictionless, friction)};
     run.count("dofs of the coarser mesh", scene.model->free_map().n());
-    run.progress.finish(text(scene.model->free_map().n(), " dofs, ", friction.modes.lambda.size(), " complex modes, ",
+    run.progress.finish(text(scene.model->free_map().n(), " dofs, ", counted(friction.modes.lambda.size(), "complex mode"), ", ",
                              friction.n_unstable(), " unstable, to estimate the discretisation error"));
     return result;
   }
@@ -241,7 +241,7 @@ namespace Squeal
       text(has_goal ? text("  accuracy: ", to_string(run.parameters.goal), " requested; errors estimated from a coarser mesh") :
                       "  discretisation errors are differences from the coarser mesh, not extrapolated",
            ": frequencies within ", decimal_text(100. * frequency), " %, divergence rates within ", decimal_text(100. * divergence),
-           " percentage points", n_lost > 0 ? text(", ", n_lost, n_lost == 1 ? " mode" : " modes", " without counterpart excluded") : ""));
+           " percentage points", n_lost > 0 ? text(", ", counted(n_lost, "mode"), " without counterpart excluded") : ""));
     std::string converged;
     if (has_goal)
       {
@@ -253,8 +253,8 @@ namespace Squeal
         converged = text("; ", n, " of ", errors.size(), " converged");
         warn_of_unconverged(errors, friction, limits, run);
       }
-    run.progress.note(text("  with the discretisation error: ", count(Verdict::unstable), " modes unstable, ", count(Verdict::stable),
-                           " stable, ", count(Verdict::undecided), " undecided", converged));
+    run.progress.note(text("  with the discretisation error: ", counted(count(Verdict::unstable), "mode"), " unstable, ",
+                           count(Verdict::stable), " stable, ", count(Verdict::undecided), " undecided", converged));
   }
 
   std::string mode_title(const ModeLabel &label, const std::complex<double> &lambda)

@@ -287,7 +287,7 @@ namespace Squeal
           book({source, "", n, {}, {}, watch.cost().cpu_seconds});
         }
     ingredients.static_modes = static_modes.get();
-    run.progress.finish(text(linearisation.interface.size(), " contact nodes"));
+    run.progress.finish(counted(linearisation.interface.size(), "contact node"));
   }
 
   void ReductionSets::compute_snapshots()
@@ -308,7 +308,7 @@ namespace Squeal
       }
     MultiVector set = join(parts);
     const int   n   = keep({BasisSource::snapshots, "", {}, {}, {}, watch.cost().cpu_seconds}, std::move(set));
-    run.progress.finish(text(n, " vectors from ", values.size(), " values of ", linearisation.coupled.varied));
+    run.progress.finish(text(counted(n, "vector"), " from ", counted(values.size(), "value"), " of ", linearisation.coupled.varied));
   }
 
   // ------------------------------------------------------------- for some bases
@@ -350,7 +350,7 @@ namespace Squeal
       grow_residual_basis(system, *frictionless.inverse, *frictionless.real.vectors, {plan.friction_coefficient}, iteration, run.progress)
         .model.basis();
     const int n = keep({BasisSource::residuals, exact_text(tolerance), {}, {}, {}, watch.cost().cpu_seconds}, std::move(basis));
-    run.progress.finish(text(n, " vectors for an estimated error of ", tolerance));
+    run.progress.finish(text(counted(n, "vector"), " for an estimated error of ", tolerance));
   }
 
   int ReductionSets::keep_lowest(Charge                charge,

@@ -75,7 +75,7 @@ namespace Squeal
     run.count("elements", scene.mesh.cells.size());
     run.measure("worst scaled Jacobian [-]", quality.worst_scaled_jacobian);
     run.progress.finish(
-      text(cell_counts(scene.mesh), ", ", scene.n_pins(), " pins, worst scaled Jacobian ", quality.worst_scaled_jacobian));
+      text(cell_counts(scene.mesh), ", ", counted(scene.n_pins(), "pin"), ", worst scaled Jacobian ", quality.worst_scaled_jacobian));
     for (const std::string &note : scene.mesh.notes)
       run.progress.note("  note: " + note);
     warn_of_linear_cells(scene.mesh, run);
@@ -101,7 +101,7 @@ namespace Squeal
     run.count("dofs", n);
     run.count("contact nodes", scene.interface.size());
     run.count("coupled dofs", n_coupled);
-    run.progress.finish(text(scene.interface.size(), " contact nodes, ", n, " dofs, ", n_coupled, " coupled"));
+    run.progress.finish(text(counted(scene.interface.size(), "contact node"), ", ", n, " dofs, ", n_coupled, " coupled"));
     contact.notes.insert(contact.notes.begin(), scene.model->notes().begin(), scene.model->notes().end());
     for (const std::string &note : contact.notes)
       run.progress.note("  note: " + note);
@@ -161,7 +161,7 @@ namespace Squeal
     SlidingState state  = steady_sliding(sliding_model(scene, run.parameters), operation, sliding);
     const auto   n_open = std::count(state.closed.begin(), state.closed.end(), false);
     run.progress.finish(
-      text(n_open, " of ", scene.interface.size(), " contact nodes open, ", state.n_steps, " changes of the contact set"));
+      text(n_open, " of ", scene.interface.size(), " contact nodes open, ", counted(state.n_steps, "change"), " of the contact set"));
     return state;
   }
 

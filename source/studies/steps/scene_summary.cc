@@ -157,9 +157,9 @@ namespace Squeal
                  " in Materials/Axes do not turn with the disc: remove this entry to use radial, tangential and axial directions");
     warn_of_units(bodies, parameters.materials, run);
     if (const UnnamedContact contact = find_unnamed_contact(mesh); contact.n_nodes > 0)
-      run.warn(text(contact.n_nodes, " pairs of nodes of different bodies coincide outside disc_contact and pin_contact, the first one of ",
-                    contact.body, " and ", contact.other, " at (", contact.place[0], ", ", contact.place[1], ", ", contact.place[2],
-                    ") m: the bodies touch there, but are not coupled"));
+      run.warn(text(counted(contact.n_nodes, "pair of nodes of different bodies coincides", "pairs of nodes of different bodies coincide"),
+                    " outside disc_contact and pin_contact, the first one of ", contact.body, " and ", contact.other, " at (",
+                    contact.place[0], ", ", contact.place[1], ", ", contact.place[2], ") m: the bodies touch there, but are not coupled"));
     check_memory(size, typical_modes, parameters.geometry.path(), run.communicator);
   }
 } // namespace Squeal

@@ -237,7 +237,7 @@ namespace Squeal
     write_system(terms, weights, notes, [&](const std::string &name, const std::function<void(std::ostream &)> &content) {
       run.folder().write(folder + name, content);
     });
-    run.progress.finish(text(terms.size(), " terms, ", notes.parameters.size(), " parameters"));
+    run.progress.finish(text(counted(terms.size(), "term"), ", ", counted(notes.parameters.size(), "parameter")));
   }
 
   void write_scene_system(const Linearisation &linearisation, const FileParameter &friction, const std::string &folder, Run &run)

@@ -128,12 +128,12 @@ namespace Squeal
       if (first.friction_coefficient != 0.)
         progress.note("  note: the number of modes is not compared with a count by inertia, because these branches do not begin at mu = 0");
       else if (first.n_modes + first.n_overdamped != n_real)
-        progress.note(text("  note: the band contains ", first.n_modes, " modes at mu = 0, but ", n_real,
-                           " real modes without damping; damping may have moved modes across the end of the band"));
+        progress.note(text("  note: the band contains ", counted(first.n_modes, "mode"), " at mu = 0, but ", counted(n_real, "real mode"),
+                           " without damping; damping may have moved modes across the end of the band"));
       const auto n =
         std::count_if(chart.counts.begin(), chart.counts.end(), [](const ChartCount &count) { return count.n_modes != count.n_expected; });
       if (n > 0)
-        progress.note(text("  note: at ", n, " points, the number of modes differs from the expected number (counts.csv)"));
+        progress.note(text("  note: at ", counted(n, "point"), ", the number of modes differs from the expected number (counts.csv)"));
     }
   } // namespace
 
@@ -143,7 +143,7 @@ namespace Squeal
     std::size_t n_evaluated = 0;
     const auto  evaluate    = [&, known = evaluation(model, line)](const std::vector<double> &friction_coefficients) {
       n_evaluated += friction_coefficients.size();
-      run.progress.update(text(n_evaluated, " points"));
+      run.progress.update(counted(n_evaluated, "point"));
       return known(friction_coefficients);
     };
     run.progress.begin("Branches");
@@ -160,10 +160,12 @@ namespace Squeal
     result.labels                = branch_labels(model, chart);
     result.onset                 = first_onset(chart, options.largest_circular_frequency, before);
     result.weak_onset            = onset_beyond(weak_divergence, chart, evaluate, options, before);
-    run.progress.finish(text(chart.branches.size(), " branches, ", chart.thresholds.size(), " thresholds, ", chart.crossings.size(),
-                             " crossings of the end of the band, ", chart.points.size() - grid.size(), " refinements"));
+    run.progress.finish(text(counted(chart.branches.size(), "branch", "branches"), ", ", counted(chart.thresholds.size(), "threshold"),
+                             ", ", counted(chart.crossings.size(), "crossing"), " of the end of the band, ",
+                             counted(chart.points.size() - grid.size(), "refinement")));
     if (chart.n_doubtful_steps > 0)
-      run.progress.note(text("  note: in ", chart.n_doubtful_steps, " steps, modes could be distinguished only by their frequencies"));
+      run.progress.note(
+        text("  note: in ", counted(chart.n_doubtful_steps, "step"), ", modes could be distinguished only by their frequencies"));
     return result;
   }
 

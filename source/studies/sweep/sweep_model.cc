@@ -133,7 +133,7 @@ namespace Squeal
                                            *frictionless.real.vectors, largest_circular_frequency);
     if (const auto &discretization = run.parameters.discretization; plan.file || discretization.maximum_rate > 0.)
       reduced->leave_out_faster_decay(discretization.band().rate);
-    run.progress.finish(text(reduced->size(), " vectors initially"));
+    run.progress.finish(counted(reduced->size(), "vector") + " initially");
   }
 
   std::vector<ChartPoint> SweepModel::evaluate(const int line, const std::vector<double> &friction_coefficients)
@@ -241,7 +241,7 @@ namespace Squeal
     double worst = 0.;
     for (const OperatingPoint &point : model.regime.points)
       worst = std::max(worst, model.largest_error(model.evaluate(point.line, {point.friction_coefficient}).front()));
-    run.progress.finish(text(model.known.size(), " operating points at full order, estimated error ", worst));
+    run.progress.finish(text(counted(model.known.size(), "operating point"), " at full order, estimated error ", worst));
     run.measure("largest estimated error of lambda [-]", worst);
   }
 
@@ -274,8 +274,8 @@ namespace Squeal
         model.known.emplace(std::make_pair(points[i].line, points[i].friction_coefficient), std::move(point));
       },
       run.communicator, run.progress);
-    run.progress.finish(text(model.known.size(), " of ", points.size(), " operating points, ", model.reduced->size(),
-                             " vectors, estimated error ", sweep.worst_error));
+    run.progress.finish(text(model.known.size(), " of ", points.size(), " operating points, ", counted(model.reduced->size(), "vector"),
+                             ", estimated error ", sweep.worst_error));
     run.count("basis vectors", model.reduced->size());
     run.measure("largest estimated error of lambda [-]", sweep.worst_error);
     // Report conditioning at the last value, where eigenvalues are usually most ill-conditioned. Twice the tolerance allows for rounding

@@ -112,7 +112,7 @@ namespace Squeal
           point.values.merge(selected(state.damping, state.closed).values());
           regime_of(state.closed, regimes).points.push_back(std::move(point));
         }
-    run.progress.finish(text(n_points, " operating points, ", regimes.size(), regimes.size() == 1 ? " contact set" : " contact sets"));
+    run.progress.finish(text(counted(n_points, "operating point"), ", ", counted(regimes.size(), "contact set")));
     return plan;
   }
 

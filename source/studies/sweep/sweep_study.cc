@@ -134,11 +134,11 @@ namespace Squeal
           const auto [options, count] = counted_modes(model.linearisation_at(mu).coupled, mu, model.frictionless, run);
           const int n_found           = n_in_rectangle(modes_at(model, mu).lambda, options);
           counts.push_back({mu, n_found, count, model.reduced != nullptr});
-          run.progress.finish(text(count.n_modes, " modes counted, ", n_found, " found at ", model.plan.axis.name, " = ", mu, ", ",
-                                   count.n_points, " points"));
+          run.progress.finish(text(counted(count.n_modes, "mode"), " counted, ", n_found, " found at ", model.plan.axis.name, " = ", mu,
+                                   ", ", counted(count.n_points, "point")));
           if (count.n_modes != n_found)
-            run.progress.note(text("  note: at ", model.plan.axis.name, " = ", mu, ", the sweep found ", n_found, " modes, but ",
-                                   count.n_modes, " were counted"));
+            run.progress.note(text("  note: at ", model.plan.axis.name, " = ", mu, ", the sweep found ", counted(n_found, "mode"),
+                                   ", but the count is ", count.n_modes));
         }
     }
 
@@ -174,7 +174,7 @@ namespace Squeal
             writer.write_animation(name, {field}, animation_options(run.parameters.output));
           ++n_written;
         }
-      run.progress.finish(text(n_written, " leading modes"));
+      run.progress.finish(counted(n_written, "leading mode"));
     }
 
     /// Throws ParameterError if no result depends on the parameter of the map.

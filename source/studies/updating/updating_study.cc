@@ -286,10 +286,10 @@ namespace Squeal
       run.measure("largest difference of frequencies after the fit [%]", std::abs(updated.largest));
       run.measure("sum of squared residuals at the start [-]", before.r.squaredNorm());
       run.measure("sum of squared residuals after the fit [-]", after.r.squaredNorm());
-      run.progress.note(text("  ", problem.parameters.size(), problem.parameters.size() == 1 ? " parameter" : " parameters", " fitted to ",
-                             problem.numbers.size(), " measured numbers: frequency differences ", updated.rms, " % rms (", start.rms,
-                             " % before), largest ", updated.largest, " % (", to_string(updated.worst->state), " ", updated.worst->label,
-                             ")"));
+      run.progress.note(text("  ", counted(problem.parameters.size(), "parameter"), " fitted to ",
+                             counted(problem.numbers.size(), "measured number"), ": frequency differences ", updated.rms, " % rms (",
+                             start.rms, " % before), largest ", updated.largest, " % (", to_string(updated.worst->state), " ",
+                             updated.worst->label, ")"));
     }
 
     // --------------------------------------------------------------------- study
@@ -317,7 +317,7 @@ namespace Squeal
         [&, &before = before](const std::vector<double> &x) { return x == start ? std::optional(before) : problem.try_to_evaluate(x); },
         start, options.tolerance, static_cast<int>(options.n_iterations));
       if (!fit.has_converged)
-        throw SolverError(text("the fit has not converged after ", fit.n_iterations, " iterations: residual ",
+        throw SolverError(text("the fit has not converged after ", counted(fit.n_iterations, "iteration"), ": residual ",
                                UpdatingProblem::root_mean_square(fit.residuals.r), " rms (", UpdatingProblem::root_mean_square(before.r),
                                " at the start)", problem.why_failed.empty() ? "" : "; an evaluation failed: " + problem.why_failed),
                           "Study = updating", "raise Updating/Iterations or Updating/Tolerance, or narrow the ranges of Designs/Variables");
@@ -328,7 +328,7 @@ namespace Squeal
           number.updated       = number.of(number.partner);
         }
       run.count("evaluations", problem.n_evaluations);
-      run.progress.finish(text(fit.n_iterations, " iterations, ", problem.n_evaluations, " evaluations, residuals ",
+      run.progress.finish(text(counted(fit.n_iterations, "iteration"), ", ", counted(problem.n_evaluations, "evaluation"), ", residuals ",
                                UpdatingProblem::root_mean_square(before.r), " to ", UpdatingProblem::root_mean_square(fit.residuals.r),
                                " rms"));
 
