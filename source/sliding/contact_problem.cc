@@ -281,9 +281,9 @@ namespace Squeal
         const DenseMatrix S       = -0.5 * (problem.tangential_flexibility + problem.tangential_flexibility.transpose());
         const double      largest = symmetric_eigenpairs(S, problem.normal_flexibility).values.back();
         result.unique_below       = largest > 0. ? 1. / largest : std::numeric_limits<double>::infinity();
-        result.is_certified       = problem.friction_coefficient < (1. - 1e-8) * result.unique_below;
+        result.meets_condition    = problem.friction_coefficient < (1. - 1e-8) * result.unique_below;
       }
-    if (result.is_certified)
+    if (result.meets_condition)
       return result;
 
     const ActiveSetSolver solver(problem, problem.friction_coefficient);

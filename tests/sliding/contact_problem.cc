@@ -154,9 +154,9 @@ TEST(ContactProblem, FindsWhatEnumerationFinds)
           EXPECT_LE(solution.gaps[c], 0.);
           EXPECT_EQ(solution.reactions[c] * solution.gaps[c], 0.);
         }
-      EXPECT_TRUE(!uniqueness.is_certified || all.size() == 1);
+      EXPECT_TRUE(!uniqueness.meets_condition || all.size() == 1);
       EXPECT_TRUE(!uniqueness.found_other || all.size() > 1);
-      n_unique += uniqueness.is_certified;
+      n_unique += uniqueness.meets_condition;
       n_several += uniqueness.found_other;
     }
   // The test is meaningful only if both cases occur
@@ -172,7 +172,7 @@ TEST(ContactProblem, BoundOfUniquenessIsWhereTheSymmetricPartLosesDefiniteness)
       const ContactProblem problem    = pressed(DenseMatrix::Identity(2, 2), DenseMatrix{{0., 1.}, {-3., 0.}}, mu, {0., 0.}, 1.);
       const auto           uniqueness = contact_uniqueness(problem, solve_contact(problem));
       EXPECT_NEAR(uniqueness.unique_below, 1., 1e-14);
-      EXPECT_EQ(uniqueness.is_certified, mu < 1.);
+      EXPECT_EQ(uniqueness.meets_condition, mu < 1.);
     }
 }
 

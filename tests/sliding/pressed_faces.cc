@@ -187,7 +187,7 @@ TEST(PressedFaces, SpringsTakeTheirShareOfTheLoad)
   const PadScene     s(pad_cases[2], 0.3, materials(mounts));
   const SlidingState state = s.solve();
   check(state);
-  EXPECT_TRUE(state.uniqueness.is_certified);
+  EXPECT_TRUE(state.uniqueness.meets_condition);
   EXPECT_LT(-sum(state.reactions), 0.999 * load);
   EXPECT_GT(-sum(state.reactions), 0.5 * load);
 }

@@ -72,17 +72,17 @@ namespace Squeal
   /// Uniqueness of the solution of a contact problem.
   struct ContactUniqueness
   {
-    double          unique_below; ///< the solution is unique for every smaller friction coefficient; 0: unknown
-    bool            is_certified; ///< true if μ < unique_below
-    unsigned int    n_searches;   ///< number of other starting sets, if uniqueness is not certified
-    bool            found_other;  ///< true if one of these sets led to another solution
-    ContactSolution other;        ///< this other solution
+    double          unique_below;    ///< the solution is unique for every smaller friction coefficient; 0: unknown
+    bool            meets_condition; ///< true if μ < unique_below, which is sufficient for uniqueness
+    unsigned int    n_searches;      ///< number of other starting sets, if μ does not meet the condition
+    bool            found_other;     ///< true if one of these sets led to another solution
+    ContactSolution other;           ///< this other solution
   };
 
   /**
    * Checks the uniqueness of a solution. It is unique if Gᵀ + G is positive definite and L = −Bᵀ: two solutions would give (r − r')ᵀ G (r −
    * r') ≤ 0. G satisfies this condition for all μ < 1/λ_max, where λ_max is the largest eigenvalue of −½ (F_nt + F_ntᵀ) x = λ F_nn x. If
-   * uniqueness is not certified, the problem is solved again from up to @p n_searches random sets.
+   * μ does not meet this condition, the problem is solved again from up to @p n_searches random sets.
    */
   ContactUniqueness contact_uniqueness(const ContactProblem &problem, const ContactSolution &solution, unsigned int n_searches = 8);
 } // namespace Squeal

@@ -51,12 +51,12 @@ namespace Squeal
 
     std::string uniqueness_note(const ContactUniqueness &uniqueness)
     {
-      if (uniqueness.is_certified)
+      if (uniqueness.meets_condition)
         return text("the state is unique, because mu < ", uniqueness.unique_below);
       if (uniqueness.found_other)
         return "the state is NOT unique: another contact set also satisfies all conditions; the first set found is used";
-      return text("uniqueness is not certified", uniqueness.unique_below > 0. ? text(" above mu = ", uniqueness.unique_below) : "", "; ",
-                  uniqueness.n_searches, " searches from other contact sets found no other state");
+      return text("uniqueness is not proved", uniqueness.unique_below > 0. ? text(" above mu = ", uniqueness.unique_below) : "", "; ",
+                  counted(uniqueness.n_searches, "search", "searches"), " from other contact sets found no other state");
     }
   } // namespace
 
