@@ -97,7 +97,7 @@ namespace Squeal
       if (const double exponent = 2. * M_PI * highest; output.animation_growth && highest > 0.)
         growth = text("; during the animation, the mode with the largest divergence rate grows by a factor of ",
                       std::exp(exponent * output.animation_periods), ", or by a factor of e in ", 1. / exponent, " periods");
-      run.progress.finish(text(list.size(), " modes, ", animated.size(), " animated", growth));
+      run.progress.finish(text(counted(list.size(), "mode"), ", ", animated.size(), " animated", growth));
     }
 
     /// @param shapes matrix from coupled dofs to displacements
