@@ -81,9 +81,11 @@ namespace Squeal
     modes.reset();
   }
 
-  ReducedModel ReducedModel::restricted(const DenseMatrix &Z) const
+  ReducedModel ReducedModel::restricted(const DenseMatrix &Z, const bool with_basis) const
   {
     ReducedModel result(*full);
+    if (with_basis)
+      result.T = std::make_shared<MultiVector>(*T * Z);
     for (const auto &[factor, motions] : factors)
       result.factors[factor] = motions * Z;
     for (std::size_t k = 0; k < matrices.size(); ++k)

@@ -111,19 +111,13 @@ namespace Squeal
   void ProjectedResiduals::extend(const ReducedModel &model)
   {
     const int old = r;
-    r             = model.size();
-    if (r == old)
+    if (model.size() == old)
       return;
-    for (const Factor &f : factors)
-      motions[f.factor] = model.motions(*f.factor);
+    set_projections(model);
 
     // New columns of (A T)ᵀ S⁻¹ A' T; its new rows follow from the transposed problem
     const MultiVector &T     = model.basis();
     const MultiVector  fresh = view(T, old, r - old);
-    for (Sparse &part : sparse)
-      part.projected = model.projected(part.number);
-    pencil      = model.stiffness() + shift * shift * model.mass();
-    is_prepared = false;
     if (sketch)
       {
         for (Sparse &part : sparse)
@@ -158,6 +152,35 @@ namespace Squeal
             columns[l + n * k].bottomRows(r - old);
           sparse[k].products[l] = std::move(products);
         }
+  }
+
+  void ProjectedResiduals::set_projections(const ReducedModel &model)
+  {
+    r = model.size();
+    for (const Factor &f : factors)
+      motions[f.factor] = model.motions(*f.factor);
+    for (Sparse &part : sparse)
+      part.projected = model.projected(part.number);
+    pencil      = model.stiffness() + shift * shift * model.mass();
+    is_prepared = false;
+  }
+
+  void ProjectedResiduals::restrict(const ReducedModel &model, const DenseMatrix &Z)
+  {
+    set_projections(model);
+    const auto restrict_columns = [&Z](DenseMatrix &X) {
+      if (X.size() > 0)
+        X *= Z;
+    };
+    restrict_columns(sketched_pencil);
+    for (Sparse &part : sparse)
+      {
+        restrict_columns(part.sketched);
+        restrict_columns(part.factor_products);
+        for (DenseMatrix &products : part.products)
+          if (products.size() > 0)
+            products = Z.transpose() * products * Z;
+      }
   }
 
   int ProjectedResiduals::number_of(const LowRankFactor &factor) const

@@ -23,6 +23,9 @@ namespace Squeal
     /// Principal axes of residuals below this fraction of the largest are postponed to the next extension [-].
     constexpr double compression_tolerance = 0.02;
 
+    /// Factor between the tolerance of λ and the squared length of the principal axes that are dropped from a basis [-].
+    constexpr double compression_factor = 10.;
+
     /// Principal axes of vectors below this fraction of the largest are dropped [-].
     constexpr double least_axis = 1e-6;
 
@@ -249,7 +252,7 @@ namespace Squeal
         {
           // Scale to unit strain energy
           const Eigen::VectorXcd scales = as_column(chart.lambda).cwiseAbs().cwiseInverse().cast<std::complex<double>>();
-          Y                             = append_columns(Y, halves(orthonormal_in_clusters(*X, chart.lambda) * scales.asDiagonal()));
+          Y = append_columns(Y, halves(orthonormal_in_clusters(with_rows(*X, model.size()), chart.lambda) * scales.asDiagonal()));
         }
     Y -= real_modes * (real_modes.transpose() * Y);
 
@@ -258,16 +261,22 @@ namespace Squeal
     const auto [w, V]           = agreed(communicator, symmetric_eigenpairs(model.stiffness() + shift * shift * model.mass()));
     const DenseMatrix Y_w       = as_column(w).cwiseSqrt().asDiagonal() * (V.transpose() * Y);
     const auto [squares, axes]  = agreed(communicator, symmetric_eigenpairs(Y_w * Y_w.transpose())); // ascending
-    const Eigen::Index r = model.size(), first = std::lower_bound(squares.begin(), squares.end(), tolerance) - squares.begin();
-    const DenseMatrix  Z = as_column(w).cwiseSqrt().cwiseInverse().asDiagonal() * axes.rightCols(r - first);
+    const Eigen::Index r        = model.size(),
+                       first    = std::lower_bound(squares.begin(), squares.end(), compression_factor * tolerance) - squares.begin();
+    const DenseMatrix Z         = as_column(w).cwiseSqrt().cwiseInverse().asDiagonal() * axes.rightCols(r - first);
     return V * Z;
+  }
+
+  DenseMatrix ChartModel::real_coordinates() const
+  {
+    return gram(model.basis(), *system.mass * *real_modes);
   }
 
   MultiVector ChartModel::compressed_basis(const std::vector<ChartPoint> &charts, const double tolerance, const int maximum) const
   {
     const SparseMatrix &M     = *system.mass;
     const MultiVector  &T     = model.basis();
-    const DenseMatrix   parts = principal_parts(gram(T, M * *real_modes), charts, tolerance);
+    const DenseMatrix   parts = principal_parts(real_coordinates(), charts, tolerance);
     if (parts.cols() == 0)
       return *real_modes;
     constexpr double independent = 1e-10;
@@ -277,6 +286,18 @@ namespace Squeal
       return *real_modes;
     const MultiVector largest = view(*rest, 0, n_rest);
     return join({real_modes, &largest});
+  }
+
+  std::unique_ptr<ChartModel> ChartModel::restricted(const std::vector<ChartPoint> &charts, const double tolerance) const
+  {
+    residuals.extend(model);
+    DenseMatrix       Z     = orthonormal_columns(real_coordinates());
+    const DenseMatrix parts = principal_parts(Z, charts, tolerance);
+    Z                       = append_columns(Z, orthonormal_columns(parts - Z * (Z.transpose() * parts)));
+    auto result             = std::make_unique<ChartModel>(*this);
+    result->model           = model.restricted(Z, true);
+    result->residuals.restrict(result->model, Z);
+    return result;
   }
 
   void ChartModel::restart(MultiVector vectors)

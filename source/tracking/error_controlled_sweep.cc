@@ -18,10 +18,6 @@ namespace Squeal
     /// Fraction of the tolerance that is required at training points, so that points between them are likely to meet the tolerance [-].
     constexpr double training_factor = 0.5;
 
-    /// Principal axes whose squared length is below compression_factor times the tolerance are dropped from the basis, see
-    /// compressed_basis() [-].
-    constexpr double compression_factor = 10.;
-
     /// Number of successive extensions that do not halve the error of a point, after which this error counts as a rounding error. An
     /// extension by the residuals of the inaccurate modes normally divides their errors by ten or more.
     constexpr int max_growths_in_vain = 4;
@@ -79,10 +75,7 @@ namespace Squeal
             before   = error;
             may_grow = grow(model, points[t], chart, tolerance, options.maximum_basis).empty();
           }
-      for (ChartPoint &chart : charts)
-        for (ComplexDenseMatrix *vectors : {&chart.right, &chart.left})
-          *vectors = with_rows(*vectors, model.size());
-      model.restart(model.compressed_basis(charts, compression_factor * options.tolerance, options.maximum_basis));
+      model.restart(model.compressed_basis(charts, options.tolerance, options.maximum_basis));
       return n_growths;
     }
   } // namespace

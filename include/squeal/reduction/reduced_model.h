@@ -33,8 +33,8 @@ namespace Squeal
     /// Appends the columns of @p vectors, n × k, to the basis.
     void extend(MultiVector vectors);
 
-    /// The model on the basis T Z with Z, r × k; its basis() is not available.
-    ReducedModel restricted(const DenseMatrix &Z) const;
+    /// The model on the basis T Z with Z, r × k; its basis() is available only if @p with_basis.
+    ReducedModel restricted(const DenseMatrix &Z, bool with_basis = false) const;
 
     /// Size r of the basis.
     int size() const
@@ -42,7 +42,7 @@ namespace Squeal
       return mass_matrix.rows();
     }
 
-    /// T, n × r; not available for a restricted model.
+    /// T, n × r.
     const MultiVector &basis() const
     {
       return *T;
@@ -92,7 +92,7 @@ namespace Squeal
     void find_norms();
 
     const CoupledSystem                         *full;
-    std::shared_ptr<MultiVector>                 T;        ///< null in a restricted model
+    std::shared_ptr<MultiVector>                 T;        ///< null in a restricted model without basis
     std::vector<DenseMatrix>                     matrices; ///< TᵀAT of each term; empty for low-rank terms with weights
     std::map<const LowRankFactor *, DenseMatrix> factors;
     DenseMatrix                                  mass_matrix, stiffness_matrix;

@@ -65,6 +65,9 @@ namespace Squeal
     /// Adds the vectors that were appended to the basis of @p model.
     void extend(const ReducedModel &model);
 
+    /// Replaces the basis T by T Z, the basis of @p model; Z: r × k.
+    void restrict(const ReducedModel &model, const DenseMatrix &Z);
+
     /// Clears the basis; the next extend() starts a new basis.
     void clear();
 
@@ -88,7 +91,7 @@ namespace Squeal
      * S⁻¹ W C, n × p: principal axes, in the norm of S, of the right and left displacement residuals of modes with unit strain energy. Axes
      * shorter than @p tolerance times the longest axis are dropped. The axes are computed from the small matrices, so that the number of
      * solves equals the number of axes, not of residuals. The result may contain components in the span of the basis; it is empty if all
-     * residuals vanish. Not available for a member of a family. Collective.
+     * residuals vanish. Collective.
      */
     std::optional<MultiVector> principal_responses(const ReducedModel &model, const std::vector<ModesAt> &modes, double tolerance) const;
 
@@ -164,6 +167,9 @@ namespace Squeal
                          const std::vector<std::complex<double>> &lambda,
                          const ComplexDenseMatrix                &vectors,
                          bool                                     transposed) const;
+
+    /// Takes the size of the basis, TᵀST, TᵀAT and FᵀT from the model.
+    void set_projections(const ReducedModel &model);
 
     int number_of(const LowRankFactor &factor) const;
 

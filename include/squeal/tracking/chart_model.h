@@ -103,22 +103,26 @@ namespace Squeal
     void extend(MultiVector vectors);
 
     /**
-     * Principal axes, in the K_c-norm, of the components of right and left modes of the @p charts outside the span of the real modes, as
-     * coordinates in the basis. Modes are scaled to unit strain energy. Axes whose squared length is below @p tolerance are dropped: the
-     * error of λ is a product of the errors of a right and a left vector. Collective.
-     *
-     * @param real_modes coordinates of the real modes
+     * A smaller basis with about the same span: the real modes and the principal axes, in the K_c-norm, of the components of right and left
+     * modes of the @p charts outside the span of the real modes, truncated to @p maximum vectors. Modes are scaled to unit strain energy.
+     * Axes whose squared length is below 10 times the @p tolerance of λ are dropped: the error of λ is a product of the errors of a right
+     * and a left vector. Collective.
      */
-    DenseMatrix principal_parts(const DenseMatrix &real_modes, const std::vector<ChartPoint> &charts, double tolerance) const;
-
-    /// A smaller basis with about the same span: the real modes and the principal_parts() of the charts, truncated to @p maximum vectors.
-    /// Collective.
     MultiVector compressed_basis(const std::vector<ChartPoint> &charts, double tolerance, int maximum) const;
+
+    /// A model on a basis like compressed_basis(), computed without products at full order. Collective.
+    std::unique_ptr<ChartModel> restricted(const std::vector<ChartPoint> &charts, double tolerance) const;
 
     /// Replaces the basis. Collective.
     void restart(MultiVector vectors);
 
   private:
+    /// Principal axes of the charts, see compressed_basis(), as coordinates in the basis; @p real_modes: coordinates of the real modes.
+    DenseMatrix principal_parts(const DenseMatrix &real_modes, const std::vector<ChartPoint> &charts, double tolerance) const;
+
+    /// Coordinates of the real modes in an M_c-orthonormal basis.
+    DenseMatrix real_coordinates() const;
+
     const CoupledSystem       &system;
     const UpdatedInverse      &inverse;
     const MultiVector         *real_modes;

@@ -4,10 +4,11 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/studies/designs/design_solution.h>
 
-#include <numeric>
-
 namespace Squeal
 {
+  /// Part of the tolerance for the common basis; the rest is for the truncation of the basis of a design [-].
+  static constexpr double part_of_common_basis = 0.5;
+
   std::string family_key(const Parameters &design)
   {
     if (design.needs_steady_sliding() || design.operation.rotating_disc || !design.damping.modal_ratios.empty())
@@ -38,17 +39,10 @@ namespace Squeal
       point.values.insert(family.terms.members[point.line].begin(), family.terms.members[point.line].end());
     for (std::size_t d = 0; d < designs.size(); ++d)
       plan->lines[d].values = family.terms.members[d];
-    model = std::make_unique<SweepModel>(*plan, regime, run, std::move(family.middle));
-    model->reduced->estimate_without_cancellation();
-    model->sharpens_thresholds = false; // otherwise the basis would grow with every design
-
-    // Train the basis at the largest friction coefficients, where friction changes the modes most
-    std::vector<OperatingPoint> ends;
-    for (std::size_t d = 0; d < designs.size(); ++d)
-      ends.push_back(points_of(d).back());
-    std::vector<int> training(ends.size());
-    std::iota(training.begin(), training.end(), 0);
-    solve(ends, training);
+    model                      = std::make_unique<SweepModel>(*plan, regime, run, std::move(family.middle));
+    model->sharpens_thresholds = false; // enriching the basis of every design takes longer than its sweep
+    common                     = std::move(model->reduced);
+    common->estimate_without_cancellation();
   }
 
   std::vector<OperatingPoint> DesignFamily::points_of(const std::size_t design) const
@@ -59,31 +53,37 @@ namespace Squeal
     return result;
   }
 
-  void DesignFamily::solve(const std::vector<OperatingPoint> &points, const std::vector<int> &training)
+  void DesignFamily::solve(ChartModel                        &reduced,
+                           const std::vector<OperatingPoint> &points,
+                           const double                       part_of_tolerance,
+                           const KeepPoint                   &keep)
   {
     // Basis size above which reduced matrices become expensive
     constexpr int               most_vectors = 900;
     ErrorControlledSweepOptions options;
-    options.tolerance     = run.parameters.sweep.tolerance;
+    options.tolerance     = part_of_tolerance * run.parameters.sweep.tolerance;
     options.maximum_basis = most_vectors;
     run.progress.begin("Family");
-    const auto keep = [&](const int i, ChartPoint &&point) {
-      model->known.emplace(std::make_pair(points[i].line, points[i].friction_coefficient), std::move(point));
-    };
-    const ErrorControlledSweep found =
-      error_controlled_sweep(*model->reduced, points, training, options, keep, run.communicator, run.progress);
+    const ErrorControlledSweep found = error_controlled_sweep(reduced, points, {}, options, keep, run.communicator, run.progress);
     if (found.n_left > 0)
-      throw SolverError(text("the common basis is not accurate enough: ", found.why_stopped), "designs on one mesh",
+      throw SolverError(text("the basis of designs on one mesh is not accurate enough: ", found.why_stopped), "designs on one mesh",
                         "raise Sweep/Tolerance");
-    run.progress.finish(text(counted(points.size(), "operating point"), ", ", counted(model->reduced->size(), "vector"),
-                             ", estimated error ", found.worst_error));
+    run.progress.finish(
+      text(counted(points.size(), "operating point"), ", ", counted(reduced.size(), "vector"), ", estimated error ", found.worst_error));
   }
 
   DesignFamily::Member DesignFamily::solve(const std::size_t design)
   {
     const std::vector<OperatingPoint> points = points_of(design);
-    model->known.clear(); // the vectors of all designs may exceed the memory
-    solve(points, {});
+    std::vector<OperatingPoint>       some;
+    std::vector<ChartPoint>           charts;
+    for (const int i : ends_and_quarters(static_cast<int>(points.size())))
+      some.push_back(points[i]);
+    solve(*common, some, part_of_common_basis, [&](int, ChartPoint &&point) { charts.push_back(std::move(point)); });
+    model->restart(common->restricted(charts, run.parameters.sweep.tolerance));
+    solve(*model->reduced, points, 1., [&](const int i, ChartPoint &&point) {
+      model->known.emplace(std::make_pair(points[i].line, points[i].friction_coefficient), std::move(point));
+    });
 
     run.progress.begin("Mode count");
     CoupledSystem system = with_values(model->frictionless.linearisation.coupled, plan->lines[design].values);

@@ -136,6 +136,13 @@ namespace Squeal
     run.progress.finish(counted(reduced->size(), "vector") + " initially");
   }
 
+  void SweepModel::restart(std::unique_ptr<ChartModel> model)
+  {
+    reduced = std::move(model);
+    known.clear();
+    reference_products.clear();
+  }
+
   std::vector<ChartPoint> SweepModel::evaluate(const int line, const std::vector<double> &friction_coefficients)
   {
     std::vector<OperatingPoint> missing;

@@ -52,9 +52,9 @@ namespace Squeal
    * One reduced model for several designs on one mesh, which differ in moduli, densities, Rayleigh coefficients, stiffnesses of mounts, load
    * and speed: coefficients θ of the terms of one system Q(λ; p) = Σ θ_k(p) λ^p A_k. Each design is a line of a sweep plan.
    *
-   * The basis starts from the real modes of the averaged design, is trained at the largest friction coefficient of each design, and is
-   * extended where estimated errors exceed Sweep/Tolerance. Within this tolerance, the results of a design depend on the designs solved
-   * before it.
+   * The common basis starts from the real modes of the averaged design and is extended at a few points of every design, whose modes span a
+   * smaller basis for this design. This basis is extended where estimated errors exceed Sweep/Tolerance. Within this tolerance, the results
+   * of a design depend on the designs solved before it.
    */
   class DesignFamily
   {
@@ -80,12 +80,13 @@ namespace Squeal
   private:
     std::vector<OperatingPoint> points_of(std::size_t design) const;
 
-    /// Evaluates points within Sweep/Tolerance; @p training: see error_controlled_sweep().
-    void solve(const std::vector<OperatingPoint> &points, const std::vector<int> &training);
+    /// Evaluates points with a model, which is extended, within a part of Sweep/Tolerance.
+    void solve(ChartModel &reduced, const std::vector<OperatingPoint> &points, double part_of_tolerance, const KeepPoint &keep);
 
     Run                        &run;
     std::unique_ptr<SweepPlan>  plan;
-    std::unique_ptr<SweepModel> model;
+    std::unique_ptr<SweepModel> model;  ///< with the reduced model of the current design
+    std::unique_ptr<ChartModel> common; ///< on the common basis
   };
 
   /// Parameters of the sweep of a design, without maps and other optional output.

@@ -100,6 +100,9 @@ namespace Squeal
     /// Creates a reduced model from the undamped modes without friction.
     SweepModel(const SweepPlan &plan, const ContactRegime &regime, Run &run, FrictionlessModes frictionless);
 
+    /// Replaces the reduced model and removes the evaluated points.
+    void restart(std::unique_ptr<ChartModel> model);
+
     /// Modes on a line; only new points are computed. Collective.
     std::vector<ChartPoint> evaluate(int line, const std::vector<double> &friction_coefficients);
 
