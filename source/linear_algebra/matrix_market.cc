@@ -26,7 +26,7 @@ namespace Squeal
     /// Memory of a row or column without entries [byte].
     constexpr double bytes_of_row = 32.;
 
-    /// Reads a text line by line as words; error messages quote the line.
+    /// Reads a text line by line and splits each line into words; error messages state the line number.
     class WordReader
     {
     public:

@@ -306,7 +306,7 @@ namespace Squeal
     const auto it = std::find(surfaces.begin(), surfaces.end(), surface);
     if (it == surfaces.end())
       throw MeshError("the mesh has no surface named `" + surface + "`", "mesh",
-                      "name such a surface in the geometry, or use one of: " + boost::algorithm::join(surfaces, ", "));
+                      "define a surface with this name in the geometry, or use one of: " + boost::algorithm::join(surfaces, ", "));
     std::vector<const Face *> result;
     for (const Face &face : face_table)
       if (std::count(face.surfaces.begin(), face.surfaces.end(), it - surfaces.begin()) > 0)

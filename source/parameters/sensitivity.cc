@@ -32,11 +32,13 @@ namespace Squeal
   void IngredientsParameters::declare(Declarations &declarations)
   {
     declarations.enter("Ingredients");
-    declarations.add("Frequency tolerance", frequency_tolerance, "%",
-                     "Largest acceptable change in a frequency in the cheapest model, as a percentage of the frequency in the given model.",
-                     {0., 100.});
+    declarations.add(
+      "Frequency tolerance", frequency_tolerance, "%",
+      "Largest acceptable change in a frequency in the cheapest model, as a percentage of the frequency in the given model; must be positive.",
+      {0., 100.});
     declarations.add("Divergence tolerance", divergence_tolerance, "percentage points",
-                     "Largest acceptable difference in a divergence rate between the cheapest and the given model.", {0., 100.});
+                     "Largest acceptable difference in a divergence rate between the cheapest and the given model; must be positive.",
+                     {0., 100.});
     declarations.add("Trial friction slope", trial_slope, "s/m",
                      "Trial slope of the friction coefficient if Operation/Friction slope = 0; 0: no trial.", {-1e3, 1e3});
     declarations.add("Trial damping ratio", trial_damping_ratio, "none",

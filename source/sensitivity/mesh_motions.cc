@@ -17,7 +17,7 @@ namespace Squeal
     /// circles [-].
     constexpr double resemblance = 0.02;
 
-    /// Tolerance for equal radii, relative to the outer radius [-].
+    /// Tolerance for axial positions and for gaps between pins, relative to the outer radius [-].
     constexpr double rounding = 1e-9;
 
     /// Position of a pin in the plane of the disc.
@@ -142,7 +142,7 @@ namespace Squeal
     };
     // Factor that falls linearly from 1 on the face of the pins to 0 on the opposite face
     const auto through_disc = [&](const PinPlace &pin, const Point &x) { return std::clamp(0.5 + pin.side * x[2] / t, 0., 1.); };
-    // In-plane velocity of the nodes of a pin and of the disc that is caused by the motion of this pin
+    // In-plane velocity of the nodes of a pin and of the disc due to the motion of this pin
     const auto taken_along = [&](const PinPlace &pin, const Point &x, const unsigned int k, const auto &inside) {
       if (k != 0 && k != pin.component)
         return Point();

@@ -168,12 +168,12 @@ namespace Squeal
     }
 
     /// Recomputes all equations from the displacements @p u of the full model.
-    SlidingCertificate certificate(const SlidingModel        &sliding,
-                                   const Backplates          &plates,
-                                   const Eigen::VectorXd     &gaps,
-                                   const SlidingState        &state,
-                                   const MultiVector         *pressing,
-                                   const OperationParameters &operation)
+    SlidingChecks checks(const SlidingModel        &sliding,
+                         const Backplates          &plates,
+                         const Eigen::VectorXd     &gaps,
+                         const SlidingState        &state,
+                         const MultiVector         *pressing,
+                         const OperationParameters &operation)
     {
       const double            mu        = operation.friction_coefficient;
       const ContactInterface &interface = sliding.interface;
@@ -181,7 +181,7 @@ namespace Squeal
       const MultiVector      &u         = *state.displacement;
       const Eigen::VectorXd   reactions = as_column(state.reactions);
       const MultiVector       r         = distribute(reactions, P_n.rows());
-      SlidingCertificate      result{};
+      SlidingChecks           result{};
 
       MultiVector  forces      = transpose_times(P_n, r);
       const double normal_size = column_norms(forces)[0];
@@ -352,7 +352,7 @@ namespace Squeal
     state.displacement = std::make_shared<MultiVector>(u);
     state.total_displacement =
       std::make_shared<MultiVector>(with_backplates(sliding, u, backplate_displacements(plates.travels, state.approach)));
-    state.certificate = certificate(sliding, plates, gaps, state, pressing ? &*pressing : nullptr, operation);
+    state.checks = checks(sliding, plates, gaps, state, pressing ? &*pressing : nullptr, operation);
     return state;
   }
 

@@ -113,7 +113,7 @@ namespace Squeal
       modes = selected(modes, slow);
     ComplexDenseMatrix right = modes.right, left = modes.left;
     if (modal)
-      for (const auto &[X, X_modal] : {std::make_pair(&right, &modes.right), {&left, &modes.left}})
+      for (const auto [X, X_modal] : {std::make_pair(&right, &modes.right), {&left, &modes.left}})
         {
           *X = multiply(model.modal().vectors, *X);
           for (Eigen::Index j = 0; j < X->cols(); ++j)

@@ -111,7 +111,7 @@ TEST(Travel, ABodyThatRubsBothFacesIsRefusedByName)
       find_bodies(mesh);
       const Pressed s(mesh);
       EXPECT_FALSE(have_travels(s.model, s.interface));
-      expect_refusal([&] { s.shares(); }, {"pin_caliper", "of its " + std::to_string(s.interface.size()) + " contact nodes"});
+      expect_refusal([&] { s.shares(); }, {"pin_caliper", "of " + std::to_string(s.interface.size()) + ", the first"});
     }
   EXPECT_TRUE(have_travels(Pressed(unequal_pins()).model, Pressed(unequal_pins()).interface));
 }

@@ -139,7 +139,7 @@ TEST(GenerateMesh, PinsThatAreNotOppositeAreAtTheirPlaces)
         angle += shift;
       expect(parameters, 0.15);
     }
-  // Upper pins at larger angles overlap the lower pins obliquely
+  // Upper pins at larger angles overlap the lower pins only partly or not at all
   for (const double spread : {27., 30., 33.})
     for (const unsigned int nodes : {7, 19})
       for (const double size : {0.012, 0.02, 0.03})

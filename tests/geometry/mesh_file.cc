@@ -61,7 +61,7 @@ TEST(MeshFile, TakesCellsOfEveryShapeAndOrder)
     EXPECT_EQ(mesh.body_names, mesh.volume_names);
     EXPECT_EQ(mesh.notes.size(), n_added > 0);
     if (n_added > 0)
-      expect_mentions(mesh.notes[0], {std::to_string(n_added) + " nodes", "serendipity"});
+      expect_mentions(mesh.notes[0], {"cells: " + std::to_string(n_added), "serendipity"});
     for (std::size_t c = 0; c < cells.size(); ++c)
       {
         const auto nodes = reference_nodes(cells[c].shape, cells[c].degree);

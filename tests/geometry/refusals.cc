@@ -88,7 +88,7 @@ TEST(Refusals, PlansThatDoNotFit)
   parameters.pin_diameter      = 0.05;
   parameters.top               = {{0.0765, 0.1275}, {0., 0.}};
   parameters.bottom            = {{0.102}, {0.}};
-  expect_mentions(refusal(parameters), {"pins that overlap", "Move the pins"});
+  expect_mentions(refusal(parameters), {"pins that overlap", "Change the radii or angles"});
   // The mounted surface does not exist
   expect_mentions(refusal(one_pin(), {"disc_ear"}), {"'disc_ear'", "disc_bore"});
 }

@@ -137,5 +137,5 @@ TEST(SecondOrder, NodesThatFoldACellAreRefused)
   };
   EXPECT_EQ(refusal(0.01), "accepted");
   Scenes::expect_mentions(refusal(0.45), {"folded by second-order nodes", "'disc'", "element"});
-  Scenes::expect_mentions(refusal(0.6), {"1 second-order node is farther from the middle", "half the length of the edge", "'disc'"});
+  Scenes::expect_mentions(refusal(0.6), {"1 second-order node is farther from the middle", "half its length", "'disc'"});
 }

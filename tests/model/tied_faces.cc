@@ -12,7 +12,7 @@
 using namespace Squeal;
 using namespace Squeal::Testing;
 
-// Patch test of tied faces: constant stress is transmitted between two blocks, for all cell shapes.
+// Patch test of tied faces: constant stress is transmitted between two blocks of tetrahedra, wedges or hexahedra.
 
 namespace
 {

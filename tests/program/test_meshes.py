@@ -289,9 +289,9 @@ class Tetrahedra(ProgramTest):
         held = "Mounts/Elastic mounts={}; {}: 0, 0, 2e10; {}: 0, 0, 2e10".format
         between = "surfaces disc_top and pad_outer_face"
         for change, mentions, *overrides in (
-                (middle_at(0.5, 0.05), ["1 second-order node", "than half the length of the edge", "'pad_inner_backplate'"]),
+                (middle_at(0.5, 0.05), ["1 second-order node", "than half its length", "'pad_inner_backplate'"]),
                 (middle_at(0.1), ["folded by second-order nodes"]),
-                (parted(slice(4, 10)), ["Second-order nodes of", "merge"]),
+                (parted(slice(4, 10)), ["second-order nodes differ from", "merge"]),
                 (parted(slice(0, 10)), ["'pad_outer_lining' is not held", "merge"]),
                 (with_corner(math.nan), ["not a finite number"]),
                 (with_corner(math.inf), ["not a finite number"]),

@@ -51,7 +51,7 @@ class Solvers(ProgramTest):
 class Sliding(SlidingTest):
     def test_state(self):
         one, two = (self.run_scene(f"state_{n}", STEADY, DISSIPATION, UNSTABLE_SHAPES, n_processes=n) for n in (1, 2))
-        self.assert_certified(two)
+        self.assert_checked(two)
         actual = pins(two)
         for name, pin in pins(one).items():
             for column, value in pin.items():

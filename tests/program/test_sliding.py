@@ -33,8 +33,8 @@ def loads(folder):
     return [row["load [N]"] for row in pins(folder).values()]
 
 
-def certificate(folder):
-    return {row["quantity"]: float(row["value"]) for row in read_table(folder / "sliding_certificate.csv")}
+def checks(folder):
+    return {row["quantity"]: float(row["value"]) for row in read_table(folder / "sliding_checks.csv")}
 
 
 def growth_rates(folder):
@@ -72,8 +72,8 @@ class SlidingTest(ProgramTest):
         largest = max(map(abs, expected))
         self.assertLessEqual(max(abs(a - b) for a, b in zip(actual, expected)), tolerance * largest)
 
-    def assert_certified(self, folder, has_load=True):
-        values = certificate(folder)
+    def assert_checked(self, folder, has_load=True):
+        values = checks(folder)
         self.assertLess(values["residual of the full system [-]"], 1e-10)
         self.assertLess(values["error of the prescribed loads [-]"], 1e-10)
         self.assertLessEqual(values["largest tension over load [-]"], 0)
@@ -97,9 +97,9 @@ class State(SlidingTest):
 
     def test_tables(self):
         self.assertEqual(list(self.pins), PINS)
-        for name in ("sliding_pins.csv", "sliding_certificate.csv"):
+        for name in ("sliding_pins.csv", "sliding_checks.csv"):
             self.assertTrue(all(math.isfinite(number) for number in numbers(self.results / name)), name)
-        self.assert_certified(self.results)
+        self.assert_checked(self.results)
 
     def test_pins(self):
         height = 0.0318
@@ -231,7 +231,7 @@ class Independent(SlidingTest):
                 plates = [0 if side > 0 else 1 for side in contact.sides]
                 compressions, ways = contact.solve(contact.gaps(gaps), plates, [LOAD, LOAD])
                 results = self.run_case(friction, gaps)
-                self.assert_certified(results)
+                self.assert_checked(results)
                 self.assert_same_state(results, contact, friction, compressions, [ways[0], ways[0], ways[1], ways[1]])
 
     def test_load_per_pin(self):
@@ -251,7 +251,7 @@ class Independent(SlidingTest):
         way, unit = 4e-6, contact.flexibility.max()
         compressions = lemke(contact.flexibility / unit, (contact.gaps(gaps) - way) / unit)
         results = self.run_case(friction, gaps, "Steady sliding/Control=displacement", f"Steady sliding/Displacement={way}")
-        self.assert_certified(results, has_load=False)
+        self.assert_checked(results, has_load=False)
         self.assert_same_state(results, contact, friction, compressions, 4 * [way])
 
 
@@ -337,7 +337,7 @@ class Shoes(SlidingTest):
 
     def test_every_shoe_bears_the_load(self):
         results = self.run_scene("results", STEADY, "Output/Write matrices=true", file="shoes.prm")
-        self.assert_certified(results, has_load=False)
+        self.assert_checked(results, has_load=False)
         self.assertEqual([pin["open nodes [-]"] for pin in pins(results).values()], [0, 0])
         if not importlib.util.find_spec("scipy"):
             self.skipTest("needs SciPy")

@@ -125,7 +125,7 @@ class Flutter(SystemTest):
         """Each mistake stops the run with one message that names its location."""
         singular = [(2, "1", [[1., 0.], [0., 0.]], "symmetric"), (0, "1", [[1., 0.], [0., 0.]], "symmetric")]
         mass, stiffness, friction = flutter_terms()
-        cases = [([mass, stiffness, (0, "1", [[1.]], "none")], ["1 rows", "A2.mtx", "terms[3].matrix"]),
+        cases = [([mass, stiffness, (0, "1", [[1.]], "none")], ["1 and 2", "A2.mtx", "terms[3].matrix"]),
                  ([mass, stiffness, (0, "1", [[1., 2., 3.], [1., 2., 3.]], "none")], ["2 x 3", "terms[3].matrix"]),
                  ([mass, (0, "1", [[1., math.nan], [0., 1.]], "none")], ["row 1 and column 2", "A1.mtx"]),
                  ([mass, stiffness, (0, "1", friction[2], "symmetric")], ["terms[3].symmetry", "skew part reach 30"]),

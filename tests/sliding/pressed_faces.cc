@@ -96,12 +96,12 @@ namespace
 
   void check(const SlidingState &state)
   {
-    EXPECT_LT(state.certificate.residual, 1e-9);
-    EXPECT_LE(state.certificate.tension, 0.);
-    EXPECT_LT(state.certificate.overlap, 1e-9);
-    EXPECT_LT(state.certificate.complementarity, 1e-9);
-    EXPECT_LT(state.certificate.force_balance, 1e-9);
-    EXPECT_LT(state.certificate.moment_balance, 1e-9);
+    EXPECT_LT(state.checks.residual, 1e-9);
+    EXPECT_LE(state.checks.tension, 0.);
+    EXPECT_LT(state.checks.overlap, 1e-9);
+    EXPECT_LT(state.checks.complementarity, 1e-9);
+    EXPECT_LT(state.checks.force_balance, 1e-9);
+    EXPECT_LT(state.checks.moment_balance, 1e-9);
   }
 
   double sum(const std::vector<double> &reactions)

@@ -70,13 +70,13 @@ namespace
 
   void check(const SlidingScene &s, const SlidingState &state)
   {
-    EXPECT_LT(state.certificate.residual, 1e-10);
-    EXPECT_LT(state.certificate.load, 1e-10);
-    EXPECT_LE(state.certificate.tension, 0.);
-    EXPECT_LT(state.certificate.overlap, 1e-12);
-    EXPECT_LT(state.certificate.complementarity, 1e-12);
-    EXPECT_LT(state.certificate.force_balance, 1e-9);
-    EXPECT_LT(state.certificate.moment_balance, 1e-9);
+    EXPECT_LT(state.checks.residual, 1e-10);
+    EXPECT_LT(state.checks.load, 1e-10);
+    EXPECT_LE(state.checks.tension, 0.);
+    EXPECT_LT(state.checks.overlap, 1e-12);
+    EXPECT_LT(state.checks.complementarity, 1e-12);
+    EXPECT_LT(state.checks.force_balance, 1e-9);
+    EXPECT_LT(state.checks.moment_balance, 1e-9);
     for (std::size_t c = 0; c < s.interface.size(); ++c)
       {
         EXPECT_LE(state.reactions[c], 0.);
@@ -317,7 +317,7 @@ TEST(SteadySliding, ADiscThatMovesFreely)
       ASSERT_NE(s.sliding.response.rigid_body_modes(), nullptr);
       // A ring without axial mount can also tilt about its bore
       EXPECT_EQ(s.sliding.response.rigid_body_modes()->n_columns(), mount.axial == 0. && mount.radial > 0. ? 3 : 1);
-      const SlidingCertificate found = s.solve().certificate;
+      const SlidingChecks found = s.solve().checks;
       EXPECT_LT(found.residual, 1e-9);
       EXPECT_LT(found.load, 1e-10);
       EXPECT_LE(found.tension, 0.);
@@ -402,7 +402,7 @@ TEST(SteadySliding, Refusals)
     expect_refusal([&] { scene.solve(sliding); }, parts);
   };
   expect(s, steady(), {{"pin_upper", 1e-6}}, {"there is no pin `pin_upper`", first});
-  expect(s, steady(), {{first, 10.}}, {"is not smaller than the height of the pin"});
+  expect(s, steady(), {{first, 10.}}, {"is not smaller in magnitude than the height of the pin"});
   expect(s, steady(BackplateControl::displacement, 1e-6), {{first, 2e-6}, {second, 1e-6}}, {"does not close the smallest gap"});
   expect(free, steady(), {}, {"nothing holds the disc against the friction forces"});
 }

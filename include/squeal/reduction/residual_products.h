@@ -15,9 +15,9 @@ namespace Squeal
   /// Inner products of the residuals R_j = Q(λ_j) φ_j and L_i = Q(λ_i)ᵀ ψ_i of reduced modes, for error estimates.
   struct ResidualProducts
   {
-    ComplexDenseMatrix  coupling;       ///< L_iᵀ K_c⁻¹ R_j, k × k, no conjugate
-    std::vector<double> right_energies; ///< R_jᴴ K_c⁻¹ R_j
-    std::vector<double> left_energies;  ///< L_jᴴ K_c⁻¹ L_j
+    ComplexDenseMatrix  coupling;       ///< L_iᵀ S⁻¹ R_j, k × k, no conjugate; S = K_c + s² M_c
+    std::vector<double> right_energies; ///< R_jᴴ S⁻¹ R_j
+    std::vector<double> left_energies;  ///< L_jᴴ S⁻¹ L_j
   };
 
   /**

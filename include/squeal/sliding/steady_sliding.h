@@ -16,7 +16,7 @@
 namespace Squeal
 {
   /// Residuals of a steady sliding state, computed from the displacements of the full model.
-  struct SlidingCertificate
+  struct SlidingChecks
   {
     double residual;        ///< ‖K u − P_nᵀ r_n − μ P_tᵀ r_n − f_p‖ / ‖P_nᵀ r_n‖ without the drive's force [-]
     double load;            ///< largest relative error of the load of a backplate; 0 if none is prescribed [-]
@@ -36,7 +36,7 @@ namespace Squeal
     std::vector<double>          approach;           ///< travel of the backplate of each component [m]; 0 for the disc
     std::shared_ptr<MultiVector> displacement;       ///< u [m], n × 1, elastic, relative to the moved backplates
     std::shared_ptr<MultiVector> total_displacement; ///< u with the travel of the backplates [m], n × 1
-    SlidingCertificate           certificate;
+    SlidingChecks                checks;
     ContactUniqueness            uniqueness;
     int                          n_steps; ///< number of iterations of the active-set method
   };

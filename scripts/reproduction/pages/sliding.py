@@ -17,13 +17,13 @@ def steady(runs, name, *settings):
     return runs(name, "sliding.prm", NO_SHAPES, FEW_MODES, *settings)
 
 
-def certificate(results):
-    return {row["quantity"]: row["value"] for row in results.rows("sliding_certificate")}
+def checks(results):
+    return {row["quantity"]: row["value"] for row in results.rows("sliding_checks")}
 
 
-@entry("sliding", "The certificate at mu = 0.4, and the friction coefficient below which the state is unique")
+@entry("sliding", "The checks at mu = 0.4, and the friction coefficient below which the state is unique")
 def proof(runs):
-    values = certificate(steady(runs, "sliding_0.4", "Operation/Friction coefficient=0.4"))
+    values = checks(steady(runs, "sliding_0.4", "Operation/Friction coefficient=0.4"))
     for quantity, bound in (("residual of the full system [-]", "1e-11"), ("error of the prescribed loads [-]", "1e-14"),
                             ("largest overlap over travel [-]", "1e-13"), ("complementarity |r_n g| over load and travel [-]", "1e-14"),
                             ("force balance with the supports [-]", "1e-11"), ("moment balance with the supports [-]", "1e-11")):
@@ -64,7 +64,7 @@ def random_patterns(runs):
     residuals, overlaps, unique = [], [], 0
     for seed in range(20):
         gaps, mu = random_gaps(seed)
-        values = certificate(steady(runs, f"gaps_{seed}", f"Steady sliding/Gaps={gaps}", f"Operation/Friction coefficient={mu}"))
+        values = checks(steady(runs, f"gaps_{seed}", f"Steady sliding/Gaps={gaps}", f"Operation/Friction coefficient={mu}"))
         residuals.append(values["residual of the full system [-]"])
         overlaps.append(values["largest overlap over travel [-]"])
         unique += values["friction coefficient below which the state is unique [-]"] > mu

@@ -21,7 +21,7 @@ namespace Squeal
       std::vector<double> onsets;          ///< onsets of the samples in which the divergence rate is exceeded, ascending
       double              uncertainty;     ///< largest uncertainty of an onset
 
-      /// @p p-quantile of the onsets over these samples; empty if too few samples have an onset.
+      /// @p p-quantile over n_samples samples, with infinite onsets in samples without onset; empty if it is infinite.
       Entry quantile_of_all(const double p) const
       {
         std::vector<double> all = onsets;

@@ -5,11 +5,16 @@
 
 #include <boost/math/distributions/binomial.hpp>
 
-// ComposedDistribution has been called JointDistribution since OpenTURNS 1.23
+// OpenTURNS 1.23 renamed ComposedDistribution to JointDistribution, and a later version UserDefined to FiniteDiscreteDistribution
 #if __has_include(<openturns/JointDistribution.hxx>)
 #  include <openturns/JointDistribution.hxx>
 #else
 #  include <openturns/ComposedDistribution.hxx>
+#endif
+#if __has_include(<openturns/FiniteDiscreteDistribution.hxx>)
+#  include <openturns/FiniteDiscreteDistribution.hxx>
+#else
+#  include <openturns/UserDefined.hxx>
 #endif
 #include <openturns/LogNormal.hxx>
 #include <openturns/MartinezSensitivityAlgorithm.hxx>
@@ -18,7 +23,6 @@
 #include <openturns/SobolIndicesExperiment.hxx>
 #include <openturns/TruncatedNormal.hxx>
 #include <openturns/Uniform.hxx>
-#include <openturns/UserDefined.hxx>
 
 #include <algorithm>
 #include <cmath>
@@ -31,7 +35,12 @@ namespace Squeal
 #if __has_include(<openturns/JointDistribution.hxx>)
     using JointDistribution = OT::JointDistribution;
 #else
-    using JointDistribution = OT::ComposedDistribution;
+    using JointDistribution    = OT::ComposedDistribution;
+#endif
+#if __has_include(<openturns/FiniteDiscreteDistribution.hxx>)
+    using DiscreteDistribution = OT::FiniteDiscreteDistribution;
+#else
+    using DiscreteDistribution = OT::UserDefined;
 #endif
     constexpr double confidence = 0.95;
 
@@ -57,7 +66,7 @@ namespace Squeal
       OT::Sample values(x.size(), 1);
       for (std::size_t i = 0; i < x.size(); ++i)
         values(i, 0) = x[i];
-      return OT::UserDefined(values);
+      return DiscreteDistribution(values);
     }
 
     JointDistribution joint_distribution(const std::vector<Distribution> &distributions, const DenseMatrix *correlations)

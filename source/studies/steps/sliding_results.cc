@@ -34,7 +34,7 @@ namespace Squeal
         loads[pin.side == 0 ? pin.pin : pin.side > 0 ? "the upper side" : "the lower side"] += pin.load;
       for (const auto &[part, load] : loads)
         rows.emplace_back("normal load of " + part + " [N]", load);
-      const SlidingCertificate &c = state.certificate;
+      const SlidingChecks &c = state.checks;
       rows.emplace_back("residual of the full system [-]", c.residual);
       rows.emplace_back("error of the prescribed loads [-]", c.load);
       rows.emplace_back("largest tension over load [-]", c.tension);
@@ -64,7 +64,7 @@ namespace Squeal
   {
     const std::vector<PinContact> pins = pin_contacts(*scene.model, scene.interface, state, operation);
     run.store_table("sliding_pins", pin_table(pins));
-    run.store_table("sliding_certificate", sliding_table(state, pins));
+    run.store_table("sliding_checks", sliding_table(state, pins));
 
     std::string open;
     for (const PinContact &pin : pins)

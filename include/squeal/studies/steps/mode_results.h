@@ -49,7 +49,7 @@ namespace Squeal
   /// `component` is the index of its group of dofs, from 0. Writes no files if the system has no points.
   void write_mode_shapes(const SystemFile &file, const FrictionlessModes &frictionless, const FrictionModes &friction, Run &run);
 
-  /// Writes `sliding_pins.csv` and `sliding_certificate.csv`, and prints notes on open contact nodes and uniqueness.
+  /// Writes `sliding_pins.csv` and `sliding_checks.csv`, and prints notes on open contact nodes and uniqueness.
   void write_sliding_tables(const Scene &scene, const SlidingState &state, const OperationParameters &operation, Run &run);
 
   /// Writes `sliding_state.vtu` and `sliding_state_contact.vtu` for a linearisation about steady sliding.
