@@ -112,17 +112,20 @@ namespace Squeal
     if (slow.size() < modes.lambda.size())
       modes = selected(modes, slow);
     ComplexDenseMatrix right = modes.right, left = modes.left;
-    if (modal)
-      for (const auto [X, X_modal] : {std::make_pair(&right, &modes.right), {&left, &modes.left}})
+    const auto         transform_from_modal = [&](ComplexDenseMatrix &X, ComplexDenseMatrix &X_modal) {
+      X = multiply(model.modal().vectors, X);
+      for (Eigen::Index j = 0; j < X.cols(); ++j)
         {
-          *X = multiply(model.modal().vectors, *X);
-          for (Eigen::Index j = 0; j < X->cols(); ++j)
-            {
-              const double norm = X->col(j).norm();
-              X->col(j) /= norm;
-              X_modal->col(j) /= norm;
-            }
+          const double norm = X.col(j).norm();
+          X.col(j) /= norm;
+          X_modal.col(j) /= norm;
         }
+    };
+    if (modal)
+      {
+        transform_from_modal(right, modes.right);
+        transform_from_modal(left, modes.left);
+      }
     const auto estimates = estimate_eigenvalues(modes, residuals.products(values, modes.lambda, right, left));
 
     ChartPoint result{point.friction_coefficient, modes.lambda,     std::move(right),        std::move(left),    estimates.energy_residuals,
