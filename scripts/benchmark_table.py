@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Measures the tables of doc/benchmarks.md: charts, one friction coefficient and the default run, on one core and on
-two.
+"""Measures the times in the summary of doc/benchmarks.md and in the comparison with SLEPc: charts, one friction
+coefficient and the default run, on one core and on two.
 
     scripts/benchmark_table.py [--runs 3] [--cores 0,1] [--rows chart,damped,one,default]
 

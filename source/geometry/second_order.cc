@@ -83,7 +83,7 @@ namespace Squeal
 
       using Range = std::pair<std::vector<CellFace>::const_iterator, std::vector<CellFace>::const_iterator>;
 
-      /// The one or two cells that have a face.
+      /// The one or two cells that contain the face with this key.
       Range cells_at(const Key &key) const
       {
         const auto first =

@@ -209,7 +209,7 @@ class Fuzzer:
             self.mesh = (folder / "results" / "mesh.msh").read_bytes()
 
     def assignment(self):
-        """The sections, the name and a damaged value of a parameter."""
+        """Sections and name of a random parameter, with an unusual or damaged value."""
         sections, name, value = self.rng.choice(self.parameters)
         return sections, name.encode(), self.rng.choice([self.rng.choice(NUMBERS), self.rng.choice(WORDS), damaged(self.rng, value)])
 

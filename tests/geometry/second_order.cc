@@ -35,7 +35,7 @@ namespace
     return covered(plan);
   }
 
-  /// Coordinates in the plan [µm] of the nodes of a body at distance @p r from the axis.
+  /// Coordinates in the plan [µm] of the nodes of a body at distance @p r from the axis of the pin.
   std::set<std::pair<long, long>> nodes_at(const Mesh &mesh, const double r, const unsigned int body)
   {
     const std::vector<unsigned int> bodies = body_of_nodes(mesh);

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""A folder of the code includes only from its own row of the table in doc/structure.md, or from rows above."""
+"""Source files include headers only from their own folder and from folders above it in the table of doc/structure.md."""
 
 import pathlib
 import re

@@ -53,7 +53,7 @@ namespace Squeal
       ComplexDenseMatrix left, right; ///< Lᵀψ and Rᵀφ of a term with weights, m × k
     };
 
-    /// ψ_iᵀ A φ_j of a term, with @p weights instead of its own values.
+    /// ψ_iᵀ A φ_j of a term; @p weights contains the list parameter d of a term with weights: its values or their rates.
     ComplexDenseMatrix matrix(const Product &product, const ParameterValues &weights) const;
 
     std::vector<std::complex<double>> lambda;

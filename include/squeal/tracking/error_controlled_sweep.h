@@ -18,7 +18,7 @@ namespace Squeal
   struct ErrorControlledSweepOptions
   {
     double tolerance     = 1e-6; ///< limit for the estimated |δλ| / |λ| of every mode of the band at every operating point [-]
-    int    maximum_basis = 1500; ///< maximum number of vectors, at least the number of real modes
+    int    maximum_basis = 1500; ///< size beyond which the basis is not extended; it contains all real modes in any case
   };
 
   struct ErrorControlledSweep
