@@ -28,11 +28,11 @@ TEST(Refusals, FilesThatGmshCannotMesh)
 {
   expect_mentions(refusal(of_file("no_such_file.geo")), {"no_such_file.geo", std::filesystem::current_path().string(), "Geometry/File"});
   expect_refused({{"Point(1) = {0, 0, 0};\nthis is not Gmsh\n", {"geometry.geo", "line 2", "syntax error"}},
-                  // Two crossing lines cannot bound a surface
+                  // Lines that are not closed cannot bound a surface
                   {R"(
                      Point(1) = {0, 0, 0, 1}; Point(2) = {1, 1, 0, 1}; Point(3) = {1, 0, 0, 1}; Point(4) = {0, 1, 0, 1};
-                     Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 1};
-                     Curve Loop(1) = {1, 2, 3, 4}; Plane Surface(1) = {1};
+                     Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4};
+                     Curve Loop(1) = {1, 2, 3}; Plane Surface(1) = {1};
                      Physical Surface("disc") = {1};
                    )",
                    {"Gmsh failed while meshing the plan", "Error"}},
