@@ -30,6 +30,8 @@ class VtuFile:
     def _read(self, content):
         head, _, self.data = content.partition(b'<AppendedData encoding="raw">\n_')
         root = xml.etree.ElementTree.fromstring(head + b"</VTKFile>")
+        if root.get("compressor") != "vtkZLibDataCompressor" or root.get("header_type") != "UInt64":
+            raise ValueError("the compressor or the type of headers is unknown")
         title = root.find(".//FieldData/DataArray[@Name='mode']")
         self.title = None if title is None else bytes(map(int, title.text.split()[:-1])).decode()
         pieces = [{(part.tag, data.get("Name")): self.values(data) for part in piece for data in part}

@@ -334,9 +334,9 @@ namespace Squeal
       const auto &[bodies, indices] = *most;
       const std::size_t n_inside    = std::distance(indices.begin(), indices.lower_bound(n_nodes));
       throw MeshError("Bodies '" + mesh.body_names[bodies.first] + "' and '" + mesh.body_names[bodies.second] +
-                        "' overlap: " + counted(n_inside, "node", "nodes") + " and " +
-                        counted(indices.size() - n_inside, "element centre", "element centres") + " of '" + mesh.body_names[bodies.first] +
-                        "' are inside '" + mesh.body_names[bodies.second] + "', the first one at " + place_of(*indices.begin()),
+                        "' overlap: " + counted(n_inside, "node") + " and " + counted(indices.size() - n_inside, "element centre") +
+                        " of '" + mesh.body_names[bodies.first] + "' are inside '" + mesh.body_names[bodies.second] +
+                        "', the first one at " + place_of(*indices.begin()),
                       where, "move one body, or remove duplicate bodies");
     }
   } // namespace

@@ -40,7 +40,7 @@ namespace Squeal
     for (std::size_t d = 0; d < designs.size(); ++d)
       plan->lines[d].values = family.terms.members[d];
     model                      = std::make_unique<SweepModel>(*plan, regime, run, std::move(family.middle));
-    model->sharpens_thresholds = false; // enriching the basis of every design takes longer than its sweep
+    model->sharpens_thresholds = false; // enriching the basis of every design would take a fifth longer
     common                     = std::move(model->reduced);
     common->estimate_without_cancellation();
   }
